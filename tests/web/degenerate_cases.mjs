@@ -249,6 +249,8 @@ function drawing(draw, ...given) {
     draw(ctx, ...given, '#000');
     return at;
 }
+for (const name of ['toCss', 'toPixels', 'textSize'])
+    add('app/chart_style', name, [12], ENDS);
 add('app/chart_style', 'hatchAlong', [[10, 20], [300, 90]],
     { ends: true, call: (...given) => drawing(chartStyle.hatchAlong, ...given).length });
 add('app/chart_style', 'triangle', [10, 20], { ends: true, call: (...given) => drawing(chartStyle.triangle, ...given).length });
@@ -265,7 +267,8 @@ add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { ind
 // Functions that take texts, messages or objects of the page, and classes that represent a session.
 const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', 'format.zoneOf', 'format.qualityText', 'format.title',
     'format.quantityText', 'format.worst', 'history.ask', 'history.witnesses', 'history.raised', 'history.severityOf',
-    'trend_range.readRange', 'trend_values.alarmSpans', 'app/chart_style.strokeAlong', 'instant.fieldInstant',
+    'trend_range.readRange', 'trend_values.alarmSpans', 'app/chart_style.strokeAlong',
+    'app/chart_style.setChartUnit', 'instant.fieldInstant',
     'query.readNumbers', 'query.readSensors', 'sun.sunText', 'wall.readWall', 'wire.WireError', 'wire.decodeFrame', 'wire.isGivenUp',
     'app/alarm_bar.AlarmBar', 'app/alarm_bar.asOf', 'app/alarm_bar.badge', 'app/drift.driftCurve', 'app/drift.driftOf',
     'app/drift.driftText',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of charts for each theme, and patterns for missing values.
+// Colours and sizes of charts, and patterns for missing values.
 
 export const LOOKS = {
     light: { ground: '#ffffff', ink: '#4d5964', rule: '#d8dce0', gap: '#8b949c', grave: '#a31515', limit: '#8a5a00', then: '#5b2d8e',
@@ -10,10 +10,21 @@ export const LOOKS = {
         lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0', '#7fd8e8', '#d9b793'] },
 };
 
+// unitPx: CSS pixels of a unit of the charts: 1 on a desk, more on a wall, which is seen from afar; leastText: smallest font size in units
+let unitPx = 1, leastText = 0;
+export function setChartUnit(px, least) {
+    [unitPx, leastText] = [px, least];
+}
+// Convert a length in units of the charts to CSS pixels and to device pixels.
+export const toCss = (units) => units * unitPx;
+export const toPixels = (units) => units * unitPx * devicePixelRatio;
+// Returns a font size in units: the given one, or the smallest of the charts if that is larger.
+export const textSize = (units) => Math.max(units, leastText);
+
 // Draws a hatched rectangle for a period without values. The rectangle is clipped to the canvas, because a gap of days in a chart of
 // seconds would be millions of pixels wide.
 export function hatch(ctx, left, top, width, height, colour) {
-    const step = 7 * devicePixelRatio, from = Math.max(left, 0) - height, to = Math.min(left + width, ctx.canvas.width);
+    const step = toPixels(7), from = Math.max(left, 0) - height, to = Math.min(left + width, ctx.canvas.width);
     if (!(height <= ctx.canvas.height))
         return;
     ctx.save();
@@ -22,7 +33,7 @@ export function hatch(ctx, left, top, width, height, colour) {
     ctx.clip();
     ctx.globalAlpha = 0.45;
     ctx.strokeStyle = colour;
-    ctx.lineWidth = 1.5 * devicePixelRatio;
+    ctx.lineWidth = toPixels(1.5);
     ctx.beginPath();
     for (let x = from - from % step; x < to; x += step) {
         ctx.moveTo(x, top + height);
@@ -34,7 +45,7 @@ export function hatch(ctx, left, top, width, height, colour) {
 
 // Draws a hatched band along a line from one position [x, y] to another.
 export function hatchAlong(ctx, [left, begin], [right, end], colour) {
-    const half = 8 * devicePixelRatio, top = Math.min(begin, end) - half, height = Math.abs(end - begin) + 2 * half;
+    const half = toPixels(8), top = Math.min(begin, end) - half, height = Math.abs(end - begin) + 2 * half;
     ctx.save();
     ctx.beginPath();
     ctx.moveTo(left, begin - half);
@@ -57,15 +68,15 @@ export function strokeAlong(chart, index, left, right, { colour, width, dash = [
     ctx.clip();
     if (clip)
         ctx.clip(clip);
-    Object.assign(ctx, { strokeStyle: colour, lineWidth: width * devicePixelRatio, globalAlpha: alpha, lineJoin: 'round' });
-    ctx.setLineDash(dash.map((px) => px * devicePixelRatio));
+    Object.assign(ctx, { strokeStyle: colour, lineWidth: toPixels(width), globalAlpha: alpha, lineJoin: 'round' });
+    ctx.setLineDash(dash.map(toPixels));
     ctx.stroke(stroke);
     ctx.restore();
 }
 
 // Draws a triangle that points down to a position.
 export function triangle(ctx, x, y, colour, edge) {
-    const px = devicePixelRatio;
+    const px = toPixels(1);
     ctx.save();
     ctx.beginPath();
     ctx.moveTo(x, y - 3 * px);

@@ -5,11 +5,12 @@ import { shortNumberText } from '../../core/format.js';
 import { BAD, gaps, limitLines, line, UNCERTAIN } from '../../core/history.js';
 import { bands, valueAt } from '../../core/trend_values.js';
 import { pointAtInstant } from '../common/crosshair.js';
-import { hatch, hatchAlong, strokeAlong, triangle } from './chart_style.js';
+import { hatch, hatchAlong, strokeAlong, textSize, toCss, toPixels, triangle } from './chart_style.js';
 
 const EXPAND = 2; // argument of uPlot.join(): a null of a series also breaks its line at neighbouring instants of other series
-const AXIS_PX = 58, UNIT_PX = 16, TIME_PX = 28, LINE_PX = 1.75, BOLD_PX = 3, LABEL_PX = 15, BADGE_PX = 13, DRAGGED_PX = 4;
-const PAD_PX = 17, LOW_PAD_PX = 8, LOW_PX = 130; // space above the curves; charts lower than LOW_PX have less
+// sizes in units of the charts (chart_style.js), except DRAGGED_PX
+const AXIS = 58, UNIT = 16, TIME = 28, LINE = 1.75, BOLD = 3, LABEL = 15, BADGE = 13, TICK = 10, DRAGGED_PX = 4;
+const PAD = 17, LOW_PAD = 8, LOW = 130; // space above the curves; charts lower than LOW have less
 const DAYS_S = 2 * 86400; // the time axis has ticks for days if the range is longer than this
 const FONT = 'system-ui, sans-serif';
 
@@ -91,24 +92,26 @@ export class Plot {
     // --- drawing
 
     options() {
-        const { ink, rule: stroke } = this.view.look, rule = { stroke, width: 1 }, font = `12px ${FONT}`;
-        const axis = { stroke: ink, grid: rule, ticks: rule, font, labelFont: font }, { units } = this;
+        const { ink, rule: stroke } = this.view.look, rule = { stroke, width: toCss(1) };
+        const font = `${Math.round(toCss(textSize(12)))}px ${FONT}`, { units } = this;
+        const axis = { stroke: ink, grid: rule, ticks: { ...rule, size: toCss(TICK) }, gap: toCss(5), font, labelFont: font };
         const scales = Object.fromEntries(units.map((unit) => [unit, { range: (_, low, high) => this.range(unit, low, high) }]));
-        const right = this.isWide && units.length < 2 ? AXIS_PX + UNIT_PX : null;
+        const right = this.isWide && units.length < 2 ? toCss(AXIS + UNIT) : null;
         const onlyPlain = (chart, target, handler) => (event) => !event.shiftKey && event.button === 0 && handler(event);
         return {
-            ...this.shape, padding: [({ height: high }) => (high < LOW_PX ? LOW_PAD_PX : PAD_PX), right, null, null],
+            ...this.shape, padding: [({ height: high }) => toCss(high < toCss(LOW) ? LOW_PAD : PAD), right, null, null],
             tzDate: (s) => globalThis.uPlot.tzDate(new Date(s * 1000), this.view.zone),
             scales: { x: { time: true }, ...scales },
             cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, bind: { mousedown: onlyPlain,
                 dblclick: () => null } },
             legend: { show: false },
-            series: [{}, ...this.rows.map(({ tag }) => ({ label: tag.name, scale: this.view.unitOf(tag) || '–', width: LINE_PX,
+            series: [{}, ...this.rows.map(({ tag }) => ({ label: tag.name, scale: this.view.unitOf(tag) || '–', width: toCss(LINE),
                 stroke: this.view.colourOf(tag), points: { show: false } }))],
-            axes: [{ ...axis, values: (_, all) => all.map((s) => this.tickText(s)), space: 70, size: this.isLast ? TIME_PX : 8,
+            axes: [{ ...axis, values: (_, all) => all.map((s) => this.tickText(s)), space: toCss(70), size: toCss(this.isLast ? TIME : 8),
                 ...(this.isLast ? {} : { values: (_, all) => all.map(() => '') }) },
             ...units.map((unit, i) => ({
-                ...axis, scale: unit, label: unit, labelSize: UNIT_PX, size: AXIS_PX, side: i % 2 ? 1 : 3, grid: { ...rule, show: i === 0 },
+                ...axis, scale: unit, label: unit, labelSize: toCss(UNIT), size: toCss(AXIS), space: toCss(30), side: i % 2 ? 1 : 3,
+                grid: { ...rule, show: i === 0 },
                 values: (_, all) => all.map((value) => shortNumberText(value, 6)),
             }))],
             hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u), (u) => this.drawBands(u)],
@@ -191,8 +194,8 @@ export class Plot {
         if (!tag)
             return;
         const { bbox, valToPos } = chart, colour = this.view.colourOf(tag), x = (s) => valToPos(s, 'x', true);
-        const width = this.view.focus === tag && this.view.tags.length > 1 ? BOLD_PX : LINE_PX;
-        if (width > LINE_PX)
+        const width = this.view.focus === tag && this.view.tags.length > 1 ? BOLD : LINE;
+        if (width > LINE)
             strokeAlong(chart, index, bbox.left, bbox.left + bbox.width, { colour, width });
         for (const { from, to } of gaps(series, ...this.span).filter(({ severity }) => severity === UNCERTAIN))
             strokeAlong(chart, index, x(from), x(to), { colour: this.view.look.ground, width: width + 1, dash: [4, 5] });
@@ -206,12 +209,12 @@ export class Plot {
             for (const alarm of [...alarms].sort((a, b) => b.priority - a.priority)) { // the most urgent on top
                 const colour = this.view.priorities[alarm.priority - 1], left = x(Math.max(alarm.us, this.span[0]));
                 const right = x(alarm.endUs ?? this.span[1]), edge = { colour: this.view.look.edge, width: 7.5, alpha: 0.5 };
-                for (const pen of [edge, { colour, width: 6 }, { colour: this.view.colourOf(tag), width: LINE_PX }])
+                for (const pen of [edge, { colour, width: 6 }, { colour: this.view.colourOf(tag), width: LINE }])
                     strokeAlong(chart, i + 1, left, right, pen);
                 if (left < bbox.left || left > bbox.left + bbox.width || alarm.us < this.span[0])
                     continue;
                 const value = alarm.value ?? alarm.limit, y = Math.min(Math.max(valToPos(value ?? posToVal(0, scale), scale, true),
-                    bbox.top + 14 * devicePixelRatio), bbox.top + bbox.height);
+                    bbox.top + toPixels(14)), bbox.top + bbox.height);
                 triangle(ctx, left, y, colour, this.view.look.edge);
                 found.push({ alarm, us: alarm.us });
             }
@@ -219,9 +222,9 @@ export class Plot {
         this.marks = found;
     }
 
-    // Returns the alarms that were raised within some pixels of an instant.
-    alarmsNear(us, px = 6) {
-        const near = (px * this.view.spanUs) / Math.max(1, this.chart?.over.clientWidth ?? 1);
+    // Returns the alarms that were raised within some units of the chart of an instant.
+    alarmsNear(us, units = 6) {
+        const near = (toCss(units) * this.view.spanUs) / Math.max(1, this.chart?.over.clientWidth ?? 1);
         return this.marks.filter((mark) => Math.abs(mark.us - us) <= near).map(({ alarm }) => alarm);
     }
 
@@ -250,8 +253,8 @@ export class Plot {
     drawLimits(chart) {
         const { ctx, bbox } = chart;
         ctx.save();
-        ctx.lineWidth = devicePixelRatio;
-        ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+        ctx.lineWidth = toPixels(1);
+        ctx.setLineDash([6, 4].map(toPixels));
         for (const { y, colour } of this.limitsOf(chart)) {
             ctx.strokeStyle = colour;
             ctx.beginPath();
@@ -265,9 +268,9 @@ export class Plot {
     // Writes the name of each alarm limit at its line, over everything else. If lines are close together, a name goes next to the previous
     // one, or is left out if there is no room.
     nameLimits(chart) {
-        const { ctx, bbox } = chart, px = devicePixelRatio, height = LABEL_PX * px, placed = [];
+        const { ctx, bbox } = chart, px = toPixels(1), height = (textSize(11) + LABEL - 11) * px, placed = [];
         ctx.save();
-        ctx.font = `${11 * px}px ${FONT}`;
+        ctx.font = `${textSize(11) * px}px ${FONT}`;
         ctx.textAlign = 'left';
         ctx.textBaseline = 'middle';
         for (const { y, words, colour } of this.limitsOf(chart)) {
@@ -288,7 +291,7 @@ export class Plot {
 
     // Draws the number of each curve at its end. The table has the same numbers, so that curves are told apart without their colours.
     drawBadges(chart) {
-        const { ctx, bbox, valToPos, data } = chart, px = devicePixelRatio, size = BADGE_PX * px, { min, max } = chart.scales.x;
+        const { ctx, bbox, valToPos, data, scales: { x: { min, max } } } = chart, px = toPixels(1), size = (textSize(10) + BADGE - 10) * px;
         if (this.view.tags.length < 2)
             return;
         const ends = this.rows.map(({ tag }, i) => {
@@ -298,7 +301,7 @@ export class Plot {
                 y: valToPos(data[i + 1][k], this.view.unitOf(tag) || '–', true) };
         }).filter(Boolean).sort((a, b) => a.y - b.y);
         ctx.save();
-        Object.assign(ctx, { font: `600 ${10 * px}px ${FONT}`, textAlign: 'center', textBaseline: 'middle' });
+        Object.assign(ctx, { font: `600 ${textSize(10) * px}px ${FONT}`, textAlign: 'center', textBaseline: 'middle' });
         let below = -Infinity;
         ends.forEach((end, i) => {
             const room = (ends.length - 1 - i) * size, most = bbox.top + bbox.height - size / 2 - room;
@@ -318,7 +321,7 @@ export class Plot {
             return;
         ctx.save();
         ctx.strokeStyle = this.view.look.then;
-        ctx.lineWidth = 2 * devicePixelRatio;
+        ctx.lineWidth = toPixels(2);
         ctx.beginPath();
         ctx.moveTo(x, bbox.top);
         ctx.lineTo(x, bbox.top + bbox.height);

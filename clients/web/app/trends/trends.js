@@ -11,7 +11,7 @@ import { say } from '../../core/words.js';
 import { onCrosshair } from '../common/crosshair.js';
 import { byId, make, phone, setText } from '../common/dom.js';
 import { fillSegments, markSegment } from '../common/choices.js';
-import { LOOKS } from './chart_style.js';
+import { LOOKS, setChartUnit } from './chart_style.js';
 import { listenToDrags } from './drag_in.js';
 import { Plot } from './plot.js';
 import { listenToGestures } from './trend_gestures.js';
@@ -22,6 +22,7 @@ const EXAMPLES = ['minutes', 'hours', 'today', 'yesterday', 'night'];
 const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
+const WALL_TEXT = 13; // smallest font size of a chart on a wall, in units of the page: 16 minutes of arc (wall.js)
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
 // true: charts fill the room that the table leaves in a wall's pane or in a phone's sheet
 const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
@@ -54,8 +55,11 @@ function load() {
 }
 
 export class Trends {
-    constructor({ session, overlay, handlers }) {
-        Object.assign(this, { session, tags: [], spanS: newSpanS(null), fixed: null, before: [], plots: [], focus: null, isAsking: false });
+    // page: the page's parts (main.js)
+    constructor(page) {
+        const { session, overlay, handlers } = page;
+        Object.assign(this, { page, session, tags: [], plots: [], focus: null, isAsking: false });
+        Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
         this.isChosen = false; // whether a user or a wall has chosen the time range
         this.unknown = []; // names that the plant has no tag for
         this.undrawn = []; // names beyond the largest number of tags
@@ -109,6 +113,11 @@ export class Trends {
 
     get look() {
         return LOOKS[this.theme] ?? LOOKS.light;
+    }
+
+    // Size of a unit of the charts in CSS pixels. On a wall, the style sheet enlarges only the table, so that the charts are sharp.
+    get unit() {
+        return document.body.classList.contains('pane-trend') ? this.page.unit : 1;
     }
 
     get priorities() {
@@ -445,14 +454,16 @@ export class Trends {
     }
 
     draw(uPlot) {
-        const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))], shape = JSON.stringify([units, this.theme]);
+        const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))];
+        const shape = JSON.stringify([units, this.theme, this.unit]);
         const element = byId('trend-chart'), width = Math.max(200, element.clientWidth);
         if (shape !== this.shape) {
             this.drop();
+            setChartUnit(this.unit, document.body.classList.contains('pane-trend') ? WALL_TEXT : 0);
             const count = Math.ceil(units.length / UNITS_PER_PLOT), height = heightOf(count, this.tags.length);
             this.plots = Array.from({ length: count }, (_, i) => new Plot({ view: this, element, width, height, isWide: units.length > 1,
                 isLast: i === count - 1, units: units.slice(i * UNITS_PER_PLOT, (i + 1) * UNITS_PER_PLOT) }));
-            Object.assign(this, { shape, shownTheme: this.theme });
+            Object.assign(this, { shape, shownTheme: this.theme, shownUnit: this.unit });
         }
         const answered = this.tags.filter(({ name }) => this.series.has(name));
         const rows = answered.map((tag) => ({ tag, series: this.series.get(tag.name), alarms: this.alarms.get(tag.name) }));
@@ -471,10 +482,13 @@ export class Trends {
     }
 
     resize() {
+        if (this.plots.length > 0 && this.unit !== this.shownUnit)
+            return this.draw(globalThis.uPlot);
         const width = byId('trend-chart').clientWidth, height = heightOf(this.plots.length, this.tags.length);
         for (const { chart } of this.plots)
             if (chart && width > 0 && (width !== chart.width || height !== chart.height))
                 chart.setSize({ width, height });
+        return undefined;
     }
 
     onCrosshair(us, from) {
