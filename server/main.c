@@ -31,8 +31,8 @@ static void print_usage(FILE *out)
           "\n"
           "Serves live pictures of a plant to browsers and other clients.\n"
           "\n"
-          "  --check          read all files, also those of --tokens, --openid, --notice, --tls-cert and\n"
-          "                   --signing-key, print every error and exit; no server is started\n"
+          "  --check          read all files, including those given with --tokens, --openid, --notice,\n"
+          "                   --tls-cert and --signing-key, print every error and exit; no server is started\n"
           "  --dump-plan      print the requests that this daemon would send to field devices, with registers\n"
           "                   and load, and exit\n"
           "  --list-gl-devices  print the GPUs that --gl-device accepts, and exit\n"
@@ -51,19 +51,19 @@ static void print_usage(FILE *out)
           "  --trusted-proxy ADDRESS[/BITS]  take clients' addresses from X-Forwarded-For of a proxy on another\n"
           "                   machine, such as 10.0.0.10 or 10.0.0.0/28; ignore X-Forwarded-For from all other\n"
           "                   machines; may be given up to 16 times\n"
-          "  --limit NAME=N   change one resource limit; the names of limits are listed below; may be repeated\n"
+          "  --limit NAME=N   change one resource limit; the limits are listed below; may be repeated\n"
           "\n"
           "Drawing:\n"
-          "  --gl CONTEXT     OpenGL context that draws: auto, egl-device, egl-surfaceless or osmesa (on the\n"
+          "  --gl CONTEXT     OpenGL context to draw with: auto, egl-device, egl-surfaceless or osmesa (on the\n"
           "                   CPU) (default: auto, the first context that works)\n"
-          "  --gl-device GPU  GPU that draws: its number in --list-gl-devices, or its PCI address such as\n"
+          "  --gl-device GPU  GPU to draw with: its number from --list-gl-devices, or its PCI address such as\n"
           "                   0000:65:00.0\n"
-          "  --memory MB      memory limit of all caches together (default: a quarter of the machine's memory,\n"
+          "  --memory MB      total memory limit for all caches (default: a quarter of the machine's memory,\n"
           "                   at most 2048). The model and the picture being drawn are not included. /metrics\n"
           "                   shows how much each cache uses\n"
           "  --field WHERE    where field values are computed: vertices (fast) or per-fragment (at each pixel,\n"
           "                   which is slow, for comparison only) (default: vertices)\n"
-          "  --h264 ENCODER   libavcodec encoder of H.264 video: libx264, h264_nvenc, h264_vaapi, libopenh264,\n"
+          "  --h264 ENCODER   libavcodec encoder for H.264 video: libx264, h264_nvenc, h264_vaapi, libopenh264,\n"
           "                   ...; off: send JPEG only (default: libx264). If the encoder does not work on this\n"
           "                   machine, clients get JPEG\n"
           "\n"
@@ -73,30 +73,30 @@ static void print_usage(FILE *out)
           "  --history DIR    folder in which readings are recorded (default: the folder that the plant file\n"
           "                   names, else a folder next to the plant file)\n"
           "  --import[=now]   let engineers upload models and tag lists on the page, as `plantcast import\n"
-          "                   --serve` does. --import=now: also import, at the start of the daemon, the files\n"
-          "                   in the folder `exports` next to the plant file\n"
-          "  --signing-key FILE  sign the pictures of /snapshot.png with the Ed25519 private key in FILE (PEM);\n"
+          "                   --serve` does. --import=now: also import the files in the folder `exports` next to\n"
+          "                   the plant file when the daemon starts\n"
+          "  --signing-key FILE  sign the pictures from /snapshot.png with the Ed25519 private key in FILE (PEM);\n"
           "                   `openssl genpkey -algorithm ed25519` creates such a key\n"
-          "  --log-level LEVEL  least severe log lines that are written: error, warn, info or debug (default:\n"
+          "  --log-level LEVEL  lowest severity of log lines to write: error, warn, info or debug (default:\n"
           "                   info)\n"
           "  --log-format FORMAT  format of log lines: text, json (one object per line) or journal (default:\n"
           "                   journal if standard error is the systemd journal, else text)\n"
           "\n"
           "Several machines:\n"
           "  --role ROLE      what this daemon does: all: polls field devices and serves users; core: like all,\n"
-          "                   and daemons of the role render may connect to it; render: draws pictures only,\n"
+          "                   and lets daemons with the role render connect; render: draws pictures only,\n"
           "                   with readings and alarms from a core (default: all)\n"
           "  --core URL       with --role render: address wss://HOST:PORT of the core; repeat the option for a\n"
           "                   second core. With --role core: address of the other core. One core is active, the\n"
           "                   other core takes over when the active core fails; two cores need PostgreSQL\n"
           "  --core-token-file FILE  file with the token that this daemon presents to the core (`plantcast\n"
           "                   token add --role renderer`, or standby for a second core)\n"
-          "  --core-ca FILE   certificates (PEM) by which the core's certificate is checked\n"
+          "  --core-ca FILE   CA certificates (PEM) for checking the core's certificate\n"
           "  --node NAME      name of this daemon in the core's log (default: host name)\n"
           "  --agent-port PORT  port on which HAProxy's agent check reads how much capacity this daemon has\n"
           "                   left. The signal SIGUSR1 moves all sessions to other daemons\n"
           "\n"
-          "Access: without --tokens, everybody on this machine has access, and nobody on other machines.\n"
+          "Access: without --tokens, all users on this machine have access, and no other machine has.\n"
           "To listen on another address, give --tls-cert and --tokens, or --open-viewers.\n"
           "\n"
           "  --tls-cert FILE  TLS certificate of this server with its chain (PEM); reloaded when the file\n"
@@ -108,17 +108,16 @@ static void print_usage(FILE *out)
           "  --openid FILE    sign users in through an identity provider (OpenID Connect); FILE holds the\n"
           "                   settings of the provider\n"
           "  --notice FILE    text that the page shows before users sign in (UTF-8, at most 4 kB)\n"
-          "  --lock-after MINUTES  sign users out after MINUTES without activity, except users of tokens made\n"
-          "                   with --unattended\n"
-          "  --open-viewers   let everybody who reaches the address of --listen view pictures, and do nothing\n"
-          "                   else\n"
+          "  --lock-after MINUTES  sign users out after MINUTES without activity, except users whose token was\n"
+          "                   created with --unattended\n"
+          "  --open-viewers   let anyone who can reach the --listen address view pictures, but do nothing else\n"
           "  --trust-local    with --tokens: users on this machine need no token and have the role engineer\n"
           "  --audit FILE     record sign-ins, refused requests and changes in FILE; `plantcast audit verify\n"
           "                   FILE` detects whether FILE was altered\n"
           "  --audit-size MB  size in MB at which a new audit file begins; the full file is kept (default: 64)\n"
-          "  --audit-syslog HOST[:PORT]  also send the audit trail to this syslog server by TLS (default port:\n"
+          "  --audit-syslog HOST[:PORT]  also send the audit trail to this syslog server over TLS (default port:\n"
           "                   6514)\n"
-          "  --audit-ca FILE  certificates (PEM) by which the syslog server's certificate is checked\n"
+          "  --audit-ca FILE  CA certificates (PEM) for checking the syslog server's certificate\n"
           "  --audit-cert FILE, --audit-key FILE  certificate and private key that this daemon presents to the\n"
           "                   syslog server\n"
           "\n"
@@ -313,7 +312,9 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_OPENID: access->openid_path = optarg; return -1;
     case OPTION_NOTICE: access->notice_path = optarg; return -1;
     case OPTION_LOCK:
-        return parse_minutes(optarg, &access->lock_min) ? -1 : usage_error("--lock-after: expected minutes, at most 1440, found", optarg);
+        return parse_minutes(optarg, &access->lock_min)
+                   ? -1
+                   : usage_error("--lock-after: expected a number of minutes, at most 1440, found", optarg);
     case OPTION_PROXY: access->behind_proxy = true; return -1;
     case OPTION_TRUSTED_PROXY:
         return access_add_proxy(access, optarg)
@@ -411,7 +412,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: expected a port, found", optarg);
     case OPTION_FIELD:
         return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: expected vertices or per-fragment, found", optarg);
-    case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
+    case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown OpenGL context", optarg);
     case OPTION_GL_DEVICE:
         params->has_gl_device = true;
         return gl_device_parse(optarg, &params->gl_device) ? -1
@@ -426,7 +427,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_FORMAT: return parse_format(optarg, &params->log_format) ? -1 : usage_error("--log-format: unknown format", optarg);
     case OPTION_MEMORY:
         if (!parse_int(optarg, MIN_MEMORY_MB, MAX_MEMORY_MB, &megabytes))
-            return usage_error("--memory: expected megabytes from 128 on, found", optarg);
+            return usage_error("--memory: expected a number of megabytes, at least 128, found", optarg);
         params->memory_bytes = (size_t)megabytes << 20;
         return -1;
     case OPTION_IMPORT:

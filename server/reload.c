@@ -205,7 +205,7 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
         log_info(log, "reload: %s", diff->lines[i]);
         json_array_append_new(changes, json_string(diff->lines[i]));
     }
-    log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s in place of %s, after %.1f s, requested by %s",
+    log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s replaced %s after %.1f s, requested by %s",
               (*reload->runtime)->plant->files.hash, before, took_s, reload->by);
     answer(reload, true,
            json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->runtime)->plant->files.hash, "before", before,

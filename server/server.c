@@ -232,7 +232,7 @@ static bool start_import(struct server *server)
     if (confine_lacks(lacks))
         log_warn(server->log, "--import: this kernel has %s", lacks);
     if (!server->divided)
-        log_info(server->log, "--import: memory limits hold for each process that reads files; a limit for all together needs a "
+        log_info(server->log, "--import: memory limits apply to each process that reads files alone; a limit for all together needs a "
                               "cgroup delegated by systemd (Delegate=memory pids)");
     server->import = plant_import_create(server->params.plant_path);
     if (!server->import)
@@ -583,8 +583,8 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
         for (size_t i = 0; i < count && i < SHOWN; i++)
             printf("%s:%d: warning: model %s: left out: %s\n", plant->files.path, asset->line, asset->model, entry->left_out[i]);
         if (count > SHOWN)
-            printf("%s:%d: warning: model %s: %zu more textures or extensions are left out\n", plant->files.path, asset->line, asset->model,
-                   count - SHOWN);
+            printf("%s:%d: warning: model %s: %zu more textures or extensions are left out (not listed)\n", plant->files.path, asset->line,
+                   asset->model, count - SHOWN);
     }
     manifest_finish(&manifest);
 }

@@ -21,9 +21,9 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
     if (params->behind_proxy && !params->tokens_path && !params->open_viewers)
         *why = "--behind-proxy needs --tokens FILE, so that users behind the proxy can sign in, or --open-viewers";
     else if (params->openid_path && !params->tokens_path)
-        *why = "--openid needs --tokens FILE: with a token, users can sign in while the identity provider does not answer";
+        *why = "--openid needs --tokens FILE, so that users can sign in with a token while the identity provider does not answer";
     else if (params->lock_min && !params->tokens_path)
-        *why = "--lock-after needs --tokens FILE: locked users sign in again with a token";
+        *why = "--lock-after needs --tokens FILE, so that users who were signed out can sign in again with a token";
     else if (params->behind_proxy && params->host_count == 0)
         *why = "--behind-proxy needs --host NAME: the host name under which browsers reach the proxy";
     else if (params->behind_proxy && params->trust_local)
@@ -31,8 +31,8 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
     else if ((params->tls_cert_path != NULL) != (params->tls_key_path != NULL))
         *why = "give both --tls-cert and --tls-key, or neither";
     else if (!loopback && !params->open_viewers && !(tls && params->tokens_path))
-        *why = "without TLS and tokens, everybody who reaches this address could use the plant and eavesdrop. Give\n--tls-cert, --tls-key "
-               "and --tokens, or give --open-viewers, which serves pictures, and nothing else, to everybody";
+        *why = "without TLS and tokens, anyone who can reach this address could use the plant and eavesdrop. Give\n--tls-cert, --tls-key "
+               "and --tokens, or give --open-viewers, which serves only pictures, to anyone";
     else
         return true;
     return false;

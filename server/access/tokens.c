@@ -311,7 +311,7 @@ bool tokens_look(struct tokens *tokens)
     if (!file_watch_changed(&tokens->watch, tokens->path))
         return false;
     if (read_file(tokens))
-        log_info(tokens->log, "tokens %s: %zu", tokens->path, tokens->count);
+        log_info(tokens->log, "tokens %s: %zu tokens read", tokens->path, tokens->count);
     return true;
 }
 

@@ -92,7 +92,7 @@ static void take_events(struct alarm_service *service)
     service->taken = taken;
     if (taken.lost) {
         counter_inc(service->counters.lost, (int64_t)taken.lost);
-        log_err(service->params.log, "alarms: %zu samples lost: queue full", taken.lost);
+        log_err(service->params.log, "alarms: %zu samples were not evaluated: queue full", taken.lost);
     }
 }
 
@@ -384,7 +384,8 @@ const char *alarm_service_mirror(struct alarm_service *service, const struct ala
 {
     pthread_mutex_lock(&service->thread.lock);
     uint64_t before = alarms_number(service->alarms);
-    const char *why = alarms_mirror(service->alarms, list, count, whole) ? NULL : "an unknown alarm";
+    const char *why =
+        alarms_mirror(service->alarms, list, count, whole) ? NULL : "the core's message has an alarm that this plant does not have";
     uint64_t number = alarms_number(service->alarms);
     keep_since(service, before);
     pthread_mutex_unlock(&service->thread.lock);

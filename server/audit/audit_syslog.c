@@ -211,7 +211,7 @@ struct audit_syslog *audit_syslog_start(const struct audit_params *params)
     clock_cond_init(&syslog->wake);
     if (curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && pthread_create(&syslog->thread, NULL, audit_syslog_main, syslog) == 0)
         return syslog;
-    log_err(params->log, "audit: sending to the syslog server cannot start: libcurl or a thread failed");
+    log_err(params->log, "audit: cannot start sending to the syslog server: libcurl or a thread cannot be started");
     mem_free(syslog->url);
     mem_free(syslog);
     return NULL;

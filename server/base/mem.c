@@ -10,7 +10,7 @@
 
 static void out_of_memory(size_t bytes)
 {
-    fprintf(stderr, "plantcast: out of memory (%zu bytes)\n", bytes);
+    fprintf(stderr, "plantcast: out of memory: cannot allocate %zu bytes\n", bytes);
     abort();
 }
 

@@ -146,12 +146,12 @@ const char *core_alarms_take(struct alarm_service *service, const json_t *messag
     size_t count = json_array_size(list);
     int64_t utc_ns;
     if (!json_is_array(list) || !get_ns(message, "utc", &utc_ns))
-        return "not a message of alarms";
+        return "the core's message is not a list of alarms";
     struct alarm *alarms = mem_array(count + 1, sizeof(*alarms));
     const char *why = NULL;
     for (size_t i = 0; i < count && !why; i++)
         if (!read_one(json_array_get(list, i), utc_ns, clock_mono_ns(), &alarms[i]))
-            why = "an invalid alarm";
+            why = "the core's message has an invalid alarm";
     if (!why)
         why = take_rows(service, json_object_get(message, "rows"));
     if (!why)

@@ -27,7 +27,7 @@ struct core_history *core_history_create(struct log *log, struct core_link *link
     struct core_history *history = mem_new(sizeof(*history));
     *history = (struct core_history){ .log = log, .link = link, .stop = stop, .request = { .stop = stop } };
     if (!http_request_make(&history->request, "plantcastd", NULL)) {
-        log_err(log, "history: the HTTP client could not be started");
+        log_err(log, "history: cannot start the HTTP client that reads the core's history");
         core_history_destroy(&history);
         return NULL;
     }
@@ -60,7 +60,7 @@ static bool fail(struct core_history *history, const char *path, const char *why
     char said[sizeof(history->said)];
     snprintf(said, sizeof(said), "%.*s: %s", (int)strcspn(path, "?"), path, why);
     if (strcmp(said, history->said) != 0 && !atomic_load(history->stop))
-        log_err(history->log, "history: the core: %s", said);
+        log_err(history->log, "history: cannot read from the core: %s", said);
     memcpy(history->said, said, sizeof(said));
     return false;
 }
@@ -69,7 +69,7 @@ static bool fail(struct core_history *history, const char *path, const char *why
 static bool refused(struct core_history *history, const char *path, long status, const char *text)
 {
     char why[120];
-    snprintf(why, sizeof(why), "the answer is status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
+    snprintf(why, sizeof(why), "the core answered with HTTP status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
     return fail(history, path, why);
 }
 

@@ -217,7 +217,7 @@ static void on_refused(struct core_link *link, const json_t *message)
     const char *why = json_string_value(json_object_get(message, "why"));
     arrive(link, 0, mem_strdup(link->in.at));
     if (link->params.keeper && !json_is_true(json_object_get(message, "takes_over")))
-        lease_keeper_set_refused(link->params.keeper, why ? why : "without a reason");
+        lease_keeper_set_refused(link->params.keeper, why ? why : "no reason given");
     if (link->params.keeper && json_is_true(json_object_get(message, "votes")))
         stay_to_vote(link, why ? why : "the core refuses this node without a reason");
     else
@@ -251,7 +251,7 @@ static void on_links(struct core_link *link, const json_t *message)
     const json_t *up = json_object_get(message, "up");
     int64_t now_ns = clock_mono_ns();
     if (json_array_size(up) != link->params.plant->source_count) {
-        refuse(link, "the core has another number of sources than this plant");
+        refuse(link, "the core's number of sources differs from this plant's");
         return;
     }
     for (size_t i = 0; i < json_array_size(up); i++)
@@ -787,7 +787,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)
-        log_err(params->log, "core: eventfd: %s", strerror(errno));
+        log_err(params->log, "core: cannot create an eventfd: %s", strerror(errno));
     if (link->stop_fd < 0 || !read_token(link) || !thread_start(&link->thread, params->log, "core", core_link_main, link))
         core_link_stop(&link);
     return link;

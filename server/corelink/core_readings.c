@@ -71,7 +71,7 @@ static const char *read_one(struct mirrored *out, size_t tag_count, const uint8_
     out->has_value = age_ns != INT64_MAX;
     if (age_ns < 0 || (out->has_value && (age_ns > now_mono_ns + INT64_C(1000000000) * 86400 * 3650 || !isfinite(out->value))) ||
         (!out->has_value && !quality_is_bad(out->quality)))
-        return "an invalid reading";
+        return "the core's message has an invalid reading";
     out->received_mono_ns = out->has_value ? now_mono_ns - age_ns : 0;
     return NULL;
 }
@@ -80,14 +80,14 @@ const char *core_readings_read(struct core_readings *out, size_t tag_count, cons
 {
     const uint8_t *at = bytes;
     if (count < CORE_READINGS_HEAD_BYTES || memcmp(at, MAGIC, sizeof(MAGIC)) != 0)
-        return "not a message of readings";
+        return "the core's message is not a list of readings";
     out->count = get32(at + 4);
     out->utc_ns = (int64_t)get64(at + 8);
     if (out->count > tag_count || count != CORE_READINGS_HEAD_BYTES + out->count * CORE_READING_BYTES)
         return "the length of the core's message does not match the number of readings in the message";
     int64_t core_mono_ns = (int64_t)get64(at + 16);
     if (core_mono_ns < 0)
-        return "an invalid clock";
+        return "the core's message has an invalid clock time";
     int64_t ahead_ns = now_mono_ns - core_mono_ns;
     if (out->least_ns != INT64_MAX && now_mono_ns > out->at_ns)
         out->least_ns += (now_mono_ns - out->at_ns) / DRIFT;

@@ -159,7 +159,7 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     if (!rows)
         give_up(keeper, postgres_link_why(keeper->link));
     else if (!there)
-        give_up(keeper, "the row of this plant was deleted from the table of leases");
+        give_up(keeper, "this plant's row was deleted from the table `lease`");
     if (there) {
         *row = (struct lease_row){ postgres_int64(rows, 0, 0), postgres_int64(rows, 0, 1), postgres_int64(rows, 0, 2), "", "" };
         copy_name(row->leader, rows, 3);
@@ -222,7 +222,7 @@ static void look_for_namesake(struct lease_keeper *keeper, const struct lease_ro
         keeper->namesake_beat = same ? row->beat : 0;
     } else if (keeper->namesake_beat > 0 && row->beat != keeper->namesake_beat) {
         log_err(keeper->params.log,
-                "lease: another core with the name %.*s leads: this core stays standby; give each core another name with --node", own,
+                "lease: another core with the name %.*s leads: this core stays standby; give each core its own name with --node", own,
                 keeper->node);
         keeper->namesake_beat = -1;
     }
@@ -366,7 +366,7 @@ static void give(struct lease_keeper *keeper)
     keeper->gives = false;
     pthread_mutex_unlock(&keeper->thread.lock);
     if (*standby)
-        log_info(keeper->params.log, "lease: given to %.*s", name_bytes(standby), standby);
+        log_info(keeper->params.log, "lease: handed over to %.*s", name_bytes(standby), standby);
     else
         log_info(keeper->params.log, "lease: released");
 }
@@ -565,9 +565,9 @@ static void add_counters(struct lease_keeper *keeper)
         counters_add(c, "plantcast_core_active", "gauge", "1 while this core leads: it polls the devices and owns the alarms.");
     keeper->counters.here = counters_add(c, "plantcast_core_up{core=\"this\"}", "gauge", CORE_UP_HELP);
     keeper->counters.epoch =
-        counters_add(c, "plantcast_core_epoch", "gauge", "Epoch of the lease: rises each time that another core takes the lead.");
-    keeper->counters.age = counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge",
-                                                "Seconds since the last renewal of the lease that was confirmed.");
+        counters_add(c, "plantcast_core_epoch", "gauge", "Epoch of the lease; increases each time another core takes the lead.");
+    keeper->counters.age =
+        counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge", "Seconds since the last confirmed renewal of the lease.");
     keeper->counters.database =
         counters_add(c, "plantcast_core_lease_database_up", "gauge", "1 while PostgreSQL answers requests for the lease.");
     keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a standby follows this core and may take over.");

@@ -56,7 +56,7 @@ char *node_id_take(struct node_id *id, const char *folder)
     *id = (struct node_id){ .fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600) };
     if (id->fd >= 0 && flock(id->fd, LOCK_EX | LOCK_NB) != 0)
         why = errno == EWOULDBLOCK
-                  ? mem_printf("%s: another core on this machine uses this folder of history: give each core another folder with --history",
+                  ? mem_printf("%s: another core on this machine uses this history folder: give each core its own folder with --history",
                                folder)
                   : mem_printf("%s: cannot be locked: %s", path, strerror(errno));
     else if (id->fd < 0 || fstat(id->fd, &st) != 0 || (!read_id(id, st.st_ino, machine) && !write_id(id, st.st_ino, machine)))

@@ -33,7 +33,7 @@ static struct encoder *jpeg_create(struct log *log, const char *library)
     jpeg->base = (struct encoder){ .impl = &jpeg_impl, .log = log };
     jpeg->writer = jpeg_writer_create();
     if (!jpeg->writer) {
-        log_err(log, "jpeg: out of memory");
+        log_err(log, "jpeg: cannot create the encoder: out of memory");
         jpeg_destroy(&jpeg->base);
         return NULL;
     }
@@ -103,7 +103,7 @@ static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const
     size_t count = params->full_chroma ? jpeg_write_whole(jpeg->writer, &pixels, params->quality, to, max_bytes(part))
                                        : compress_halved(jpeg, from, frame->stride_bytes, part, params->quality, to, &why);
     if (count == 0)
-        log_err(jpeg->base.log, "jpeg %dx%d: %s", part->width_px, part->height_px, why);
+        log_err(jpeg->base.log, "jpeg: cannot encode a picture of %dx%d: %s", part->width_px, part->height_px, why);
     *end += count;
     return count > 0;
 }
@@ -126,7 +126,7 @@ static int jpeg_send(struct encoder *encoder, struct frame *frame, const struct 
     int part_count = count ? count : 1;
     size_t end = 0;
     if (!reserve_for(jpeg, from, part_count)) {
-        log_err(encoder->log, "jpeg %dx%d: out of memory", frame->width_px, frame->height_px);
+        log_err(encoder->log, "jpeg: cannot encode a picture of %dx%d: out of memory", frame->width_px, frame->height_px);
         return -ENOMEM;
     }
     for (int i = 0; i < part_count; i++) {

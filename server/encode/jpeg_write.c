@@ -35,7 +35,7 @@ static void start(j_compress_ptr codec) /* does nothing; set_room() has already 
 static boolean need_room(j_compress_ptr codec)
 {
     struct jpeg_writer *writer = codec->client_data;
-    snprintf(writer->why, sizeof(writer->why), "larger than the buffer");
+    snprintf(writer->why, sizeof(writer->why), "the compressed picture does not fit into its buffer");
     longjmp(writer->failed, 1);
 }
 

@@ -66,7 +66,8 @@ static int png_send(struct encoder *encoder, struct frame *frame, const struct e
     if (status == 0 && frame->record)
         hash_pixels(frame, packed, encoder->ready->pixels_sha256);
     if (status)
-        log_err(encoder->log, "png %dx%d: %s", frame->width_px, frame->height_px, image.message[0] ? image.message : "out of memory");
+        log_err(encoder->log, "png: cannot encode a picture of %dx%d: %s", frame->width_px, frame->height_px,
+                image.message[0] ? image.message : "out of memory");
     mem_free(out);
     mem_free(packed);
     return status;

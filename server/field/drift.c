@@ -249,7 +249,7 @@ const char *drift_unknown_cause(const struct drift *drift, size_t sensors)
         return "fewer than 84 hours with readings of the sensor and its neighbours";
     if (drift->error * DRIFT_ERRORS <= drift->scatter * DRIFT_SIGMAS)
         return "fewer than 3 sensors that do not drift";
-    return "changes of the plant could hide a drift";
+    return "changes in plant operation could hide a drift";
 }
 
 /* Computes each sensor's own offset by least squares of value[hour][sensor] = own[sensor] + common[hour], over all values that are not

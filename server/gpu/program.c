@@ -27,7 +27,7 @@ static bool expand_include(struct expansion *x, const char *from, int line, cons
     const char *close = open ? strchr(open + 1, '"') : NULL;
     const char *line_end = strchr(directive, '\n');
     if (!close || (line_end && close > line_end)) {
-        log_err(x->log, "shader %s:%d: #include wants \"name\"", from, line);
+        log_err(x->log, "shader %s:%d: #include expects a file name in double quotes", from, line);
         return false;
     }
     char *name = mem_printf("%.*s", (int)(close - open - 1), open + 1);

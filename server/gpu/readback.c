@@ -51,7 +51,7 @@ bool readback_wait(struct readback *readback, struct log *log)
 {
     bool there = is_signaled(glClientWaitSync(readback->done, GL_SYNC_FLUSH_COMMANDS_BIT, TIMEOUT_NS));
     if (!there)
-        log_err(log, "reading a picture of %dx%d back from the GPU: the GL context does not respond", readback->width_px,
+        log_err(log, "cannot read a picture of %dx%d back from the GPU: the OpenGL context does not respond", readback->width_px,
                 readback->height_px);
     return there;
 }

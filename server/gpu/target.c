@@ -41,7 +41,7 @@ bool target_init(struct target *target, struct log *log, int width_px, int heigh
     glNamedFramebufferTexture(target->over_framebuffer, GL_COLOR_ATTACHMENT0, target->resolved_color, 0);
     if (good)
         return true;
-    log_err(log, "picture of %dx%d with %d samples: out of GPU memory", width_px, height_px, samples);
+    log_err(log, "cannot allocate a picture of %dx%d with %d samples per pixel: out of GPU memory", width_px, height_px, samples);
     gl_clear_errors();
     target_finish(target);
     return false;

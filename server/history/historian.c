@@ -673,9 +673,9 @@ static void add_counters(struct historian *historian, struct counters *counters)
     historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points waiting to be written.");
     historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
     historian->counters.bytes =
-        counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space in bytes that all files of history take.");
+        counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space in bytes that all history files take.");
     historian->counters.free =
-        counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free disk space in bytes in the folder of history.");
+        counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free disk space in bytes in the history folder.");
     historian->counters.backup = counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge",
                                               "Time of the last backup, in seconds since 1970; 0: unknown.");
 }

@@ -84,7 +84,7 @@ static bool find_wide(struct history_import *import)
                          "the plant has no tag '%.60s'; its column is ignored", header->cells[i].text);
     }
     if (!known)
-        diag_error(import->csv.diag, import->csv.path, 1, 1, "no column has the name of a tag of the plant");
+        diag_error(import->csv.diag, import->csv.path, 1, 1, "no column has the name of any tag in the plant");
     return known > 0;
 }
 
@@ -122,7 +122,7 @@ static bool take_time(struct history_import *import, int64_t after_us, int64_t *
         if (*text != '-' && (timestamp_parse(text, 0, t_us) || timestamp_parse_local(text, after_us, t_us)))
             return true;
         csv_error(&import->csv, import->time,
-                  "expected an instant such as 2026-11-20T10:00:00Z (without Z or offset: local time in %s), found '%.60s'",
+                  "expected a time such as 2026-11-20T10:00:00Z (without Z or offset: local time in %s), found '%.60s'",
                   import->params->plant->time_zone ? import->params->plant->time_zone : "UTC", text);
         return false;
     }
@@ -258,7 +258,7 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     if (series->seen && point->t_us < series->last_us) {
         char text[TIMESTAMP_BYTES];
         timestamp_print(series->last_us, text);
-        csv_error(&import->csv, column, "tag %s: expected a time not before the tag's last sample, %s",
+        csv_error(&import->csv, column, "tag %s: expected a time that is not before the tag's last sample, %s",
                   import->params->plant->tags[tag].name, text);
         return false;
     }

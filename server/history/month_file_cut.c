@@ -14,7 +14,7 @@ int month_file_size(struct month_file *file, struct month_file_size *size)
         size->shrinks = sqlite3_column_int(statement, 3) != 0;
     }
     sqlite3_reset(statement);
-    return database_fail(&file->db, code, "cannot be measured");
+    return database_fail(&file->db, code, "the size of the file cannot be read");
 }
 
 static bool remove_before(void *arg, struct history_points *points)
@@ -38,7 +38,7 @@ static int cut_tag(struct month_file *file, int64_t id, int64_t until_us)
     sqlite3_bind_int64(blocks, 1, id);
     sqlite3_bind_int64(blocks, 2, until_us);
     if (!error)
-        error = month_run(file, blocks, "cannot delete blocks");
+        error = month_run(file, blocks, "cannot delete blocks of points");
     if (!error)
         error = month_blocks_edit(file, id, until_us - 1, until_us - 1, remove_before, &until_us);
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {
@@ -63,7 +63,7 @@ static int cut_tags(struct month_file *file, int64_t until_us)
         error = database_fail(&file->db, code, "cannot read tags");
     sqlite3_bind_int64(chunks, 1, until_us);
     if (!error)
-        error = month_run(file, chunks, "cannot delete times");
+        error = month_run(file, chunks, "cannot delete the times of points");
     sqlite3_bind_int64(events, 1, until_us);
     return error ? error : month_run(file, events, "cannot delete events");
 }
@@ -84,16 +84,16 @@ static int cut_outbox(struct month_file *file, int64_t until_us, int64_t *unsent
 int month_file_cut(struct month_file *file, int64_t until_us, bool shrink, int64_t *unsent)
 {
     int64_t cut = 0;
-    int error = month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
+    int error = month_run(file, month_sql(file, SQL_BEGIN), "cannot begin a transaction");
     if (error)
         return error;
     error = cut_tags(file, until_us);
     if (!error)
         error = cut_outbox(file, until_us, &cut);
     if (!error)
-        error = month_run(file, month_sql(file, SQL_COMMIT), "cannot commit");
+        error = month_run(file, month_sql(file, SQL_COMMIT), "cannot commit a transaction");
     if (!sqlite3_get_autocommit(file->db.handle))
         database_run(&file->db, month_sql(file, SQL_ROLLBACK));
     *unsent += error ? 0 : cut;
-    return error || !shrink ? error : month_run(file, month_sql(file, SQL_SHRINK), "cannot be made smaller");
+    return error || !shrink ? error : month_run(file, month_sql(file, SQL_SHRINK), "cannot be shrunk");
 }

@@ -18,7 +18,7 @@ static int begin(struct month_file *file)
 {
     file->slot_before = file->slot;
     file->stamp_before = file->stamp;
-    return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
+    return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin a transaction");
 }
 
 /* Commits the transaction if `error` is 0, otherwise rolls it back. After a rollback, the tag ids and rollups in memory may not agree
@@ -26,7 +26,7 @@ static int begin(struct month_file *file)
 static int end(struct month_file *file, int error)
 {
     if (!error)
-        error = month_run(file, month_sql(file, SQL_COMMIT), "cannot commit");
+        error = month_run(file, month_sql(file, SQL_COMMIT), "cannot commit a transaction");
     if (!error)
         return 0;
     if (!sqlite3_get_autocommit(file->db.handle))
@@ -53,7 +53,7 @@ static int put(struct month_file *file, enum month_statement which, int64_t id, 
     sqlite3_bind_int64(statement, 2, point->t_us);
     database_bind_value(statement, 3, point->value);
     sqlite3_bind_int64(statement, 4, point->quality);
-    return month_run(file, statement, "cannot write");
+    return month_run(file, statement, "cannot write a point");
 }
 
 static int rename_series(struct month_file *file, int64_t id, const char *name)
@@ -131,7 +131,7 @@ static int fit_unit(struct month_file *file, int tag)
     for (size_t i = 0; i < count && !error; i++) {
         char *sql = mem_printf("UPDATE %s SET %s = %s * %.17g + %.17g WHERE tag = %lld", columns[i][0], columns[i][1], columns[i][1],
                                change.factor, change.offset, (long long)id);
-        error = database_exec(&file->db, sql, "cannot convert units");
+        error = database_exec(&file->db, sql, "cannot convert recorded points to a new unit");
         mem_free(sql);
     }
     file->rollups[tag].loaded = false;
@@ -239,7 +239,7 @@ static int put_bucket(struct month_file *file, int64_t id, int64_t length_us, co
     sqlite3_bind_int64(add, 9, bucket->good_us);
     sqlite3_bind_int64(add, 10, bucket->bad_us);
     sqlite3_bind_int64(add, 11, bucket->quality);
-    return month_run(file, add, "cannot roll up");
+    return month_run(file, add, "cannot write a rollup");
 }
 
 static void reset_rollups(struct month_rollups *rollups, bool step)

@@ -177,8 +177,9 @@ double retention_check(struct log *log, const char *folder, const struct retenti
         rate = bytes_per_day(log, folder, months[i - 1], i == count);
     double days = limits->bytes > 0 && rate > 0 ? limits->bytes / rate : INFINITY;
     if (days < limits->days)
-        log_warn(log, "history: keep_days is %g, but at %.2f GB a day keep_gb %g is full after %.0f days; set keep_gb to %.0f,"
-                      " or raise deadbands",
+        log_warn(log,
+                 "history: keep_days is %g, but at %.2f GB a day, keep_gb %g is reached after %.0f days; set keep_gb to %.0f,"
+                 " or increase deadbands",
                  limits->days, rate / 1e9, limits->bytes / 1e9, days, ceil(rate * limits->days / 1e9));
     mem_free(months);
     return days;

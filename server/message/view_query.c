@@ -274,7 +274,7 @@ static bool apply_at(const struct params_context *context, const json_t *o, stru
         return false;
     }
     if (at_us > context->now_us - HISTORY_SETTLED_US) {
-        message_fail(error, "bad_field", "at: expected an instant at least 3 s ago; for a current picture, omit the argument at");
+        message_fail(error, "bad_field", "at: expected a time at least 3 s ago; for a current picture, omit the argument `at`");
         return false;
     }
     view_set_instant(view, at_us, 0);
@@ -309,7 +309,7 @@ bool view_query_parse(const struct params_context *context, enum role role, cons
     for (size_t i = 0; i < count && good; i++)
         good = add_argument(o, args[i], error);
     if (good && !place && (json_object_get(o, "x") || json_object_get(o, "y"))) {
-        message_fail(error, "bad_field", "x, y: only for a pick");
+        message_fail(error, "bad_field", "x, y: allowed only in a request for the value at a pixel");
         good = false;
     }
     good = good && (!place || (need_number(o, "x", 0, VIEW_MAX_SIDE_PX, &place[0], error) &&

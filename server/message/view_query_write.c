@@ -212,7 +212,7 @@ static bool is_said(const struct params_context *context, const struct view *vie
         good = view_equal(&read, view);
     }
     if (!good)
-        message_fail(error, "not_signed", "the view cannot be written as the query of a URL%s%.100s", inner.code ? ": " : "",
+        message_fail(error, "not_signed", "the view cannot be written as a URL query%s%.100s", inner.code ? ": " : "",
                      inner.code ? inner.text : "");
     return good;
 }

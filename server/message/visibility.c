@@ -23,8 +23,8 @@ static bool parse_set(const struct plant *plant, const json_t *o, const char *na
                 message_refuse_with(error, "bad_field", name, REFUSAL_NO_ASSET, "name=%s", said);
             else
                 message_fail(error, "bad_field",
-                             "%s: asset '%s' is not one of the first %d assets of the plant file, and only these assets are allowed", name,
-                             said, ASSET_SET_MAX);
+                             "%s: asset '%s': only the first %d assets in the plant file can be hidden, isolated or ghosts", name, said,
+                             ASSET_SET_MAX);
             return false;
         }
         asset_set_add(out, asset);
@@ -76,7 +76,8 @@ static bool parse_planes(const json_t *planes, struct clip *clip, struct message
     clip->plane_count = (int)count;
     if (!good)
         message_fail(error, "bad_field",
-                     "clip.planes: expected 1 to %d of [nx, ny, nz, d], with n p + d >= 0 where the plant stays visible", CLIP_MAX_PLANES);
+                     "clip.planes: expected 1 to %d of [nx, ny, nz, d]; the plant stays visible where nx x + ny y + nz z + d >= 0",
+                     CLIP_MAX_PLANES);
     return good;
 }
 

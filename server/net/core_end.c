@@ -48,7 +48,8 @@ static void take_lists(struct server_context *server, const json_t *lists)
         !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")) ||
         !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()) ||
         (json_object_get(lists, "links") && !short_links_mirror(plant->short_links, json_object_get(lists, "links"))))
-        log_err(server->params.log, "core: malformed lists");
+        log_err(server->params.log,
+                "core: malformed list of views, notes, walls, devices or short links; this list and the lists after it are ignored");
     server->core.listed = true;
     streams_on_alarms(server);
 }

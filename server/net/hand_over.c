@@ -39,7 +39,8 @@ static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
         if (!standby && lease_keeper_leads(keeper) && now_ns < net->hand_over.until_ns)
             return step;
         if (!standby)
-            log_warn(server->params.log, "core: the standby has not received all data within %d s: the standby takes over after %d s",
+            log_warn(server->params.log,
+                     "core: the standby did not receive all data within %d s; it takes over in %d s and may lack the latest data",
                      (int)(SEND_NS / NS_PER_S), (int)(LEASE_NS / NS_PER_S));
         lease_keeper_give(keeper, standby ? standby : "");
         net->hand_over.until_ns = now_ns + TAKE_NS;

@@ -210,7 +210,7 @@ static void on_close(struct server_context *server, struct renderer_peer **slot)
         at = &(*at)->next;
     *at = renderer->next;
     if (renderer->state == RENDERER_TAKEN)
-        log_warn(server->params.log, renderer->stands_by ? "standby %s: gone" : "renderer %s: gone", renderer->name);
+        log_warn(server->params.log, renderer->stands_by ? "standby %s: disconnected" : "renderer %s: disconnected", renderer->name);
     core_samples_end(&renderer->samples);
     core_sent_finish(&renderer->sent);
     text_finish(&renderer->in);
@@ -285,7 +285,7 @@ static bool send_message(struct renderer_peer *renderer, json_t *message)
 /* Tells the renderer that this core is only a standby, so that it looks for the leading core. Returns false if the connection is gone. */
 static bool send_standby(struct renderer_peer *renderer)
 {
-    renderer->close_text = "it is standby";
+    renderer->close_text = "this core is standby";
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
@@ -319,7 +319,7 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
 {
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
-    renderer->close_text = votes ? NULL : "it was refused";
+    renderer->close_text = votes ? NULL : "this node was refused";
     /* a core that is refused only for its version may still take over: pairs are upgraded one core after the other */
     json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
                                 votes && !renderer->other_configuration);
@@ -537,10 +537,10 @@ static char *standby_refusal(const struct server_context *server, struct rendere
     if (!server->params.keeper)
         return mem_strdup("this core has no standby: it was started without --core");
     if (!strcmp(one->name, server->params.node_name))
-        return mem_printf("both cores have the name %.63s: give each core another name with --node", one->name);
+        return mem_printf("both cores have the name %.63s: give each core its own name with --node", one->name);
     for (const struct renderer_peer *other = server->core.renderers; other; other = other->next)
         if (other != one && (matches ? is_standby(other) : is_witness(other)))
-            return mem_printf("%.63s is standby already", other->name);
+            return mem_printf("%.63s is already the standby", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
         return mem_printf("the standby %.63s sent no id, or an id that is too long", one->name);
     return NULL;

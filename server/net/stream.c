@@ -217,7 +217,7 @@ static void log_silence(struct server_context *server, struct stream *stream, in
     stream->silent_ns = INT64_MAX;
     if (session->display.display > 0)
         snprintf(display, sizeof(display), ", display %d of wall %s", session->display.display, session->display.wall);
-    log_warn(server->params.log, "session %llu (%s%s): no picture acknowledged for %d s: its page hangs, or its network stalls",
+    log_warn(server->params.log, "session %llu (%s%s): no picture acknowledged for %d s: the page hangs, or the network stalls",
              (unsigned long long)session->id, connection_of(stream->wsi)->address, display, SILENT_S + PACER_STALL_S);
 }
 

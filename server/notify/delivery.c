@@ -218,7 +218,7 @@ static char *why_not(const struct transfer *transfer, CURLcode code)
     curl_easy_getinfo(transfer->handle, CURLINFO_RESPONSE_CODE, &status);
     curl_easy_getinfo(transfer->handle, CURLINFO_SCHEME, &scheme);
     bool is_http = scheme && !strncasecmp(scheme, "http", 4);
-    return is_http && (status < 200 || status > 299) ? mem_printf("the answer is status %ld", status) : NULL;
+    return is_http && (status < 200 || status > 299) ? mem_printf("the server answered with HTTP status %ld", status) : NULL;
 }
 
 void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg)

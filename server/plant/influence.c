@@ -83,10 +83,10 @@ static void warn_of_fits(const struct plant *plant, int g, struct diag *diag)
     for (size_t a = 0; a < plant->asset_count; a++) {
         int count = count_sensors(plant, g, (int)a);
         if (count > 0 && count < PLANT_GP_FITTED)
-            diag_warning(
-                diag, plant->files.path, group->line, 0,
-                "group %s: gp cannot be fitted on asset %s, which has %d of at least %d sensors: the asset takes the default parameters",
-                group->id, plant->assets[a].id, count, PLANT_GP_FITTED);
+            diag_warning(diag, plant->files.path, group->line, 0,
+                         "group %s: gp cannot be fitted on asset %s, which has %d sensors but needs at least %d: the asset uses the "
+                         "default parameters",
+                         group->id, plant->assets[a].id, count, PLANT_GP_FITTED);
     }
 }
 

@@ -241,7 +241,7 @@ const char *plant_needs_restart(const struct plant *before, const struct plant *
     if (strcmp(before->time_zone, after->time_zone) != 0)
         return "a changed time_zone needs a restart of the daemon";
     if (before->history.off != after->history.off || !same_text(before->history.folder, after->history.folder))
-        return "another folder of history, or history switched on or off, needs a restart of the daemon";
+        return "a changed history folder, or history switched on or off, needs a restart of the daemon";
     bool same = before->display.colormap_count == after->display.colormap_count;
     for (size_t i = 0; same && i < before->display.colormap_count; i++)
         same = !strcmp(before->display.colormaps[i].name, after->display.colormaps[i].name) &&

@@ -132,8 +132,8 @@ static bool read_readings(const json_t *told, const struct plant *plant, struct 
         const char *name = json_string_value(json_array_get(one, 0));
         int tag = name ? plant_find_tag(plant, name) : -1;
         if (tag < 0 || seen[tag]) {
-            good = FAIL("reading %zu is of '%.60s', which %s", i + 1, name ? name : "",
-                        tag < 0 ? "is not a tag of the plant file" : "came before");
+            good = FAIL("reading %zu is for '%.60s', which %s", i + 1, name ? name : "",
+                        tag < 0 ? "is not a tag of the plant file" : "has an earlier reading already");
             break;
         }
         seen[tag] = true;

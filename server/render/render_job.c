@@ -24,7 +24,7 @@ static GLuint copy_buffer(struct log *log, GLuint from)
 {
     GLint64 bytes = 0;
     glGetNamedBufferParameteri64v(from, GL_BUFFER_SIZE, &bytes);
-    GLuint copy = mesh_buffer(log, "sensors of a picture", (size_t)bytes, NULL, 0);
+    GLuint copy = mesh_buffer(log, "copy of the sensors for a picture in progress", (size_t)bytes, NULL, 0);
     if (copy)
         glCopyNamedBufferSubData(from, copy, 0, 0, bytes);
     return copy;
@@ -44,7 +44,7 @@ static bool copy_field(const struct render_job *job, const struct fields_entry *
         return !from->sensors || (copy->sensors = copy_buffer(log, from->sensors));
     copy->shown = mem_try_array(from->ready, sizeof(*copy->shown));
     if (!copy->shown) {
-        log_err(log, "field of a picture: out of memory for %zu vertices", from->ready);
+        log_err(log, "cannot compute the colours of a picture: out of memory (%zu vertices)", from->ready);
         return false;
     }
     memcpy(copy->shown, from->shown, from->ready * sizeof(*copy->shown));

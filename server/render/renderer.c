@@ -106,7 +106,7 @@ static struct frame *start_frame(struct renderer *renderer, const struct frame_p
     const struct view *view = &plan->view;
     struct frame *frame = frame_create(renderer->frames, view->width_px, view->height_px);
     if (!frame) {
-        log_err(renderer->gl->log, "frame of %dx%d: out of memory", view->width_px, view->height_px);
+        log_err(renderer->gl->log, "cannot draw a picture of %dx%d: out of memory", view->width_px, view->height_px);
         return NULL;
     }
     frame->view = *view;

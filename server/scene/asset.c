@@ -52,7 +52,7 @@ struct asset *asset_open(struct log *log, const char *path)
         return NULL;
     }
     if (!asset_view_unpack(&asset->view, &asset->distances)) {
-        log_err(log, "asset file %s: out of memory for the distances of %u sensors", path, asset->view.header->sensor_count);
+        log_err(log, "asset file %s: cannot unpack the distances of %u sensors: out of memory", path, asset->view.header->sensor_count);
         asset_unref(&asset);
         return NULL;
     }

@@ -87,8 +87,8 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
         /* no sensors: plantcast-prep then writes no influence file, so none is required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
-            log_err(log, "asset %s: no usable prepared file with %s for group %s", asset->plant->id,
-                    heat ? "distances by heat" : "directions", group->id);
+            log_err(log, "asset %s: no usable prepared file with %s for group %s", asset->plant->id, heat ? "heat distances" : "directions",
+                    group->id);
             return false;
         }
         for (int i = INTERPOLATION_HARMONIC; placed > 0 && i < INTERPOLATIONS; i++) {
@@ -104,7 +104,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
             if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
-            log_err(log, "asset %s: the influence of the sensors of group %s was prepared with another tag list, disc_m, gp or wall",
+            log_err(log, "asset %s: the influence of the sensors in group %s was prepared with a different tag list, disc_m, gp or wall",
                     asset->plant->id, group->id);
             return false;
         }

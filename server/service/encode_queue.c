@@ -64,7 +64,7 @@ static void add_counters(struct encode_queue *queue)
         char *seconds = mem_printf("plantcast_encode_seconds_total{codec=\"%s\"}", name);
         char *bytes = mem_printf("plantcast_encode_bytes_total{codec=\"%s\"}", name);
         queue->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded.");
-        queue->encode_us[codec] = counters_add_seconds(counters, seconds, "counter", "Time spent encoding.");
+        queue->encode_us[codec] = counters_add_seconds(counters, seconds, "counter", "Seconds spent encoding pictures.");
         queue->bytes[codec] = counters_add(counters, bytes, "counter", "Bytes of all encoded pictures.");
         mem_free(encodes);
         mem_free(seconds);

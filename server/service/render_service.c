@@ -187,7 +187,7 @@ static void thread_stop(struct render_service *service)
 static void add_counters(struct render_service *service, struct counters *counters)
 {
     service->renders = counters_add(counters, "plantcast_renders_total", "counter", "Pictures drawn.");
-    service->render_us = counters_add_seconds(counters, "plantcast_render_seconds_total", "counter", "Time spent drawing.");
+    service->render_us = counters_add_seconds(counters, "plantcast_render_seconds_total", "counter", "Seconds spent drawing pictures.");
     service->same = counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn because nothing had changed.");
     service->shared = counters_add(counters, "plantcast_renders_shared_total", "counter", "Pictures reused from another client's request.");
     service->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");

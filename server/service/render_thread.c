@@ -446,7 +446,7 @@ static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardw
         thread->renderer = renderer_create(params->log, thread->gl, params->scene, thread->field);
     bool complete = gl_out_of_memory_count() == shortages;
     if (!complete)
-        log_err(params->log, "gl: out of GPU memory for the plant");
+        log_err(params->log, "gl: cannot load the plant: out of GPU memory");
     if (!thread->renderer || !complete)
         return false;
     renderer_set_per_fragment(thread->renderer, params->per_fragment);
@@ -550,7 +550,7 @@ static void rebuild(struct render_thread *thread)
     /* bakes all lights completely, so that frames look the same as before the GL context was lost */
     renderer_bake_idle(thread->renderer, INT64_MAX);
     set_lost(service, false);
-    log_info(service->params.log, "gl: drawing with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
+    log_info(service->params.log, "gl: drawing continues with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
 /* Continues the suspended long job (a frame drawn in steps) if no other one runs. Call it at the end of each turn: if no request comes, no

@@ -72,7 +72,7 @@ static bool no_surface(const struct surface *surface, char *why, const char *fmt
     if (why)
         memcpy(why, text, sizeof(text));
     else
-        log_err(surface->log, "surface of %zu vertices: %s", surface->vertex_count, text);
+        log_err(surface->log, "cannot build a surface from %zu vertices: %s", surface->vertex_count, text);
     return false;
 }
 
@@ -121,7 +121,7 @@ static bool close_seams(struct surface *surface, char *why)
     note_bridges(surface, &made);
     mem_free(target);
     return made.k >= 0 ||
-           no_surface(surface, why, "out of memory for closing gaps between %zu points of the surface", surface->mesh.point_count);
+           no_surface(surface, why, "out of memory while closing gaps between %zu surface points", surface->mesh.point_count);
 }
 
 /* Moves visible triangles to the front of the mesh, and hidden[] with them. Returns the number of visible triangles. */

@@ -48,8 +48,8 @@ bool modbus_note_refused(struct modbus_source *modbus, const struct read_plan_bl
         modbus->refused[tag] = refused;
     }
     if (changed)
-        log_at(modbus->base.log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->base.config->id,
-               block->unit, first, changed > 1 ? " and others" : "", block->count, block->first, why);
+        log_at(modbus->base.log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from address %d): %s",
+               modbus->base.config->id, block->unit, first, changed > 1 ? " and others" : "", block->count, block->first, why);
     return changed > 0;
 }
 

@@ -44,7 +44,7 @@ static void add_way(struct text *out, const struct plant_source *source)
 
 static void add_block(struct text *out, const struct read_plan *plan, const struct plant *plant, const struct read_plan_block *block)
 {
-    text_add(out, "  unit %d, function %d, %s:%d to %d: %d %s%s each %d ms, %zu tag%s\n", block->unit, tables[block->table].function,
+    text_add(out, "  unit %d, function %d, %s:%d to %d: %d %s%s every %d ms, %zu tag%s\n", block->unit, tables[block->table].function,
              tables[block->table].prefix, block->first, block->first + block->count - 1, block->count, of_bits(block) ? "bit" : "register",
              block->count == 1 ? "" : "s", block->scan_ms, block->tag_count, block->tag_count == 1 ? "" : "s");
     for (size_t i = 0; i < block->tag_count; i++) {
@@ -67,14 +67,14 @@ static void add_load(struct text *out, const struct read_plan *plan, const struc
         values += per_s * (double)block->tag_count;
         bytes += per_s * bytes_of(source, block);
     }
-    text_add(out, "  load: %.4g requests, %.4g values and %.4g bytes in a second", requests, values, bytes);
+    text_add(out, "  load: %.4g requests, %.4g values and %.4g bytes per second", requests, values, bytes);
     if (source->pause_ms > 0)
         text_add(out, "; the pauses take %.3g %% of the time", requests * source->pause_ms / 10);
     /* Share of a serial line's capacity: a byte takes a start bit, 8 data bits, the parity bit and the stop bits, and a pause of 3.5
        bytes separates frames. */
     if (source->transport == TRANSPORT_RTU) {
         double bits = 1 + 8 + (source->parity != 'N') + source->stop_bits, part = (bytes + 7 * requests) * bits / source->baud;
-        text_add(out, "; %.3g %% of what the line can carry%s", part * 100, part > 1 ? ": TOO MUCH, scans will be late" : "");
+        text_add(out, "; %.3g %% of the line's capacity%s", part * 100, part > 1 ? ": TOO MUCH, scans will be late" : "");
     }
     text_add(out, "\n");
 }
@@ -89,7 +89,7 @@ void read_plan_text(struct text *out, const struct plant *plant, int source_inde
             tags += plant->tags[i].source == source_index;
         add_way(out, source);
         text_add(out, "%s%s: %s %zu tag%s\n", source->host_count > 0 ? ": " : "", source->kind,
-                 source->host_count > 0 ? "subscribes to" : "no requests, plays", tags, tags == 1 ? "" : "s");
+                 source->host_count > 0 ? "subscribes to" : "no requests, replays", tags, tags == 1 ? "" : "s");
         return;
     }
     read_plan_init(&plan, plant, source_index);

@@ -136,7 +136,7 @@ static void replay_run(struct source *source)
             play_lane(replay, &replay->lanes[i], mono_ns, utc_ns);
     } while (!all_ended(replay) && !stopping(replay, clock_mono_ns() + ROUND_NS));
     if (all_ended(replay)) {
-        log_info(replay->base.log, "source %s: %s has ended", replay->base.config->id, replay->base.config->file);
+        log_info(replay->base.log, "source %s: the file %s has ended", replay->base.config->id, replay->base.config->file);
         set_up(replay, false);
     }
 }

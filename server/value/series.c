@@ -17,7 +17,7 @@
 #include "value/state_word.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
-#define NO_TIME "%s:1: no time column: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
+#define NO_TIME "%s:1: no time column: expected a name that ends in _ms, _s, _min or _h, or times such as 2026-11-20T10:00:00Z"
 
 struct series_cell {
     const char *at;

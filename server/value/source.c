@@ -39,7 +39,7 @@ struct source *source_begin(const struct source *params, const char *what, struc
     struct source base = *params;
     base.stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (base.stop_fd < 0) {
-        log_err(base.log, "%s: eventfd: %s", what, strerror(errno));
+        log_err(base.log, "%s: cannot create an eventfd: %s", what, strerror(errno));
         return NULL;
     }
     struct source *made = base.impl->create(&base, counters);

@@ -139,7 +139,7 @@ static enum why judge(struct other *other, struct other_picture *about, char sai
     curl_easy_getinfo(other->request.handle, CURLINFO_RESPONSE_CODE, &status);
     enum why why = why_of_status(status);
     if (why != WHY_NONE) {
-        snprintf(said, 160, "the answer is status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
+        snprintf(said, 160, "the server answered with HTTP status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
     } else if (!other_picture_read_header(other->header, about)) {
         snprintf(said, 160, "the answer lacks the header with the age of readings: the server is not a Plantcast server");
         why = WHY_NO_PICTURE;
@@ -223,7 +223,7 @@ static void begin(struct other_plants *others, struct other *other)
     other->begun_us = clock_plant_ns(others->clock) / 1000;
     other->request.error[0] = other->header[0] = 0;
     if (!other->request.handle && !make_request(other)) {
-        note_failure(others, other, WHY_UNREACHABLE, "no memory");
+        note_failure(others, other, WHY_UNREACHABLE, "out of memory");
         rest(other, false);
         return;
     }

@@ -230,7 +230,7 @@ test('a session that is left alone is locked, but not that of a wall; and what i
     back.close();
     const start = (...args) => runProgram('plantcastd', [plant.file, '--port', '0', ...args]);
     assert.match(start('--lock-after', '15').err, /--lock-after needs --tokens/);
-    assert.match(start('--tokens', file, '--lock-after', 'soon').err, /expected minutes/);
+    assert.match(start('--tokens', file, '--lock-after', 'soon').err, /expected a number of minutes/);
     assert.match(start('--notice', path('none')).err, /notice .*none: No such file/);
     writeFileSync(notice, Buffer.from([0xff, 0xfe]));
     assert.match(start('--notice', notice).err, /the file must contain UTF-8 text/);
@@ -369,7 +369,7 @@ test('a token by each of its three ways, and what roles may say', { skip }, asyn
 
 test('what is revoked ends, and only that', { skip }, async () => {
     const spare = token('add', tokensFile, '--role', 'viewer', '--name', 'spare').out.trim();
-    await plant.daemon.line(/tokens .*: 4$/m);
+    await plant.daemon.line(/tokens .*: 4 tokens read$/m);
     const leaving = await open(), staying = await open();
     assert.equal((await leaving.hello({ token: spare })).role, 'viewer');
     await staying.hello({ token: tokens.operator });

@@ -172,7 +172,7 @@ test('without its core a renderer says that it has no history, once in its log; 
         assert.deepEqual([answer.status, Number(answer.headers.get('retry-after')) > 0], [503, true], one);
         assert.match(await answer.text(), /^unavailable: the core cannot be reached; try again\n$/, one);
     }
-    const lost = /history: the core: \/api\/v1\/history: not connected to the core/g;
+    const lost = /history: cannot read from the core: \/api\/v1\/history: not connected to the core/g;
     await renderer.program.line(lost);
     assert.ok(renderer.program.said.match(lost).length <= 2);
     core = await nodes.core(port);

@@ -32,7 +32,7 @@ test('renderers load what the core loads, at the same time', options, async (t) 
     const before_ = await configuration(core), began = performance.now();
     change('max: 100 }', 'max: 101 }');
     core.program.child.kill('SIGHUP');
-    await renderer.program.line(/reload: configuration \w+ in place of \w+, after [\d.]+ s, requested by the core/);
+    await renderer.program.line(/reload: configuration \w+ replaced \w+ after [\d.]+ s, requested by the core/);
     await until('the new configuration at both', async () => await configuration(core) !== before_ && isThere());
     promise(t, 'from the signal to readings at the renderer', performance.now() - began, BLIND_MS);
     assert.equal(await renderer.metric('plantcast_core_refused_total'), 0, 'it did not switch before the core');

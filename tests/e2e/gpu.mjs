@@ -233,7 +233,7 @@ test('a driver that restarts is waited for, and room: nothing else draws meanwhi
     await client.until('attempts at another context', () => faults.get('refusals') === 0 && faults.get('made') > made, PATIENCE_MS);
     assert.equal(await status(), 503);
     faults.set('hardware', 1); // the GPU is back, but has no free memory
-    await client.until('another attempt', () => /out of GPU memory for the plant/.test(plant.daemon.said), PATIENCE_MS);
+    await client.until('another attempt', () => /cannot load the plant: out of GPU memory/.test(plant.daemon.said), PATIENCE_MS);
     assert.equal(await status(), 503);
     faults.set('room_bytes', 0);
     for (const end = performance.now() + PATIENCE_MS; await status() !== 200 && performance.now() < end;)

@@ -189,7 +189,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
     assert.match(await code.text(), /refuses the code: invalid_grant/);
     const other = await browser.begin();
     other.searchParams.set('iss', 'https://evil.example');
-    assert.match(await (await browser.get(other)).text(), /the provider's answer names another issuer/);
+    assert.match(await (await browser.get(other)).text(), /the issuer \(iss\) in the provider's answer differs/);
     const denied = await browser.begin();
     denied.searchParams.delete('code');
     denied.searchParams.set('error', 'access_denied');

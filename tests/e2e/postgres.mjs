@@ -214,12 +214,12 @@ test('nothing is lost while the server is killed, nor while it is frozen; live r
     const from = await startSending();
     await server.kill();
     await until('it is said', async () => await metric('postgres_up') === 0);
-    await plant.daemon.line(/PostgreSQL cannot be written \(.*refused.*\); points wait in .*, at most 20000000/);
+    await plant.daemon.line(/cannot write to PostgreSQL \(.*refused.*\); points are queued in .*, at most 20000000/);
     await waiting(50);
     await sleep(AWAY_MS);
     const waited = await metric('postgres_waiting_points');
     await server.restart();
-    await plant.daemon.line(/PostgreSQL can be written again/, 60000);
+    await plant.daemon.line(/PostgreSQL accepts points again/, 60000);
     server.freeze();
     const age = async () => Math.max(...(await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?count=10`)).json()).tags
         .map((tag) => tag.age_ms));
@@ -284,10 +284,10 @@ test('a disk of the server that is full', options, async (t) => {
     } catch (error) {
         assert.equal(error.code, 'ENOSPC');
     }
-    await plant.daemon.line(/PostgreSQL cannot be written \(.*No space left on device\)/, 90000);
+    await plant.daemon.line(/cannot write to PostgreSQL \(.*No space left on device\)/, 90000);
     await until('it is counted', async () => await metric('postgres_up') === 0);
     rmSync(join(disk, 'filler'));
-    await plant.daemon.line(/PostgreSQL can be written again/, 60000);
+    await plant.daemon.line(/PostgreSQL accepts points again/, 60000);
     await sent(200);
     assert.ok(await assertSame(from) > 20);
     await plant.daemon.stop();
@@ -398,5 +398,5 @@ test('a password in the plant file, and a schema that is no name, are refused', 
     writeFileSync(plant.file, text.replace(/postgresql:/, 'mysql:'));
     assert.match(check().err, /url: expected postgresql:\/\/HOST\/DATABASE, found 'mysql:/);
     writeFileSync(plant.file, text.replace('  deadband', '  record: no\n  deadband'));
-    assert.match(check().err, /postgres needs `record: yes`/);
+    assert.match(check().err, /`postgres` requires `record: yes`/);
 });

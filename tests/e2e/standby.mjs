@@ -246,7 +246,7 @@ test('a leader that is ended in good order gives the lease to the other', option
     const core = await two.leader();
     await two.followed(core);
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGTERM'));
-    assert.match(core.program.said, /lease: given to/);
+    assert.match(core.program.said, /lease: handed over to/);
     await two.restart(core);
 });
 

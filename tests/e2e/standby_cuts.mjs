@@ -123,7 +123,7 @@ test('a leader reloads while the database says nothing, and its standby asks all
 test('others of the names of both are told, and take nobody\'s place while the leader has no way to the database', options, async (t) => {
     const core = await two.leader(), other = two.other(core);
     await two.followed(core);
-    const more = [['three', '127.0.0.4', core, /another core with the name/], ['four', '127.0.0.5', other, /is standby already/]];
+    const more = [['three', '127.0.0.4', core, /another core with the name/], ['four', '127.0.0.5', other, /is already the standby/]];
     const started = await Promise.all(more.map(async ([name, host, as, says]) => {
         const one = await two.makeCore(name, host);
         one.toOther = await two.network.link(core.port);

@@ -91,12 +91,12 @@ test('a standby with the same changed files loads them when the leader does', op
     for (const file of [core.file, other.file])
         change(file, 101, 102);
     core.program.child.kill('SIGHUP');
-    await other.program.line(/reload: configuration \w+ in place of \w+, after [\d.]+ s, requested by the core/);
+    await other.program.line(/reload: configuration \w+ replaced \w+ after [\d.]+ s, requested by the core/);
     await two.followed(core);
     // the same configuration again: models may have changed
     other.program.said = '';
     core.program.child.kill('SIGHUP');
-    await other.program.line(/reload: configuration (\w+) in place of \1, after [\d.]+ s, requested by the core/);
+    await other.program.line(/reload: configuration (\w+) replaced \1 after [\d.]+ s, requested by the core/);
     await two.followed(core);
 });
 

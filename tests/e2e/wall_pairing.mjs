@@ -242,7 +242,7 @@ test('the pages of a display that is let in, and of a token of some views, show 
     const file = join(folder, 'tokens');
     const made = runProgram('plantcast', ['token', 'add', file, '--role', 'viewer', '--name', 'lobby', '--unattended', '--views', 'whole']);
     const lobby = made.out.trim();
-    await plant.logged(/tokens .*: 5$/m);
+    await plant.logged(/tokens .*: 5 tokens read$/m);
     const seen = await wallPage(1, 'plantcast.wall', lobby);
     await seen.page.locator('.pane.views .said', { hasText: 'Whole unit' }).waitFor();
     await seen.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture);

@@ -44,7 +44,7 @@ TEST(each_comes_to_the_bit)
     assert_null(core_instant_read(text.at, text.length, &first_us, NULL));
     assert_int_equal(first_us, 0);
     assert_string_equal(core_instant_read(text.at, text.length, &first_us, got),
-                        "the core's answer has another number of readings than this plant has tags");
+                        "the number of readings in the core's answer differs from this plant's number of tags");
     text_finish(&text);
 }
 

@@ -186,7 +186,7 @@ TEST(test_what_cannot_be_told_is_unknown)
     }
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
-    assert_non_null(strstr(drift_unknown_cause(&drift, 3), "changes of the plant"));
+    assert_non_null(strstr(drift_unknown_cause(&drift, 3), "changes in plant operation"));
     for (int h = 0; h < DRIFT_HOURS; h++) /* all sensors are stuck: no drift, although a drift would be detected */
         values[h] = predicted[h] = 50;
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);

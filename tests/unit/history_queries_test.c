@@ -67,8 +67,8 @@ CASE(queries_are_judged)
     } bad[] = {
         { { "from=-1h" }, "tags: expected names" },
         { { "tags=A \"1\",C" }, "tags: this plant has no tag “C”" },
-        { { "tags=A \"1\"", "from=2026-10-25T02:30:00" }, "from: expected an instant" },
-        { { "tags=A \"1\"", "to=x" }, "to: expected an instant" },
+        { { "tags=A \"1\"", "from=2026-10-25T02:30:00" }, "from: expected a time" },
+        { { "tags=A \"1\"", "to=x" }, "to: expected a time" },
         { { "tags=A \"1\"", "from=-1h", "to=-2h" }, "from: the first instant must be before" },
         { { "tags=A \"1\"", "points=1" }, "points: expected a number from 2" },
         { { "tags=A \"1\"", "points=1e9" }, "points: expected a number from 2" },

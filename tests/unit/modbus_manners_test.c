@@ -288,7 +288,7 @@ CASE(an_address_that_is_never_answered_leaves_the_others_alone)
     plant_by_hand_tag(s->plant, "mute neighbour", TABLE_HOLDING, 501, DATA_INT16);
     s->device.mute_register = 501;
     modbus_case_serve(s);
-    await_line("mute neighbour (1 from 501): the device does not answer, although it answers for other addresses", 30);
+    await_line("mute neighbour (1 from address 501): the device does not answer, although it answers for other addresses", 30);
     expect_steady(s, 10, 40);
     assert_true(quality_is_bad(modbus_case_look(s, BLOCKS)->quality));
     s->device.mute_register = 0;

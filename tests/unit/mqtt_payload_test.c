@@ -284,5 +284,5 @@ TEST(what_is_no_json_is_refused)
         assert_null(mqtt_json_parse(wrong[i], strlen(wrong[i]), why));
     memset(deep, '[', sizeof(deep));
     assert_null(mqtt_json_parse(deep, sizeof(deep), why));
-    assert_non_null(strstr(why, "no JSON"));
+    assert_non_null(strstr(why, "not valid JSON"));
 }

@@ -707,7 +707,8 @@ CASE(bad_colour_maps_are_named)
                     "colormaps: [{ name: viridis, image: none.png }, { name: b, image: dot.ppm },\n"
                     "  { name: b, image: text.png }, { name: c }, { name: d, image: . }]");
     FOUND(f, { "plant.yaml", 6, 21, "name: there is a colour map 'viridis' already" },
-          { "plant.yaml", 6, 37, "none.png': No such file or directory" }, { "plant.yaml", 6, 67, "dot.ppm': one pixel only" },
+          { "plant.yaml", 6, 37, "none.png': No such file or directory" },
+          { "plant.yaml", 6, 67, "dot.ppm': the picture has only one pixel" },
           { "plant.yaml", 7, 11, "name: there is a colour map 'b' already" }, { "plant.yaml", 7, 21, "text.png': " },
           { "plant.yaml", 7, 33, "image" }, { "plant.yaml", 7, 64, "': not a file" });
 }

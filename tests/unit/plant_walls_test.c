@@ -118,7 +118,7 @@ CASE(what_a_snapshot_names_is_checked)
 {
     load(c, "other_plants: [{ id: tanks, url: \"https://h/\" }]\nwalls:\n- id: r\n  displays:\n  - grid: [a b]\n    panes:\n"
             "    - { area: a, snapshot: tank }\n    - { area: b, snapshot: [tanks, tanks] }");
-    FOUND(c, { "plant.yaml", 13, 28, "snapshot: expected one, found 2" });
+    FOUND(c, { "plant.yaml", 13, 28, "snapshot: expected one item, found 2" });
     load(c, "other_plants: [{ id: tanks, url: \"https://h/\" }]\nwalls:\n- id: r\n  displays:\n  - grid: [a]\n    panes:\n"
             "    - { area: a, snapshot: tank }");
     FOUND(c, { "plant.yaml", 12, 28, "snapshot: `other_plants` has no plant 'tank'; did you mean 'tanks'?" });
@@ -136,7 +136,8 @@ CASE(wrong_tiles_are_said_at_their_place)
           { "plant.yaml", 9, 18, "tile: expected 2 to 16 displays, found 5 columns and 4 rows" },
           { "plant.yaml", 10, 18, "tile: expected either views or a tour" }, { "plant.yaml", 11, 51, "bezel_mm" },
           { "plant.yaml", 12, 51, "bezel_mm: expected one number, or two" }, { "plant.yaml", 13, 3, "expected displays, or a tile" },
-          { "plant.yaml", 14, 18, "found 16 in the tile and 1 in `displays`" }, { "plant.yaml", 15, 47, "tour: expected one, found 2" },
+          { "plant.yaml", 14, 18, "`tile` defines 16 and `displays` lists 1" },
+          { "plant.yaml", 15, 47, "tour: expected one item, found 2" },
           { "plant.yaml", 16, 29, "columns" });
 }
 
@@ -159,8 +160,8 @@ CASE(what_is_wrong_is_said_at_its_place)
           { "plant.yaml", 9, 9, "view 'v' is listed twice (first at line 8)" }, { "plant.yaml", 10, 3, "view" },
           { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },
           { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "the names of panes' areas" },
-          { "plant.yaml", 18, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no area 'b'" },
-          { "plant.yaml", 20, 13, "expected one of views" }, { "plant.yaml", 20, 55, "'b' is used by two panes" },
+          { "plant.yaml", 18, 13, "must have exactly one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no area 'b'" },
+          { "plant.yaml", 20, 13, "must have exactly one of views" }, { "plant.yaml", 20, 55, "'b' is used by two panes" },
           { "plant.yaml", 20, 102, "allowed only in a pane of views" }, { "plant.yaml", 20, 78, "the grid has no area 'z'" },
           { "plant.yaml", 20, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 20, 115, "'b' is used by two panes" },
           { "plant.yaml", 13, 7, "wall 'r' is listed twice" });
@@ -170,10 +171,10 @@ CASE(a_grid_is_made_of_rectangles)
 {
     load(c, "walls:\n- id: r\n  displays:\n  - { grid: [a a b, a c], panes: [] }\n  - { grid: [a a, a b], panes: [] }\n"
             "  - { grid: [a b a], panes: [] }\n  - { grid: [\" \"], panes: [] }\n  - { grid: [. a a, b a a, b . .], panes: [] }");
-    FOUND(c, { "plant.yaml", 9, 13, "grid: expected as many areas in each row, found 3 in the first and 2 in 'a c'" },
+    FOUND(c, { "plant.yaml", 9, 13, "grid: expected the same number of areas in each row, found 3 in the first row and 2 in 'a c'" },
           { "plant.yaml", 10, 13, "grid: the cells of area 'a' do not form one rectangle" },
           { "plant.yaml", 11, 13, "grid: the cells of area 'a' do not form one rectangle" },
-          { "plant.yaml", 12, 13, "grid: expected as many areas in each row, found 0" });
+          { "plant.yaml", 12, 13, "grid: expected the same number of areas in each row, found 0" });
 }
 
 CASE(what_panes_name_must_be_there)
@@ -194,7 +195,8 @@ CASE(what_tours_name_must_be_there)
     FOUND(c, { "plant.yaml", 8, 7, "id: expected letters" }, { "plant.yaml", 9, 32, "dwell_s" },
           { "plant.yaml", 11, 10, "stops: expected at least one" }, { "plant.yaml", 13, 11, "view" },
           { "plant.yaml", 14, 7, "tour 'u' is listed twice (first at line 12)" },
-          { "plant.yaml", 20, 68, "every_s: allowed only in a pane of views" }, { "plant.yaml", 20, 90, "tour: expected one, found 2" });
+          { "plant.yaml", 20, 68, "every_s: allowed only in a pane of views" },
+          { "plant.yaml", 20, 90, "tour: expected one item, found 2" });
     load(c, "views: [{ id: all, view: x }]\ntours: [{ id: round, stops: [{ view: al }, { view: none }] }]\n"
             "walls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, tour: raund }]");
     FOUND(c, { "plant.yaml", 7, 38, "view: `views` has no 'al'; did you mean 'all'?" }, { "plant.yaml", 7, 52, "`views` has no 'none'" },

@@ -223,14 +223,14 @@ TEST(a_plan_is_put_in_words)
     plant->sources[0].pause_ms = 10;
     read_plan_text(&text, plant, 0);
     assert_string_equal(text.at, "source a: 127.0.0.1:1: 4 tags in 3 requests\n"
-                                 "  unit 1, function 4, ir:7 to 7: 1 register each 500 ms, 1 tag\n"
+                                 "  unit 1, function 4, ir:7 to 7: 1 register every 500 ms, 1 tag\n"
                                  "    ir:7.3 bool t3\n"
-                                 "  unit 1, function 3, hr:0 to 3: 4 registers each 500 ms, 2 tags\n"
+                                 "  unit 1, function 3, hr:0 to 3: 4 registers every 500 ms, 2 tags\n"
                                  "    hr:0 float32 ABCD t0\n"
                                  "    hr:2 float32 ABCD t1\n"
-                                 "  unit 1, function 3, hr:10 to 11: 2 registers each 500 ms, 1 tag\n"
+                                 "  unit 1, function 3, hr:10 to 11: 2 registers every 500 ms, 1 tag\n"
                                  "    hr:10 float32 ABCD t2\n"
-                                 "  load: 6 requests, 8 values and 154 bytes in a second; the pauses take 6 % of the time\n");
+                                 "  load: 6 requests, 8 values and 154 bytes per second; the pauses take 6 % of the time\n");
     text_finish(&text);
     plant->sources[0].transport = TRANSPORT_RTU;
     plant->sources[0].host_count = 0;
@@ -239,13 +239,13 @@ TEST(a_plan_is_put_in_words)
     read_plan_text(&text, plant, 0);
     /* Bytes per second: (3 x 13 + 14 bytes of values) x 2 = 106, at 10 bits each; silence takes the time of 7 bytes per request. */
     assert_non_null(strstr(text.at, "source a: /dev/ttyS0, 1200 baud, parity N, 1 stop bit: 4 tags"));
-    assert_non_null(strstr(text.at, "106 bytes in a second; the pauses take 6 % of the time; 123 % of what the line can carry: TOO MUCH"));
+    assert_non_null(strstr(text.at, "106 bytes per second; the pauses take 6 % of the time; 123 % of the line's capacity: TOO MUCH"));
     text_finish(&text);
     mem_free(plant->sources[0].kind);
     plant->sources[0].kind = mem_strdup("replay");
     plant->sources[0].transport = TRANSPORT_TCP;
     read_plan_text(&text, plant, 0);
-    assert_string_equal(text.at, "source a: replay: no requests, plays 4 tags\n");
+    assert_string_equal(text.at, "source a: replay: no requests, replays 4 tags\n");
     text_finish(&text);
     mem_free(plant->sources[0].kind);
     plant->sources[0].kind = mem_strdup("opcua");

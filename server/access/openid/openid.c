@@ -98,7 +98,7 @@ enum openid_finish openid_finish(struct openid *openid, const struct openid_retu
         return OPENID_FOREIGN;
     }
     bool other = is_other_issuer(openid, brought->iss);
-    const char *why = other            ? "the provider's answer names another issuer (iss) than the file of --openid"
+    const char *why = other            ? "the issuer (iss) in the provider's answer differs from the issuer in the --openid file"
                       : brought->error ? "the identity provider refused to sign this user in, with the error"
                       : !brought->code ? "the provider's answer has no authorization code"
                                        : NULL;
@@ -177,7 +177,7 @@ static const char *take_claims(const struct openid_config *config, const json_t 
     *out = (struct token_holder){ .signed_in = true, .until_utc_ns = made_s * NS_PER_S + (int64_t)(config->hours * 3600e9) };
     out->role = id_token_role(config, claims);
     if (!id_token_name(config, claims, out->name, sizeof(out->name)))
-        return "the ID token has no user name that can be displayed; check name_claim in the core's file of --openid";
+        return "the ID token has no user name that can be displayed; check name_claim in the core's --openid file";
     if (clock_utc_ns() >= out->until_utc_ns)
         return "the ID token is older than the maximum duration of a session; sign in again";
     return out->role == ROLE_NOBODY ? "none of the groups in the ID token has a role at the core" : NULL;
@@ -260,7 +260,7 @@ struct openid *openid_start(const struct openid_params *params)
     if (openid->config && curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK)
         openid->started = pthread_create(&openid->thread, NULL, openid_run, openid) == 0;
     if (!openid->started) {
-        log_err(params->log, "openid: %s cannot be used", params->path);
+        log_err(params->log, "openid: sign-in with the settings in %s cannot start", params->path);
         openid_stop(&openid);
     }
     return openid;

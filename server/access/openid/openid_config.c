@@ -126,7 +126,7 @@ struct openid_config *openid_config_read(struct log *log, const char *path)
     config->check_s = CHECK_S;
     config->hours = HOURS;
     if (yaml_reader_open(&reader, path, &diag)) {
-        if (yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the file of --openid", keys, config, &map))
+        if (yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the --openid file", keys, config, &map))
             check(&reader, &map, config);
         yaml_reader_close(&reader);
     }

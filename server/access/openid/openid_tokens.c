@@ -63,12 +63,12 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
     bool told;
     openid_complete(openid, claims, json_member_text(tokens, "access_token"), &told);
     if (!id_token_name(openid->config, claims, holder.name, sizeof(holder.name))) {
-        *why = mem_strdup("the ID token has no user name that can be displayed; check name_claim in the file of --openid");
+        *why = mem_strdup("the ID token has no user name that can be displayed; check name_claim in the --openid file");
         return NULL;
     }
     holder.role = id_token_role(openid->config, claims);
     if (holder.role == ROLE_NOBODY) {
-        *why = mem_printf("user %s: none of the user's groups has a role; check roles in the file of --openid", holder.name);
+        *why = mem_printf("user %s: none of the user's groups has a role; check roles in the --openid file", holder.name);
         return NULL;
     }
     struct person *person = mem_new(sizeof(*person));

@@ -60,7 +60,7 @@ void process_counters_set(struct counters *counters)
                                      "Processor time of all threads of this process in seconds."),
                 clock_work_ns() / 1000);
     if (read_stat(fields)) {
-        counter_set(counters_add(counters, "process_threads", "gauge", "Threads."), (int64_t)fields[STAT_THREADS]);
+        counter_set(counters_add(counters, "process_threads", "gauge", "Threads of this process."), (int64_t)fields[STAT_THREADS]);
         counter *start_s =
             counters_add(counters, "process_start_time_seconds", "gauge", "Start time of the process, in seconds since 1970.");
         if (atomic_load(start_s) == 0) /* sets the start time only once, so that a later change of the clock does not move it */

@@ -14,7 +14,7 @@ bool timestamp_parse(const char *text, int64_t now_us, int64_t *t_us);
 bool timestamp_parse_local(const char *text, int64_t after_us, int64_t *t_us);
 void timestamp_use_zone(const char *iana_name); /* Sets the zone of the process (TZ); call it only while the process has one thread. */
 #define TIMESTAMP_FORMS                                                                                                                    \
-    "an instant such as 2026-11-20T10:00:00Z (or with an offset, +01:00), seconds since 1970, or a time before now such as -8h"
+    "a time such as 2026-11-20T10:00:00Z (or with an offset such as +01:00), seconds since 1970, or a time before now such as -8h"
 enum { TIMESTAMP_BYTES = 32 };
 /* Prints a time as 2026-11-20T10:00:00.500Z, or with six decimals if it is not a whole number of milliseconds. */
 void timestamp_print(int64_t t_us, char text[TIMESTAMP_BYTES]);

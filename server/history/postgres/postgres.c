@@ -93,7 +93,7 @@ static void give_up(struct postgres *postgres, const char *why)
     snprintf(cause, sizeof(cause), "%.*s", (int)strcspn(why, "\n"), why);
     if (strcmp(cause, postgres->said) != 0 && !ends(postgres))
         log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
-                  "history: PostgreSQL cannot be written (%s); points wait in %s, at most %.0f", cause, postgres->folder,
+                  "history: cannot write to PostgreSQL (%s); points are queued in %s, at most %.0f", cause, postgres->folder,
                   postgres->params.plant->history.postgres.spool_points);
     memcpy(postgres->said, cause, sizeof(cause));
     postgres_tables_finish(&postgres->tables);
@@ -127,7 +127,7 @@ static void is_well(struct postgres *postgres)
     postgres->backoff = (struct backoff){ 0 };
     counter_set(postgres->counters.up, 1);
     if (*postgres->said)
-        log_event(log_of(postgres), LOG_INFO, EVENT_HISTORY_WRITTEN, "history: PostgreSQL can be written again");
+        log_event(log_of(postgres), LOG_INFO, EVENT_HISTORY_WRITTEN, "history: PostgreSQL accepts points again");
     *postgres->said = 0;
 }
 

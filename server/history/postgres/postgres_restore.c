@@ -144,7 +144,7 @@ struct tag_there {
 
 static bool fail(char why[POSTGRES_WHY_BYTES], int error)
 {
-    snprintf(why, POSTGRES_WHY_BYTES, "the files of history cannot be written: %s", strerror(-error));
+    snprintf(why, POSTGRES_WHY_BYTES, "the history files cannot be written: %s", strerror(-error));
     return false;
 }
 

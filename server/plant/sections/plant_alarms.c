@@ -50,7 +50,7 @@ void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void
 void plant_alarms_check(struct yaml_reader *reader, struct text_position place, const struct plant *plant)
 {
     if (plant->alarms == ALARMS_LOCAL && plant->history.off)
-        yaml_error(reader, place, "alarms: local needs `record: yes` in `history`: alarm events are stored in the history");
+        yaml_error(reader, place, "`alarms: local` requires `record: yes` in `history`, because alarm events are stored there");
 }
 
 /* --- rows ------------------------------------------------------------------------------------------------------------------- */

@@ -431,7 +431,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     plant_alarms_check(&reader, yaml_map_place(&map, "alarms"), plant);
     if (plant->notify && plant->history.off)
         yaml_error(&reader, yaml_map_place(&map, "notify"),
-                   "notify needs `record: yes` in `history`: sent notifications are stored in the history");
+                   "`notify` requires `record: yes` in `history`, because sent notifications are stored there");
     if (!plant->time_zone)
         plant->time_zone = mem_strdup("UTC");
     stand_upright(plant);

@@ -17,7 +17,7 @@ void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char 
         yaml_error(reader, yaml_place(node), "%s: expected at least one item, found an empty list", name);
     void *things = *count < 0 ? NULL : mem_try_array((size_t)*count, bytes_each);
     if (*count >= 0 && !things)
-        yaml_error(reader, yaml_place(node), "%s: out of memory for %d", name, *count);
+        yaml_error(reader, yaml_place(node), "%s: cannot read a list of %d items: out of memory", name, *count);
     if (!things)
         *count = 0;
     return things;

@@ -134,7 +134,7 @@ static void read_recipient(struct yaml_reader *reader, yaml_node_t *node, struct
     if (!is_map)
         return;
     if (yaml_map_has(&map, "email") + yaml_map_has(&map, "webhook") + yaml_map_has(&map, "alertmanager") != 1)
-        yaml_error(reader, map.place, "a recipient: expected one of email, webhook and alertmanager");
+        yaml_error(reader, map.place, "a recipient: expected exactly one of email, webhook and alertmanager");
     else if (recipient->kind == NOTIFY_EMAIL && !plant->notify->mail.server)
         yaml_error(reader, yaml_map_place(&map, "email"), "email: the key `mail` must name a server");
     else if (recipient->kind != NOTIFY_EMAIL)

@@ -61,7 +61,7 @@ void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map
     struct text_position place = yaml_map_place(map, "postgres");
     plant_resolve_path(plant, &postgres->login);
     if (postgres->url && plant->history.off)
-        yaml_error(reader, place, "postgres needs `record: yes` in `history`: recorded points are sent to PostgreSQL");
+        yaml_error(reader, place, "`postgres` requires `record: yes` in `history`, because only recorded points are sent to PostgreSQL");
     /* An unreadable login file is only a warning: a user who only prepares the plant may lack the right to read it. */
     if (postgres->login && access(postgres->login, R_OK) != 0)
         diag_warning(reader->diag, reader->path, place.line, place.column, "login: '%s' cannot be read: %s", postgres->login,

@@ -129,8 +129,8 @@ static void check_grid(struct yaml_reader *reader, struct text_position place, c
     int columns = display->row_count ? word_count(display->rows[0]) : 0;
     for (size_t i = 0; i < display->row_count; i++)
         if (word_count(display->rows[i]) != columns || columns == 0) {
-            yaml_error(reader, place, "grid: expected as many areas in each row, found %d in the first and %d in '%.60s'", columns,
-                       word_count(display->rows[i]), display->rows[i]);
+            yaml_error(reader, place, "grid: expected the same number of areas in each row, found %d in the first row and %d in '%.60s'",
+                       columns, word_count(display->rows[i]), display->rows[i]);
             return;
         }
     for (size_t row = 0; row < display->row_count; row++)
@@ -167,11 +167,11 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
     for (size_t i = 0; i < sizeof(pane_kind_names) / sizeof(*pane_kind_names); i++)
         kinds += yaml_map_has(&map, pane_kind_names[i]);
     if (kinds != 1)
-        yaml_error(reader, map.place, "a pane: expected one of views, trend, alarms, tiles, clock, text, tour and snapshot, found %d",
-                   kinds);
+        yaml_error(reader, map.place,
+                   "pane: must have exactly one of views, trend, alarms, tiles, clock, text, tour and snapshot; this one has %d", kinds);
     else if ((pane->kind == PANE_TOUR || pane->kind == PANE_SNAPSHOT) && pane->item_count > 1)
-        yaml_error(reader, yaml_map_place(&map, pane_kind_names[pane->kind]), "%s: expected one, found %zu", pane_kind_names[pane->kind],
-                   pane->item_count);
+        yaml_error(reader, yaml_map_place(&map, pane_kind_names[pane->kind]), "%s: expected one item, found %zu",
+                   pane_kind_names[pane->kind], pane->item_count);
     else if (pane->on_alarm && pane->kind != PANE_VIEWS && pane->kind != PANE_TOUR)
         yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: allowed only in a pane of views");
     else if (pane->kind != PANE_VIEWS && yaml_map_has(&map, "every_s"))
@@ -268,7 +268,7 @@ static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *recor
         good = false;
     }
     if (good && tile->pane.kind == PANE_TOUR && tile->pane.item_count > 1)
-        yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one, found %zu", tile->pane.item_count);
+        yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one item, found %zu", tile->pane.item_count);
     if (good && tile->pane.kind == PANE_TOUR && yaml_map_has(&map, "every_s"))
         yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: not allowed with a tour, whose stops have their own times");
     if (!good)
@@ -314,8 +314,7 @@ static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, st
         return;
     if (tiles + others > WALL_DISPLAYS) {
         yaml_error(reader, yaml_map_place(map, "tile"),
-                   "tile: expected at most %d displays of a wall, found %zu in the tile and %zu in `displays`", WALL_DISPLAYS, tiles,
-                   others);
+                   "tile: a wall can have at most %d displays; `tile` defines %zu and `displays` lists %zu", WALL_DISPLAYS, tiles, others);
         wall->tile.columns = wall->tile.rows = 0;
         return;
     }

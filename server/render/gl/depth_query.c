@@ -13,7 +13,7 @@ static bool fit(struct depth_query *query, const struct gl *gl, size_t count)
         return count <= query->capacity;
     depth_query_finish(query);
     size_t bytes = count * sizeof(*query->cells);
-    query->buffer = mesh_buffer(gl->log, "depth of a picture", bytes, NULL, read | GL_CLIENT_STORAGE_BIT);
+    query->buffer = mesh_buffer(gl->log, "depth query", bytes, NULL, read | GL_CLIENT_STORAGE_BIT);
     query->cells = query->buffer ? glMapNamedBufferRange(query->buffer, 0, (GLsizeiptr)bytes, read) : NULL;
     query->capacity = query->cells ? count : 0;
     return query->cells != NULL;

@@ -137,7 +137,7 @@ bool draw_batches_refill(struct log *log, GLuint *buffer, size_t *room, size_t b
     if (*room < bytes) {
         glDeleteBuffers(1, buffer);
         *room = bytes + bytes / 2;
-        *buffer = mesh_buffer(log, "what is drawn", *room, NULL, GL_DYNAMIC_STORAGE_BIT);
+        *buffer = mesh_buffer(log, "draw commands", *room, NULL, GL_DYNAMIC_STORAGE_BIT);
         if (!*buffer)
             *room = 0;
     }

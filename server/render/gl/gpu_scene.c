@@ -50,7 +50,7 @@ static bool add_model(const struct gpu_scene *gpu_scene, struct gl_model *model,
     struct gl *gl = gpu_scene->gl;
     if (model_init(model, gl, file) && materials_upload(model, gl, sky, gpu_scene->up))
         return true;
-    log_err(gl->log, "%s: not drawn: %u vertices, %u textures do not fit on the GPU", file->path, file->view.header->vertex_count,
+    log_err(gl->log, "%s: not drawn: %u vertices and %u textures do not fit into GPU memory", file->path, file->view.header->vertex_count,
             file->view.header->texture_count);
     return false;
 }

@@ -177,8 +177,8 @@ static struct light_set *end(struct light *light)
     drop_rough(light);
     set = make_room(light, baked.bytes);
     if (!set) {
-        log_err(light->gpu_scene->gl->log, "light: no room for the light of another view: all %d sets of baked light are in use",
-                LIGHT_SETS);
+        log_err(light->gpu_scene->gl->log,
+                "light: cannot keep the baked light of one more view: all %d slots are held by pictures in progress", LIGHT_SETS);
         light_set_finish(&baked, light->gpu_scene);
         return NULL;
     }

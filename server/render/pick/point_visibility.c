@@ -15,7 +15,7 @@ float (*point_visibility_reserve(struct point_visibility *queries, const struct 
         return queries->places;
     point_visibility_finish(queries);
     size_t capacity = count > MIN_POINTS ? count : MIN_POINTS, bytes = capacity * sizeof(*queries->places);
-    queries->buffer = mesh_buffer(gl->log, "places in a picture", bytes, NULL, both | GL_CLIENT_STORAGE_BIT);
+    queries->buffer = mesh_buffer(gl->log, "visibility query", bytes, NULL, both | GL_CLIENT_STORAGE_BIT);
     queries->places = queries->buffer ? glMapNamedBufferRange(queries->buffer, 0, (GLsizeiptr)bytes, both) : NULL;
     queries->capacity = queries->places ? capacity : 0;
     return queries->places;

@@ -194,7 +194,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     if (!scalars && !field_covers(fields->field, asset, params))
         return NULL;
     if (!scalars) {
-        log_err(fields->log, "field of asset %d: out of memory; shown as no data", asset);
+        log_err(fields->log, "field of asset %d: out of memory; the asset is shown as no data", asset);
         return &fields->lost;
     }
     struct fields_entry *entry = entry_find(fields, asset, params, ask->step);

@@ -110,7 +110,7 @@ GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field)
         blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .state = from->state };
         memcpy(blocks[i].place_m, from->place_m, sizeof(from->place_m));
     }
-    GLuint buffer = mesh_buffer(log, "sensors of pixels", bytes, head, 0);
+    GLuint buffer = mesh_buffer(log, "sensors for the per-fragment field", bytes, head, 0);
     mem_free(head);
     return buffer;
 }
@@ -135,7 +135,7 @@ static GLuint upload_distances(struct log *log, const struct asset_view *view)
     }
     float(*texels)[SENSORS_PER_TEXEL] = mem_try_array(groups * vertices, sizeof(*texels));
     if (!texels) {
-        log_err(log, "per-fragment field: out of memory for %zu sensors at %zu vertices", sensors, vertices);
+        log_err(log, "per-fragment field: cannot store %zu sensors at %zu vertices: out of memory", sensors, vertices);
         return 0;
     }
     for (size_t i = 0; i < sensors; i++)

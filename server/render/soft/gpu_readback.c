@@ -12,7 +12,7 @@ enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 
 
 static bool fail(const struct soft *soft, const char *what)
 {
-    log_err(soft->gpu_scene->gl->log, "pictures of a moving camera: %s cannot be read back from the GPU: out of memory", what);
+    log_err(soft->gpu_scene->gl->log, "cannot draw pictures of a moving camera: %s cannot be read back from the GPU: out of memory", what);
     return false;
 }
 

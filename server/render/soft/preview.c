@@ -38,8 +38,8 @@ bool raster_make_room(struct raster *raster, const struct frame *frame)
 
 static bool complain(const struct raster *raster)
 {
-    log_err(raster->soft->gpu_scene->gl->log, "preview of %dx%d, %zu vertices: out of memory", raster->width_px, raster->height_px,
-            raster->vertex_count);
+    log_err(raster->soft->gpu_scene->gl->log, "cannot draw a preview of %dx%d with %zu vertices: out of memory", raster->width_px,
+            raster->height_px, raster->vertex_count);
     return false;
 }
 

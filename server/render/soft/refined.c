@@ -269,8 +269,8 @@ static bool mark(struct refined *refined, const struct frame *frame)
 
 static bool complain(struct refined *refined)
 {
-    log_err(refined->raster.soft->gpu_scene->gl->log, "refined frame of %dx%d, %zu vertices: out of memory", refined->raster.width_px,
-            refined->raster.height_px, refined->raster.vertex_count);
+    log_err(refined->raster.soft->gpu_scene->gl->log, "cannot draw a refined picture of %dx%d with %zu vertices: out of memory",
+            refined->raster.width_px, refined->raster.height_px, refined->raster.vertex_count);
     refined->failed = true;
     return true;
 }

@@ -48,7 +48,7 @@ json_t *mqtt_json_parse(const void *bytes, size_t count, char why[200])
     json_error_t error;
     json_t *root = json_loadb(bytes, count, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &error);
     if (!root)
-        snprintf(why, 200, "no JSON: %.150s", error.text);
+        snprintf(why, 200, "not valid JSON: %.150s", error.text);
     return root;
 }
 

@@ -475,7 +475,7 @@ bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *mess
         return false;
     bool good = said.verb == NDEATH || payload.seq >= 0;
     if (!good)
-        snprintf(why, 200, "no sequence number");
+        snprintf(why, 200, "the message has no sequence number");
     else if (said.verb == NBIRTH)
         good = take_node_birth(sparkplug, &said, &payload, why);
     else if (said.verb == NDEATH)

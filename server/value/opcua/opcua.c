@@ -140,7 +140,8 @@ static int make_up(struct opcua_source *opcua, struct opcua_client *client, int6
         return 0;
     *next_ns = now_ns + READ_NS;
     if (log_pace_take(&opcua->missed_pace, now_ns, more))
-        log_warn(opcua->base.log, "source %s: notifications of the server are missing: reading all nodes%s", opcua->base.config->id, more);
+        log_warn(opcua->base.log, "source %s: notifications from the server are missing: reading all nodes%s", opcua->base.config->id,
+                 more);
     return opcua_client_read(client, opcua->base.stop_fd, now_ns + SUBSCRIBE_NS, why);
 }
 
