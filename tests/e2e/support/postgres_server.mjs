@@ -68,13 +68,21 @@ export class PostgresServer {
         }
     }
 
-    // Makes its processes stop answering without closing connections.
-    freeze(signal = 'SIGSTOP') {
+    // Makes its processes stop answering without closing connections. The first process is stopped first: from then on, it makes no other
+    // process, and removes none that has ended.
+    freeze() {
+        this.child.kill('SIGSTOP');
+        this.signalOthers('SIGSTOP');
+    }
+    thaw() {
+        this.signalOthers('SIGCONT');
+        this.child.kill('SIGCONT');
+    }
+    signalOthers(signal) {
         const { stdout } = spawnSync('ps', ['-o', 'pid=', '--ppid', String(this.child.pid)], { encoding: 'utf8' });
-        for (const pid of [this.child.pid, ...stdout.trim().split(/\s+/).map(Number)])
+        for (const pid of stdout.trim().split(/\s+/).map(Number))
             process.kill(pid, signal);
     }
-    thaw() { this.freeze('SIGCONT'); }
 
     psql(sql, database = this.database, user = 'owner') {
         return spawnSync(join(FOLDER, 'psql'), ['-XAtq', '-F', '\t', '-v', 'ON_ERROR_STOP=1', '-h', this.folder, '-p', String(this.port),
