@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
 import { notBuilt, startTiny } from './support/tiny_plant.mjs';
+import { becomes, until } from './support/until.mjs';
 
 const why = notBuilt();
 const options = { skip: why, timeout: 300000 };
@@ -64,11 +65,25 @@ test('a note is seen by all, and on the wall, until it is removed', options, asy
     assert.ok(list[0].until_us > list[0].time_us);
 });
 
+// Waits until all sessions of a page are open: that of the desk, or those of the wall and of its pane. isOld true: marks their models;
+// false: waits until these have other models, from another start of the daemon.
+const opened = (page, isOld) => page.waitForFunction((marks) => {
+    const all = globalThis.wall ? [globalThis.wall, document.querySelector('.pane.views iframe')?.contentWindow.plantcast]
+        : [globalThis.plantcast];
+    const models = all.map((one) => (one?.session.welcomed ? one.session.model : null));
+    if (marks)
+        models.forEach((model) => model && Object.assign(model, { isOld: true }));
+    return models.every((model) => model && Boolean(model.isOld) === marks);
+}, isOld);
+
 test('notes outlive the daemon', options, async () => {
+    const pages = [desk.page, wall.page];
+    await Promise.all(pages.map((page) => opened(page, true)));
     await plant.stopDaemon('SIGKILL');
     await plant.startDaemon();
+    await Promise.all(pages.map((page) => opened(page, false)));
     await wall.page.locator('#lost').waitFor({ state: 'hidden' });
-    await desk.page.waitForFunction(() => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.notes.length === 1);
+    await desk.page.waitForFunction(() => globalThis.plantcast.session.notes.length === 1);
     await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor();
 });
 
@@ -78,9 +93,8 @@ test('a view is sent to a pane, and who sent it is said there', options, async (
     await desk.page.locator('.named-open', { hasText: 'From above' }).click();
     await desk.page.waitForFunction(() => Math.abs(globalThis.plantcast.session.picture.camera.eye[2] - 30) < 0.01);
     await desk.page.click('#remote-send');
-    await title().filter({ hasText: 'sent by Desk 2, local' }).waitFor();
-    assert.match(await title().textContent(), /From above/);
-    assert.match(await title().locator('.about').textContent(), /Temperature · data .* old/);
+    await title().filter({ hasText: 'sent by Desk 2, local' }).filter({ hasText: 'From above' }).waitFor();
+    await title().locator('.about', { hasText: /Temperature · data .* old/ }).waitFor();
     await eyeOfPane(30);
 });
 
@@ -90,12 +104,13 @@ test('a place is pointed at in the pane', options, async () => {
         const { viewport } = globalThis.plantcast, { left, top } = viewport.element.getBoundingClientRect();
         return { x: left + viewport.width * 0.45, y: top + viewport.height * 0.55 };
     });
-    await desk.page.mouse.move(at.x, at.y);
-    for (let i = 0; i < 40 && await inPane().locator('.note-pin.pointer').count() === 0; i++) {
-        await desk.page.mouse.move(at.x + (i % 5) * 12, at.y - (i % 7) * 10);
-        await desk.page.waitForTimeout(400);
-    }
-    await inPane().locator('.note-pin.pointer', { hasText: 'Desk 2, local' }).waitFor();
+    let moves = 0;
+    await until('a pointer in the pane', async () => {
+        await desk.page.mouse.move(at.x + (moves % 5) * 12, at.y - (moves % 7) * 10);
+        moves++;
+        const found = inPane().locator('.note-pin.pointer', { hasText: 'Desk 2, local' });
+        return found.waitFor({ timeout: 400 }).then(() => true, () => false);
+    });
     await shoot(wall.page, 'wall-remote');
     await desk.page.uncheck('#remote-points');
     await inPane().locator('.note-pin.pointer').waitFor({ state: 'detached' });
@@ -105,18 +120,18 @@ test('a click while pointing is answered', options, async () => {
     await desk.page.check('#remote-points');
     await desk.page.mouse.move(500, 500);
     await desk.page.mouse.move(520, 480);
-    const shown = await desk.page.evaluate(async () => {
-        const { session, modules, viewport } = globalThis.plantcast, remote = await modules.get('remote'), heard = [];
-        session.on('picked', ({ purpose }) => heard.push(purpose));
+    const isPointed = await desk.page.evaluate(async () => {
+        const { session, modules, viewport } = globalThis.plantcast, remote = await modules.get('remote');
+        globalThis.picked = [];
+        session.on('picked', ({ purpose }) => globalThis.picked.push(purpose));
         const { askPick } = await import('./core/requests.js');
         askPick(session, viewport.pixelOf(viewport.width * 0.45, viewport.height * 0.55), 'place');
         remote.askedAt = -1e6;
         remote.ask(); // sends the pointer at once
-        for (let i = 0; i < 100 && !heard.includes('place'); i++) // waits, because a pointer may still be under way
-            await new Promise((done) => setTimeout(done, 50));
-        return [Boolean(remote.page.pointed), heard.includes('place')];
+        return Boolean(remote.page.pointed);
     });
-    assert.deepEqual(shown, [true, true]);
+    assert.ok(isPointed);
+    await desk.page.waitForFunction(() => globalThis.picked.includes('place'));
     await desk.page.uncheck('#remote-points');
 });
 
@@ -152,7 +167,7 @@ test('it is held, and given back', options, async () => {
     await title().filter({ hasText: 'held by Desk 2' }).waitFor();
     await desk.page.click('#remote-back');
     await title().filter({ hasText: 'Whole unit' }).waitFor();
-    assert.doesNotMatch(await title().textContent(), /Desk 2/);
+    await becomes(async () => /Desk 2/.test(await title().textContent()), false, 'the title names no desk');
     await desk.page.locator('#notes-list li .end').click();
     await desk.page.locator('.note-pin').waitFor({ state: 'detached' });
     await inPane().locator('.note-pin').waitFor({ state: 'detached' });
@@ -163,14 +178,8 @@ test('how old its picture is stands in the metrics, and grows once it has gone',
         const text = await (await fetch(`${plant.url}metrics`)).text();
         return Number(/plantcast_wall_frame_age_seconds\{wall="room",display="1"\} (\S+)/.exec(text)?.[1]);
     };
-    const shown = Date.now();
-    while (!(await age() < 10) && Date.now() - shown < 60000)
-        await new Promise((done) => setTimeout(done, 1000));
-    assert.ok(await age() < 10, `${await age()} s`);
+    await until('a young picture', async () => await age() < 10, 60);
     await wall.page.goto('about:blank');
-    const gone = Date.now();
-    while (!(await age() > 20) && Date.now() - gone < 60000)
-        await new Promise((done) => setTimeout(done, 1000));
-    assert.ok(await age() > 20);
+    await until('an old picture', async () => await age() > 20, 60);
     await desk.page.locator('#remote-said', { hasText: 'not connected' }).waitFor();
 });
