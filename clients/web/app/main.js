@@ -99,6 +99,8 @@ viewport.onDrawn = (newPicture, isWarped) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
+for (const id of ['display', 'more', 'picture-panel', 'views']) // labels make room for an open panel
+    new MutationObserver(refresh).observe(byId(id), { attributeFilter: ['class'] });
 setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age of the value on the sensor's card
 
 for (const name of ['tags', 'alarms', 'proofs'])

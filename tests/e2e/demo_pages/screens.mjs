@@ -101,6 +101,15 @@ test('tablet: one finger turns, two pan and zoom', options, () => withPage(TABLE
     await page.locator('#display-toggle').tap();
     await becomes(() => tooSmall(page), []);
     await shoot(page, 'tablet-display');
+    await page.locator('#display-toggle').tap();
+    for (const [button, panel] of Object.entries({ display: '#display', more: '#more', views: '#views', picture: '#picture-panel' })) {
+        await page.locator(`#${button}-toggle`).tap();
+        await becomes(async () => {
+            const [strip, box] = await Promise.all(['#alarm-strip', `${panel}.open`].map((one) => page.locator(one).boundingBox()));
+            return box?.y >= strip.y + strip.height;
+        }, true, `${panel} leaves the alarms free`);
+        await page.locator(`#${button}-toggle`).tap();
+    }
 }));
 
 test('desktop: two sets of parameters side by side, each with legend and markers', options, () => withPage(LARGE, async (page) => {
@@ -403,9 +412,10 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
 
         await page.locator('#more-toggle').tap();
         await page.locator('#more.open').waitFor();
-        const [more, legend] = await Promise.all(['#more', '#legend'].map((id) => page.locator(id).boundingBox()));
-        const apart = more.x >= legend.x + legend.width || more.y >= legend.y + legend.height;
-        assert.ok(apart, `${name}: the legend is read beside it: ${JSON.stringify([more, legend])}`);
+        const [more, ...others] = await Promise.all(['#more', '#legend', '#alarm-strip'].map((id) => page.locator(id).boundingBox()));
+        for (const other of others)
+            assert.ok(more.x >= other.x + other.width || more.y >= other.y + other.height,
+                `${name}: legend and alarms are read beside it: ${JSON.stringify([more, other])}`);
         assert.ok(more.y >= 0 && more.x >= 0 && more.y + more.height <= height && more.x + more.width <= width, name);
         await becomes(() => tooSmall(page), [], name);
         await page.keyboard.press('Escape');

@@ -159,10 +159,11 @@ export class Overlay {
     }
 
     // Returns the boxes, in units of this.unit CSS pixels, of the HTML elements over the picture that do not move with it (legend, banner,
-    // ...), and of those that the selector `more` adds.
+    // open panels, ...), and of those that the selector `more` adds.
     boxesOver(more) {
         const { unit, viewport: { element } } = this, origin = element.getBoundingClientRect();
-        return [...element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`)]
+        const within = element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`);
+        return [...within, ...document.querySelectorAll('.toolbar .open')]
             .map((e) => e.getBoundingClientRect()).filter((box) => box.width > 0).map((box) => ({
                 left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
                 top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
