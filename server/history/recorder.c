@@ -11,8 +11,9 @@
 struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
-    /* interval at which the tag's source looks for changes, if it sends only changes; 0: it also sends unchanged values */
-    int64_t sampling_us;
+    int64_t sampling_us; /* interval at which the tag's source looks for changes */
+    int64_t silence_us;  /* after a longer time without samples, the last value held until sampling_us before the next sample */
+    int64_t stale_us;    /* after a longer time without samples, the value is unknown; INT64_MAX: never */
     /* time and quality of the sample that is the latest in time, which need not have arrived last: a source may state an old time */
     int64_t latest_us;
     uint32_t quality;
@@ -35,10 +36,18 @@ static double span_of(const struct plant *plant, const struct plant_tag *tag)
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
 }
 
-/* Returns the sampling interval of a tag whose source sends only changes; 0 for other tags. */
-static int64_t sampling_of(const struct plant *plant, const struct plant_tag *tag)
+static int64_t stale_of(const struct plant_tag *tag)
 {
-    return tag->validity.stale_s < PLANT_NEVER_STALE_S ? 0 : (int64_t)plant_tag_scan_ms(plant, tag) * 1000;
+    return tag->validity.stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->validity.stale_s * US_PER_S) : INT64_MAX;
+}
+
+/* Returns the longest time between two samples of a tag over which the recorded line may slope. `Stale s` may permit a far longer silence:
+   live pictures show the last value until then. */
+static int64_t silence_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    if (tag->validity.stale_s >= PLANT_NEVER_STALE_S || plant_tag_sends_changes(plant, tag))
+        return 2 * (int64_t)plant_tag_scan_ms(plant, tag) * 1000;
+    return (int64_t)(plant_tag_default_stale_s(plant, tag) * US_PER_S);
 }
 
 struct history_tag *history_tags(const struct plant *plant)
@@ -51,7 +60,7 @@ struct history_tag *history_tags(const struct plant *plant)
             .unit = plant_tag_unit(plant, (int)i),
             .step = tag->signal.type == DATA_BIT,
             .within = isnan(tag->deadband) ? plant->history.deadband_percent / 100 * span_of(plant, tag) : tag->deadband,
-            .stale_us = tag->validity.stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->validity.stale_s * US_PER_S) : INT64_MAX,
+            .stale_us = stale_of(tag),
         };
     }
     return tags;
@@ -68,7 +77,9 @@ struct recorder *recorder_create(const struct plant *plant, int64_t begin_us)
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
         recorder->lanes[i].latest_us = begin_us;
-        recorder->lanes[i].sampling_us = begin_us == INT64_MIN ? 0 : sampling_of(plant, &plant->tags[i]);
+        recorder->lanes[i].sampling_us = (int64_t)plant_tag_scan_ms(plant, &plant->tags[i]) * 1000;
+        recorder->lanes[i].silence_us = begin_us == INT64_MIN ? INT64_MAX : silence_of(plant, &plant->tags[i]);
+        recorder->lanes[i].stale_us = begin_us == INT64_MIN ? INT64_MAX : stale_of(&plant->tags[i]);
         recorder->lanes[i].params = (struct swinging_door_params){
             /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2 deadband +
                deviation, which is 2 within/4 + within/2 here */
@@ -114,17 +125,28 @@ static void put(struct recorder *recorder, int tag, const struct history_point *
     add_points(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
 }
 
+/* Records what is known about the time without samples before a sample. Without such a point, the recorded line would slope from the old
+   value to the new one over the whole silence. */
+static void put_silence(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
+{
+    const struct recorder_lane *lane = &recorder->lanes[tag];
+    struct history_point newest;
+    if (!recorder_newest(recorder, tag, &newest) || !history_point_usable(&newest))
+        return;
+    int64_t silent_us = sample->t_us - newest.t_us;
+    if (silent_us > lane->stale_us && sample->quality != QUALITY_BAD_COMMUNICATION_ERROR)
+        newest = (struct history_point){ newest.t_us + lane->stale_us, NAN, QUALITY_BAD_COMMUNICATION_ERROR };
+    else if (silent_us > lane->silence_us && history_point_joined(&newest, sample, lane->params.step))
+        newest.t_us = sample->t_us - lane->sampling_us;
+    else
+        return;
+    put(recorder, tag, &newest, kept);
+}
+
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
 {
     struct recorder_lane *lane = &recorder->lanes[tag];
-    struct history_point newest;
-    /* a source that sent nothing had no change, so the value held: without this point, the recorded line would lead from the old value to
-       the new one over the whole silence */
-    if (lane->sampling_us && recorder_newest(recorder, tag, &newest) && history_point_usable(&newest) &&
-        sample->t_us - newest.t_us > 2 * lane->sampling_us) {
-        newest.t_us = sample->t_us - lane->sampling_us;
-        put(recorder, tag, &newest, kept);
-    }
+    put_silence(recorder, tag, sample, kept);
     put(recorder, tag, sample, kept);
     if (sample->t_us >= lane->latest_us)
         recorder_set_quality(recorder, tag, sample->t_us, sample->quality);

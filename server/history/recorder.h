@@ -15,8 +15,9 @@ struct recorder;
    an earlier time does not tell the quality from begin_us on. INT64_MIN: the samples are imported, and no value is assumed to hold. */
 struct recorder *recorder_create(const struct plant *plant, int64_t begin_us);
 void recorder_destroy(struct recorder **recorder); /* Frees the recorder and sets *recorder to NULL; accepts a pointer to NULL. */
-/* Passes a sample to its tag's filter, and appends to `kept` the rows that must now be recorded. If the readings of the tag never become
-   stale, its source sends only changes: the filter then assumes that the last value held until one sampling interval before the sample. */
+/* Passes a sample to its tag's filter, and appends to `kept` the rows that must now be recorded. If the sample comes after the previous
+   one became stale, the time between has no value. After a shorter silence, the last value held until one sampling interval before the
+   sample (HISTORY.md, "Recorded data"). */
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept);
 /* *out receives a tag's newest sample. Returns false if the tag has none yet. */
 bool recorder_newest(const struct recorder *recorder, int tag, struct history_point *out);

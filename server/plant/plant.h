@@ -443,6 +443,11 @@ const char *plant_tag_unit(const struct plant *plant, int tag);
 /* Returns the interval in milliseconds at which a tag's source reads the tag: its own scan_ms, else the source's poll_ms; 1000 for a tag
    without a source. */
 int plant_tag_scan_ms(const struct plant *plant, const struct plant_tag *tag);
+/* Returns whether a tag's source sends values only when they change, and reports the loss of values by itself: OPC UA servers, and
+   Sparkplug nodes, which have death certificates. */
+bool plant_tag_sends_changes(const struct plant *plant, const struct plant_tag *tag);
+/* Returns stale_s of a tag that is not derived and whose row states none. */
+double plant_tag_default_stale_s(const struct plant *plant, const struct plant_tag *tag);
 /* Returns the Modbus unit (server address) of a tag that has a source: its own, else that of the source. */
 int plant_tag_modbus_unit(const struct plant *plant, const struct plant_tag *tag);
 /* Returns whether readings of a tag are simulated: its source is simulated or, for a derived tag, the source of a tag in its expression. */

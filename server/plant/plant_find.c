@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds assets, groups and tags of a plant by name, and what a tag inherits from its source. */
+#include <math.h>
 #include <string.h>
 
 #include "base/math/search.h"
@@ -52,6 +53,19 @@ int plant_tag_scan_ms(const struct plant *plant, const struct plant_tag *tag)
 {
     int source_ms = tag->source >= 0 ? plant->sources[tag->source].poll_ms : 1000;
     return tag->signal.scan_ms > 0 ? tag->signal.scan_ms : source_ms;
+}
+
+bool plant_tag_sends_changes(const struct plant *plant, const struct plant_tag *tag)
+{
+    const struct plant_source *source = tag->source >= 0 ? &plant->sources[tag->source] : NULL;
+    if (!source || !source->kind)
+        return false;
+    return !strcmp(source->kind, "opcua") || (!strcmp(source->kind, "mqtt") && source->mqtt.payload == MQTT_SPARKPLUG);
+}
+
+double plant_tag_default_stale_s(const struct plant *plant, const struct plant_tag *tag)
+{
+    return plant_tag_sends_changes(plant, tag) ? PLANT_NEVER_STALE_S : fmax(5, 3 * plant_tag_scan_ms(plant, tag) / 1000.0);
 }
 
 int plant_tag_modbus_unit(const struct plant *plant, const struct plant_tag *tag)

@@ -173,6 +173,70 @@ CASE(a_value_that_is_not_sent_again_holds)
     }
 }
 
+/* Records samples of TT-1 by a plant's rules for its source and for stale readings, and reads the tag at a time after the first sample. */
+static struct reading recorded_at(struct history_setup *s, const struct history_point *sent, size_t count, int second)
+{
+    struct snapshot *snapshot = test_snapshot(TAGS);
+    struct recorder_rows rows = { 0 };
+    struct recorder *recorder = recorder_create(s->plant, NOVEMBER);
+    s->folder = temp_folder();
+    history_reader_destroy(&s->reader);
+    s->reader = history_reader_create(s->log, s->folder);
+    mem_free(s->tags);
+    s->tags = history_tags(s->plant);
+    for (size_t i = 0; i < count; i++)
+        recorder_put(recorder, 0, &sent[i], &rows);
+    recorder_end(recorder, &rows);
+    recorder_destroy(&recorder);
+    struct month_file *file = open_file(s, NOVEMBER);
+    assert_int_equal(month_file_write(file, rows.at, rows.count, NULL, 0), 0);
+    month_file_close(&file);
+    mem_free(rows.at);
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + second * S, snapshot), 0);
+    return snapshot->readings[0];
+}
+
+static void send_by(struct history_setup *s, const char *kind, enum mqtt_payload payload, int scan_ms, double stale_s)
+{
+    mem_free(s->plant->sources[0].kind);
+    s->plant->sources[0].kind = mem_strdup(kind);
+    s->plant->sources[0].mqtt.payload = payload;
+    s->plant->tags[0].signal.scan_ms = scan_ms;
+    s->plant->tags[0].validity.stale_s = stale_s;
+}
+
+/* `Stale s` of a tag permits ten minutes without a sample: pictures showed the old value during this time. */
+CASE(a_line_does_not_slope_over_a_long_silence)
+{
+    static const struct {
+        const char *kind;
+        enum mqtt_payload payload;
+    } sources[] = { { "opcua", 0 }, { "mqtt", MQTT_SPARKPLUG }, { "mqtt", MQTT_JSON }, { "mqtt", MQTT_NUMBER }, { "modbus", 0 } };
+    const struct history_point sent[] = { { NOVEMBER, 10, 0 }, { NOVEMBER + 600 * S, 90, 0 } };
+    for (size_t i = 0; i < sizeof(sources) / sizeof(sources[0]); i++) {
+        send_by(s, sources[i].kind, sources[i].payload, 1000, 3600);
+        struct reading reading = recorded_at(s, sent, 2, 300);
+        assert_int_equal(reading.quality, QUALITY_GOOD);
+        assert_float_equal(reading.value, 10, 1e-9);
+        reading = recorded_at(s, sent, 2, 598);
+        assert_float_equal(reading.value, 10, 1e-9);
+    }
+    /* a publisher that sends every five minutes, as `Scan Rate` states: ten minutes are an interval in which one message is missing */
+    send_by(s, "mqtt", MQTT_JSON, 300000, 3600);
+    assert_float_equal(recorded_at(s, sent, 2, 300).value, 50, 1e-9);
+}
+
+/* A sample that arrives before the historian notices that the one before was stale. */
+CASE(a_gap_is_unknown_however_short)
+{
+    const struct history_point sent[] = { { NOVEMBER, 10, 0 }, { NOVEMBER + 6 * S, 20, 0 }, { NOVEMBER + 9 * S, 30, 0 } };
+    send_by(s, "mqtt", MQTT_JSON, 1000, 4);
+    assert_float_equal(recorded_at(s, sent, 3, 3).value, 10, 1e-9);
+    assert_int_equal(recorded_at(s, sent, 3, 5).quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_float_equal(recorded_at(s, sent, 3, 6).value, 20, 1e-9);
+    assert_float_equal(recorded_at(s, sent, 3, 7).value, 20 + 10 / 3.0, 1e-9);
+}
+
 /* A spike of one second and a gap are visible in queries of every length. */
 CASE(long_times_keep_spikes_and_gaps)
 {

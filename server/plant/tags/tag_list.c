@@ -168,16 +168,6 @@ static void read_limits(struct tag_list *list)
                    list->tag->scale.change.converts ? list->tag->unit : "");
 }
 
-/* Returns whether the source reports the loss of values by itself, so that a tag does not become stale while its source sends nothing. This
-   holds for Sparkplug nodes, which have death certificates, and for OPC UA servers. */
-static bool is_announced(const struct tag_list *list)
-{
-    const struct plant_source *source = list->tag->source >= 0 ? &list->plant->sources[list->tag->source] : NULL;
-    if (!source || !source->kind)
-        return false;
-    return !strcmp(source->kind, "opcua") || (!strcmp(source->kind, "mqtt") && source->mqtt.payload == MQTT_SPARKPLUG);
-}
-
 static bool is_modbus(const struct plant *plant, const struct plant_tag *tag)
 {
     const char *kind = tag->source >= 0 && !tag->expression ? plant->sources[tag->source].kind : NULL;
@@ -192,7 +182,7 @@ static void read_timing(struct tag_list *list)
         cell_number(&list->columns, COL_SCAN_RATE, 10, 86400000, &scan_ms);
     tag->signal.scan_ms = (int)ceil(scan_ms);
     const double read_s = plant_tag_scan_ms(list->plant, tag) / 1000.0;
-    tag->validity.stale_s = is_announced(list) ? PLANT_NEVER_STALE_S : fmax(5, 3 * read_s);
+    tag->validity.stale_s = plant_tag_default_stale_s(list->plant, tag);
     tag->validity.states_stale = cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->validity.stale_s);
     if (tag->validity.states_stale && is_modbus(list->plant, tag) && tag->validity.stale_s <= read_s)
         cell_warning(&list->columns, COL_STALE,
