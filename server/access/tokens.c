@@ -315,11 +315,6 @@ bool tokens_look(struct tokens *tokens)
     return true;
 }
 
-size_t tokens_count(const struct tokens *tokens)
-{
-    return tokens->count;
-}
-
 bool tokens_has_name(const struct tokens *tokens, const char *name)
 {
     for (size_t i = 0; i < tokens->count; i++)

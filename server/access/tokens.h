@@ -38,8 +38,6 @@ void tokens_set_pairings(struct tokens *tokens, tokens_find_device *find, const 
 void tokens_destroy(struct tokens **tokens); /* frees the tokens and sets *tokens to NULL; accepts a pointer to NULL */
 /* Reads the file of tokens again if it has changed and is no longer being written. Returns true if it was read. */
 bool tokens_look(struct tokens *tokens);
-/* Returns the number of tokens in the file. */
-size_t tokens_count(const struct tokens *tokens);
 /* Returns true if the file has a token with that holder's name. */
 bool tokens_has_name(const struct tokens *tokens, const char *name);
 

@@ -674,11 +674,6 @@ enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alar
 
 /* --- queries -------------------------------------------------------------------------------------------------------------------- */
 
-size_t alarms_count(const struct alarms *alarms)
-{
-    return alarms->count;
-}
-
 const struct alarm *alarms_at(const struct alarms *alarms, int index)
 {
     return &alarms->list[index];

@@ -83,7 +83,6 @@ struct alarm_act {
 enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alarm_act *act, struct instant now);
 
 /* --- queries --- */
-size_t alarms_count(const struct alarms *alarms);
 const struct alarm *alarms_at(const struct alarms *alarms, int index);
 int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* returns the index of a tag's alarm of that kind, or -1 */
 /* Returns the index of an alarm, or -1. name: name of the tag; for a LINK alarm, of the device. */

@@ -258,11 +258,6 @@ const struct scalars *field_scalars_of(struct field *field, int asset, const str
     return scalars;
 }
 
-const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot)
-{
-    return field_scalars_of(field, asset, params, snapshot, field->scene->assets[asset].file->view.header->vertex_count);
-}
-
 bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
                    double work)
 {

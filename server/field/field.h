@@ -81,14 +81,11 @@ size_t field_bytes(const struct field *field);
 /* Frees all cached fields and weights. */
 void field_clear_cache(struct field *field);
 
-/* Brings the scalars of one asset up to date with the snapshot and returns them. They are owned by the field, shared by all callers with
-   equal parameters, and valid until the next call with other parameters. scalars->version grows only when a value or flag really changed.
+/* Brings the scalars of the first `count` vertices of one asset, which are those of one level of detail, up to date with the snapshot, and
+   returns them: the first scalars->ready vertices are valid. The scalars are owned by the field, shared by all callers with equal
+   parameters, and valid until the next call with other parameters. scalars->version grows only when a value or flag really changed.
    For SHOW_DISTANCE, vertices to which no path leads have no data (their stored value is the largest distance). Returns NULL if the asset
    has no sensor of the group (for a distance: not that sensor), or when out of memory. */
-const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
-
-/* Like field_scalars(), but updates only the first `count` vertices, which are those of one level of detail: the first scalars->ready
-   vertices are valid. */
 const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                        size_t count);
 /* Updates the fields of several small assets in parallel, each on one core. Skips large fields, fields of trials and fields for which there
@@ -137,11 +134,11 @@ struct field_sensor {
     bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good; usable: it contributes;
                                            uncertain: its quality is Uncertain */
 };
-/* Lists the sensors of an asset's field with their inputs (struct field_sensor), as the last field_scalars() with these parameters used
+/* Lists the sensors of an asset's field with their inputs (struct field_sensor), as the last field_scalars_of() with these parameters used
    them. *radius_m receives the radius R of Algorithm 1 (Kim & Suh). Returns the number of inputs; 0: no sensor contributes. The caller
    frees *out (mem_free). */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
-/* Fills *out with the sensors and readings from which renderers evaluate the field at each pixel, as the last field_scalars() with these
+/* Fills *out with the sensors and readings from which renderers evaluate the field at each pixel, as the last field_scalars_of() with these
    parameters took them. out->count is 0 if the field must be interpolated between vertices, or is the same everywhere. The caller frees
    the sensors with pixel_field_finish(). */
 void field_pixels(struct field *field, int asset, const struct field_params *params, struct pixel_field *out);

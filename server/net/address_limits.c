@@ -134,8 +134,3 @@ bool address_limits_count_message(const struct address_limits *limits, struct ad
     }
     return below(limits, usage, QUOTA_ADDRESS_MESSAGES, usage->messages++);
 }
-
-int address_limits_count(const struct address_limits *limits)
-{
-    return (int)limits->count;
-}

@@ -38,7 +38,5 @@ bool address_limits_may_hold(const struct address_limits *limits, const struct a
 bool address_limits_may_draw(const struct address_limits *limits, const struct address_usage *usage);
 /* Counts a stream message. Returns false if the address has sent more than its quota within this second. */
 bool address_limits_count_message(const struct address_limits *limits, struct address_usage *usage, int64_t now_ns);
-/* Returns the number of client addresses that are known now. */
-int address_limits_count(const struct address_limits *limits);
 
 #endif

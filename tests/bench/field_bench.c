@@ -9,6 +9,7 @@
 #include "field/field.h"
 #include "tests/support/measure.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/whole_field.h"
 #include "value/quality.h"
 
 #define VERTICES 66000

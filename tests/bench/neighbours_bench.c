@@ -19,6 +19,7 @@
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
+#include "tests/support/whole_field.h"
 #include "value/quality.h"
 
 enum { ACROSS = 192, ROUNDS = 100, WARM_UP = 5 };

@@ -7,6 +7,7 @@
 #include "render/shaded_colormap.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
+#include "tests/support/whole_field.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 

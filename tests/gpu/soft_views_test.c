@@ -5,6 +5,7 @@
 #include "render/soft/kernels.h"
 #include "render/renderer_impl.h"
 #include "tests/support/soft_case.h"
+#include "tests/support/whole_field.h"
 #include "value/quality.h"
 
 static struct rig rig;

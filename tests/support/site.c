@@ -13,6 +13,7 @@
 #include "scene/scene_create.h"
 #include "tests/support/owned.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/whole_field.h"
 
 bool site_is_there(const char *model)
 {

@@ -7,6 +7,7 @@
 #include "field/field.h"
 #include "protocol/asset_distance.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/whole_field.h"
 #include "value/quality.h"
 
 /* --- slow truth ----------------------------------------------------------------------------------------------------------- */

@@ -13,6 +13,7 @@
 #include "tests/support/surface_case.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
+#include "tests/support/whole_field.h"
 #include "value/quality.h"
 
 #define STRIP_M 10.0

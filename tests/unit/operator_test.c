@@ -5,6 +5,7 @@
 #include "field/field.h"
 #include "field/limits.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/whole_field.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 

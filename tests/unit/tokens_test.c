@@ -116,7 +116,6 @@ CASE(holders_are_found_by_their_tokens)
     write_two(f, 0600);
     struct tokens *tokens = tokens_create(f->log, f->path);
     assert_non_null(tokens);
-    assert_int_equal(tokens_count(tokens), 2);
     assert_true(tokens_find(tokens, "pc_wall", NOW_NS, &holder));
     assert_int_equal(holder.role, ROLE_VIEWER);
     assert_string_equal(holder.name, "wall-1");
@@ -182,8 +181,8 @@ CASE(wrong_lines_let_in_nobody_and_leave_the_others)
     write_file(f, text.at, 0600);
     text_finish(&text);
     struct tokens *tokens = tokens_create(f->log, f->path);
-    assert_int_equal(tokens_count(tokens), 1);
     assert_true(tokens_find(tokens, "pc_good", NOW_NS, &holder));
+    assert_false(tokens_has_name(tokens, "bob") || tokens_has_name(tokens, "b/b"));
     tokens_destroy(&tokens);
 }
 

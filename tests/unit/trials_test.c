@@ -5,6 +5,7 @@
 #include "field/field.h"
 #include "protocol/asset_distance.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/whole_field.h"
 
 enum { VERTICES = 900, SENSORS = 6, MOVED = 2, TO = 400 };
 

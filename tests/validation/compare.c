@@ -18,6 +18,7 @@
 #include "plant/influence.h"
 #include "scene/scene_create.h"
 #include "surface/mesh/bvh.h"
+#include "tests/support/whole_field.h"
 
 enum { WORDS = 64, LINE_BYTES = 4096 };
 
