@@ -2,9 +2,12 @@
 // A leader that is ended in good order evaluates its last samples, sends them to its standby and gives it the lease: each change of an
 // alarm is written once, the standby leads at once, and never do two poll.
 import assert from 'node:assert/strict';
+import { copyFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PostgresServer } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
+import { runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 }, STOPS = 2, ROWS = 20, POLL_MS = 100;
@@ -95,4 +98,50 @@ test('each change of an alarm is written once, whoever leads, and the standby le
     await until('the same changes at the standby', async () => (await changes(two.other(core))).length >= rows.length);
     assert.deepEqual(await changes(two.other(core)), rows);
     assert.deepEqual(await two.network.overlaps(), []);
+});
+
+// Restarts both cores, each with its own file of tokens and its own token of the role standby.
+async function separateTokens() {
+    for (const core of Object.values(two.cores)) {
+        const own = (name) => join(two.plant.folder, core.name, name);
+        Object.assign(core, { tokenFile: own('tokens'), standbyFile: own('token') });
+        copyFileSync(two.nodes.tokenFile, core.tokenFile);
+        copyFileSync(two.nodes.standbyFile, core.standbyFile);
+        await core.program.stop();
+    }
+    await Promise.all([two.start('one'), two.start('two')]);
+}
+
+// Makes a core's new token on the other core. Returns a function that revokes the old one there.
+async function handNewToken(core) {
+    const other = two.other(core), change = async (...args) => {
+        const had = other.program.said.length, { code, out, err } = runProgram('plantcast', ['token', ...args]);
+        assert.equal(code, 0, err);
+        await until('the file is read', () => other.program.said.indexOf(`tokens ${other.tokenFile}: `, had) >= 0);
+        return out;
+    };
+    writeFileSync(core.standbyFile, await change('add', other.tokenFile, '--role', 'standby', '--name', `${core.name}-new`));
+    return () => change('revoke', other.tokenFile, 's');
+}
+
+test('the cores get new tokens as KEYS.md says, without a refused connection', options, async (t) => {
+    await separateTokens();
+    const leader = await two.leader(), standby = two.other(leader);
+    await two.followed(leader);
+    const revokeStandbys = await handNewToken(standby);
+    await standby.program.stop();
+    await two.restart(standby);
+    await two.followed(leader);
+    await revokeStandbys();
+    const revokeLeaders = await handNewToken(leader);
+    await two.takeOver(t, leader, kill(leader, 'SIGTERM'));
+    await two.restart(leader);
+    await two.followed(standby);
+    await revokeLeaders();
+    await two.goesOn(t, standby, 4); // a daemon ends connections with a revoked token within 3 s
+    await two.followed(standby);
+    for (const { node, program } of [leader, standby]) {
+        assert.equal(await node.metric('plantcast_core_refused_total'), 0);
+        assert.doesNotMatch(program.said, /refuse|no longer has the role/);
+    }
 });

@@ -77,12 +77,14 @@ ${more}`);
             toDatabase: await this.network.link(this.server.port, { host, port: this.databasePort }) };
     }
 
-    // Starts a core, which follows or leads. as: its node name. Its member `before`: command prefix that starts it.
+    // Starts a core, which follows or leads. as: its node name. Members of the core: `before`: command prefix that starts it;
+    // `tokenFile`: the tokens that it accepts; `standbyFile`: its token for the other core.
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
         const { plant, standbyFile, tokenFile } = this.nodes;
-        core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, ...this.access, '--tokens', tokenFile,
-            '--core', `ws://127.0.0.1:${core.toOther.port}`, '--core-token-file', standbyFile,
+        core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, ...this.access,
+            '--tokens', core.tokenFile ?? tokenFile, '--core-token-file', core.standbyFile ?? standbyFile,
+            '--core', `ws://127.0.0.1:${core.toOther.port}`,
             '--history', join(plant.folder, core.name, 'history')], core.file,
         ['unshare', '--mount', 'sh', '-c', `mount --bind ${core.hosts} /etc/hosts && exec "$@"`, 'sh',
             ...(core.before ?? [])]);
