@@ -3,21 +3,34 @@
 #include "audit/audit_syslog.h"
 
 #include <curl/curl.h>
+#include <linux/sockios.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <pthread.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text/timestamp.h"
 
-enum { MAX_QUEUED = 10000, TIMEOUT_S = 10, AUDIT_FACILITY = 13, NOTICE = 5, WARNING = 4 };
+enum { MAX_QUEUED = 10000, TIMEOUT_S = 10, UNANSWERED_MS = 30000, AUDIT_FACILITY = 13, NOTICE = 5, WARNING = 4 };
 static const int64_t RETRY_NS = 2 * NS_PER_S, LAST_NS = 3 * NS_PER_S;
+/* A line counts as delivered if the connection is still open this long after the line was sent. Syslog has no acknowledgements, and a
+   server may refuse our certificate after the handshake: with TLS 1.3, the handshake succeeds on our side before the server checks it. */
+static const int64_t PROOF_NS = 5 * NS_PER_S;
+static const int64_t CHECK_NS = NS_PER_S / 4; /* interval at which the connection is checked while sent lines are not yet delivered */
 
 struct framed {
     struct text text;
+    int64_t sent_ns; /* monotonic time at which the line was sent */
     struct framed *next;
+};
+
+struct lines {
+    struct framed *first, **last;
 };
 
 struct audit_syslog {
@@ -25,15 +38,57 @@ struct audit_syslog {
     char *url, host[256];
     pthread_t thread;
     counter *good, *lost;
-    CURL *connection; /* libcurl's handle of the connection, used only by the thread; NULL: not connected */
-    bool failing;     /* used only by the thread: true while the oldest queued line could not be sent */
+    /* --- below: used only by the thread */
+    CURL *connection;          /* libcurl's handle of the connection; NULL: not connected */
+    char why[CURL_ERROR_SIZE]; /* libcurl's last error of the connection */
+    struct lines sent;         /* lines sent over the connection and not yet delivered; queued again if the connection breaks */
+    bool proven;               /* true: a line was delivered over this connection */
+    int refusals;              /* number of connections in a row that the server closed before a line was delivered */
+    bool failing;              /* true: the server cannot be reached, or accepts no lines */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
-    struct framed *first, **last;
-    size_t waiting;
-    int64_t stop_ns; /* monotonic time at which the thread must end; 0: it need not end */
+    struct lines queue; /* lines to be sent; only the thread removes lines */
+    size_t waiting;     /* number of lines in `queue` and `sent` */
+    int64_t stop_ns;    /* monotonic time at which the thread must end; 0: it need not end */
 };
+
+/* --- lists of lines ------------------------------------------------------------------------------------------------------- */
+
+static void lines_add(struct lines *lines, struct framed *line)
+{
+    line->next = NULL;
+    *lines->last = line;
+    lines->last = &line->next;
+}
+
+static struct framed *lines_take(struct lines *lines)
+{
+    struct framed *first = lines->first;
+    lines->first = first->next;
+    if (!lines->first)
+        lines->last = &lines->first;
+    return first;
+}
+
+/* Moves all lines of `from` in front of those of `lines`. */
+static void lines_put_back(struct lines *lines, struct lines *from)
+{
+    if (!from->first)
+        return;
+    *from->last = lines->first;
+    if (!lines->first)
+        lines->last = from->last;
+    lines->first = from->first;
+    *from = (struct lines){ .last = &from->first };
+}
+
+static void lines_drop_first(struct lines *lines)
+{
+    struct framed *first = lines_take(lines);
+    text_finish(&first->text);
+    mem_free(first);
+}
 
 void audit_syslog_frame(struct text *out, const struct syslog_message *message)
 {
@@ -48,30 +103,55 @@ void audit_syslog_frame(struct text *out, const struct syslog_message *message)
 
 /* --- the connection ------------------------------------------------------------------------------------------------------- */
 
+/* Closes the connection. Lines that were sent and not delivered are queued again. */
 static void disconnect(struct audit_syslog *syslog)
 {
     curl_easy_cleanup(syslog->connection);
     syslog->connection = NULL;
+    syslog->proven = false;
+    pthread_mutex_lock(&syslog->lock);
+    lines_put_back(&syslog->queue, &syslog->sent);
+    pthread_mutex_unlock(&syslog->lock);
 }
 
-static void say(struct audit_syslog *syslog, const char *why)
+/* Logs the first failure after a success, for example "cannot be reached" with libcurl's error as `why`. */
+static void report_failure(struct audit_syslog *syslog, const char *what, const char *why)
 {
-    if (why && !syslog->failing)
+    if (!syslog->failing)
         log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT,
-                  "audit: syslog server %s cannot be reached: %s; audit lines are queued and sent later", syslog->params.syslog, why);
-    else if (!why && syslog->failing)
+                  "audit: syslog server %s %s: %s; audit lines are queued and sent later", syslog->params.syslog, what, why);
+    syslog->failing = true;
+    counter_set(syslog->good, 0);
+}
+
+static void report_success(struct audit_syslog *syslog)
+{
+    if (syslog->failing)
         log_info(syslog->params.log, "audit: syslog server %s accepts audit lines again", syslog->params.syslog);
-    syslog->failing = why != NULL;
-    counter_set(syslog->good, !syslog->failing);
+    syslog->failing = false;
+    counter_set(syslog->good, 1);
+}
+
+static const char *error_of(const struct audit_syslog *syslog, CURLcode code)
+{
+    return syslog->why[0] ? syslog->why : curl_easy_strerror(code);
+}
+
+static curl_socket_t socket_of(const struct audit_syslog *syslog)
+{
+    curl_socket_t fd = -1;
+    curl_easy_getinfo(syslog->connection, CURLINFO_ACTIVESOCKET, &fd);
+    return fd;
 }
 
 static bool connect_now(struct audit_syslog *syslog)
 {
     const struct audit_params *params = &syslog->params;
-    char why[CURL_ERROR_SIZE] = "";
+    const unsigned unanswered_ms = UNANSWERED_MS;
     CURL *handle = syslog->connection = curl_easy_init();
     if (!handle)
         return false;
+    syslog->why[0] = 0;
     curl_easy_setopt(handle, CURLOPT_URL, syslog->url);
     curl_easy_setopt(handle, CURLOPT_CONNECT_ONLY, 1L);
     curl_easy_setopt(handle, CURLOPT_SSL_ENABLE_ALPN, 0L);
@@ -80,7 +160,7 @@ static bool connect_now(struct audit_syslog *syslog)
     curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L);
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)TIMEOUT_S);
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, why);
+    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, syslog->why);
     if (params->syslog_ca)
         curl_easy_setopt(handle, CURLOPT_CAINFO, params->syslog_ca);
     if (params->syslog_cert) {
@@ -88,68 +168,107 @@ static bool connect_now(struct audit_syslog *syslog)
         curl_easy_setopt(handle, CURLOPT_SSLKEY, params->syslog_key);
     }
     CURLcode code = curl_easy_perform(handle);
-    if (code == CURLE_OK)
+    if (code == CURLE_OK) {
+        /* breaks the connection if the server's machine does not acknowledge our bytes; the system's default is many minutes */
+        setsockopt(socket_of(syslog), IPPROTO_TCP, TCP_USER_TIMEOUT, &unanswered_ms, sizeof(unanswered_ms));
         return true;
-    say(syslog, why[0] ? why : curl_easy_strerror(code));
+    }
+    syslog->refusals = 0;
+    report_failure(syslog, "cannot be reached", error_of(syslog, code));
     disconnect(syslog);
     return false;
 }
 
-/* Returns true if the connection is still open. Called before each line, because a line sent to a server that has closed the connection
-   would be lost unnoticed. */
-static bool is_alive(CURL *connection)
+/* Returns NULL if the connection is open, else why it ended. */
+static const char *why_closed(struct audit_syslog *syslog)
 {
     char byte;
     size_t n = 0;
-    CURLcode code = curl_easy_recv(connection, &byte, 1, &n);
-    return code == CURLE_AGAIN || (code == CURLE_OK && n > 0);
+    CURLcode code = curl_easy_recv(syslog->connection, &byte, 1, &n);
+    if (code == CURLE_OK && n == 0)
+        return "the server closed the connection";
+    return code == CURLE_OK || code == CURLE_AGAIN ? NULL : error_of(syslog, code);
+}
+
+/* Removes the lines that count as delivered: older than PROOF_NS, while all bytes are acknowledged by the server's machine. */
+static void drop_delivered(struct audit_syslog *syslog, int64_t now_ns)
+{
+    int unacknowledged = 0;
+    if (ioctl(socket_of(syslog), SIOCOUTQ, &unacknowledged) != 0 || unacknowledged > 0)
+        return;
+    while (syslog->sent.first && syslog->sent.first->sent_ns + PROOF_NS <= now_ns) {
+        lines_drop_first(&syslog->sent);
+        pthread_mutex_lock(&syslog->lock);
+        syslog->waiting--;
+        pthread_mutex_unlock(&syslog->lock);
+        syslog->proven = true;
+        syslog->refusals = 0;
+        report_success(syslog);
+    }
+}
+
+/* Closes a connection that has ended, and removes delivered lines. Returns false if the server closed this connection and the one before,
+   each before any line was delivered: the caller must then wait before it connects again. A server that ends closes only one. */
+static bool check_connection(struct audit_syslog *syslog)
+{
+    const char *why = syslog->connection ? why_closed(syslog) : NULL;
+    bool refused = why && syslog->sent.first && !syslog->proven && ++syslog->refusals > 1;
+    if (refused)
+        report_failure(syslog, "does not accept audit lines; check --audit-cert and the certificates that the server permits", why);
+    if (why)
+        disconnect(syslog);
+    else if (syslog->connection)
+        drop_delivered(syslog, clock_mono_ns());
+    return !refused;
 }
 
 static bool send_all(struct audit_syslog *syslog, const struct text *text)
 {
-    curl_socket_t fd = -1;
     size_t at = 0;
-    curl_easy_getinfo(syslog->connection, CURLINFO_ACTIVESOCKET, &fd);
     while (at < text->length) {
         size_t n = 0;
         CURLcode code = curl_easy_send(syslog->connection, text->at + at, text->length - at, &n);
         at += n;
-        struct pollfd ready = { .fd = fd, .events = POLLOUT };
+        struct pollfd ready = { .fd = socket_of(syslog), .events = POLLOUT };
         if (code == CURLE_AGAIN && poll(&ready, 1, TIMEOUT_S * 1000) == 1)
             continue;
         if (code != CURLE_OK) {
-            say(syslog, curl_easy_strerror(code));
+            report_failure(syslog, "cannot be written to", error_of(syslog, code));
             return false;
         }
     }
     return true;
 }
 
-static bool deliver(struct audit_syslog *syslog, const struct text *text)
+/* Sends the first line of the queue, if there is one. */
+static bool send_next(struct audit_syslog *syslog)
 {
-    if (syslog->connection && !is_alive(syslog->connection))
-        disconnect(syslog);
+    pthread_mutex_lock(&syslog->lock);
+    struct framed *first = syslog->queue.first;
+    pthread_mutex_unlock(&syslog->lock);
+    if (!first)
+        return true;
     if (!syslog->connection && !connect_now(syslog))
         return false;
-    bool sent = send_all(syslog, text);
-    if (sent)
-        say(syslog, NULL);
-    else
+    /* the line stays valid without the lock, because only this thread removes lines from the queue */
+    if (!send_all(syslog, &first->text)) {
         disconnect(syslog);
-    return sent;
+        return false;
+    }
+    pthread_mutex_lock(&syslog->lock);
+    lines_add(&syslog->sent, lines_take(&syslog->queue));
+    pthread_mutex_unlock(&syslog->lock);
+    first->sent_ns = clock_mono_ns();
+    return true;
 }
 
 /* --- the thread ----------------------------------------------------------------------------------------------------------- */
 
-static void free_first(struct audit_syslog *syslog)
+/* Returns true if the thread must end: all lines are sent, over a connection that has delivered lines, or the time is up. */
+static bool must_end(const struct audit_syslog *syslog)
 {
-    struct framed *first = syslog->first;
-    syslog->first = first->next;
-    if (!syslog->first)
-        syslog->last = &syslog->first;
-    syslog->waiting--;
-    text_finish(&first->text);
-    mem_free(first);
+    bool open = syslog->queue.first || (syslog->sent.first && !syslog->proven);
+    return syslog->stop_ns && (!open || clock_mono_ns() >= syslog->stop_ns);
 }
 
 static void *audit_syslog_main(void *arg)
@@ -157,23 +276,23 @@ static void *audit_syslog_main(void *arg)
     struct audit_syslog *syslog = arg;
     pthread_mutex_lock(&syslog->lock);
     for (;;) {
-        while (!syslog->first && !syslog->stop_ns)
+        while (!syslog->queue.first && !syslog->sent.first && !syslog->stop_ns)
             pthread_cond_wait(&syslog->wake, &syslog->lock);
-        if (syslog->stop_ns && (!syslog->first || clock_mono_ns() >= syslog->stop_ns))
+        if (must_end(syslog))
             break;
-        /* the line stays valid without the lock, because only this thread removes lines from the queue */
-        struct framed *first = syslog->first;
         pthread_mutex_unlock(&syslog->lock);
-        bool sent = deliver(syslog, &first->text);
+        bool good = check_connection(syslog) && send_next(syslog);
         pthread_mutex_lock(&syslog->lock);
-        if (sent)
-            free_first(syslog);
-        else if (!syslog->stop_ns)
-            clock_cond_wait(&syslog->wake, &syslog->lock, clock_mono_ns() + RETRY_NS);
-        else
+        if (!good && syslog->stop_ns)
             break;
+        if (!good)
+            clock_cond_wait(&syslog->wake, &syslog->lock, clock_mono_ns() + RETRY_NS);
+        else if (!syslog->queue.first && !must_end(syslog))
+            clock_cond_wait(&syslog->wake, &syslog->lock, clock_mono_ns() + CHECK_NS);
     }
     pthread_mutex_unlock(&syslog->lock);
+    while (syslog->proven && syslog->sent.first)
+        lines_drop_first(&syslog->sent);
     disconnect(syslog);
     return NULL;
 }
@@ -187,10 +306,11 @@ void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good
         struct framed *framed = mem_new(sizeof(*framed));
         const struct syslog_message message = { syslog->host, (int)getpid(), event, good, utc_us, line, count };
         audit_syslog_frame(&framed->text, &message);
-        *syslog->last = framed;
-        syslog->last = &framed->next;
-        if (syslog->waiting++ == 0)
+        /* while older lines wait, the thread sends without a signal, or waits before it connects again */
+        if (!syslog->queue.first)
             pthread_cond_signal(&syslog->wake);
+        lines_add(&syslog->queue, framed);
+        syslog->waiting++;
     }
     pthread_mutex_unlock(&syslog->lock);
 }
@@ -199,7 +319,9 @@ struct audit_syslog *audit_syslog_start(const struct audit_params *params)
 {
     struct audit_syslog *syslog = mem_new(sizeof(*syslog));
     const char *end = strrchr(params->syslog, ']'), *colon = strchr(end ? end : params->syslog, ':');
-    *syslog = (struct audit_syslog){ .params = *params, .last = &syslog->first };
+    *syslog = (struct audit_syslog){ .params = *params };
+    syslog->sent.last = &syslog->sent.first;
+    syslog->queue.last = &syslog->queue.first;
     syslog->url = mem_printf("https://%s%s", params->syslog, colon ? "" : ":6514");
     if (gethostname(syslog->host, sizeof(syslog->host) - 1) != 0 || !syslog->host[0] || strpbrk(syslog->host, " \t"))
         strcpy(syslog->host, "-");
@@ -227,8 +349,13 @@ void audit_syslog_stop(struct audit_syslog **pointer)
     pthread_cond_signal(&syslog->wake);
     pthread_mutex_unlock(&syslog->lock);
     pthread_join(syslog->thread, NULL);
-    while (syslog->first)
-        free_first(syslog);
+    size_t left = 0;
+    for (; syslog->queue.first; left++)
+        lines_drop_first(&syslog->queue);
+    if (left)
+        log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT,
+                  "audit: the last %zu audit lines were not delivered to syslog server %s; they are only in %s", left,
+                  syslog->params.syslog, syslog->params.path);
     pthread_cond_destroy(&syslog->wake);
     pthread_mutex_destroy(&syslog->lock);
     mem_free(syslog->url);

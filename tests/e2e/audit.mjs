@@ -28,12 +28,15 @@ async function found(what, where) {
     return await until(`${what} in the trail`, () => lines().find(where), 90, () => readFileSync(trail, 'utf8'));
 }
 
-// A server that parses RFC 5425 (messages preceded by their length) and requires a certificate of the client.
+// A server that parses RFC 5425 (messages preceded by their length). requestCert true: it requires a certificate of the client.
+// closes true: it closes each connection after the handshake, as a server does that refuses the name in the certificate.
 class SyslogServer {
-    constructor(key, cert) {
+    constructor(key, cert, { requestCert = true, closes = false } = {}) {
         this.messages = [];
         this.sockets = new Set();
-        this.server = createServer({ key, cert, ca: cert, requestCert: true }, (socket) => {
+        this.server = createServer({ key, cert, ca: cert, requestCert }, (socket) => {
+            if (closes)
+                return void socket.destroy();
             let bytes = Buffer.alloc(0);
             this.sockets.add(socket);
             socket.on('error', () => {});
@@ -370,3 +373,26 @@ test('syslog by TLS: each line as RFC 5424, after an outage too, and only to who
     assert.equal(wrong.code, 1);
     assert.match(wrong.err, /needs --audit/);
 });
+
+// With TLS 1.3, the client's handshake succeeds before the server checks the client's certificate.
+for (const [how, options, reason] of [['by an alert', {}, 'alert certificate required'],
+    ['by closing', { requestCert: false, closes: true }, '(closed|reset)']])
+    test(`a syslog server that refuses our certificate after the handshake, ${how}, loses no line`, { skip }, async () => {
+        const key = readFileSync(path('log.key')), cert = readFileSync(path('log.pem')), port = await freePort();
+        const metric = (value) => until(`plantcast_audit_syslog_good ${value}`, async () =>
+            new RegExp(`^plantcast_audit_syslog_good ${value}$`, 'm').test((await ask('/metrics', tokens.viewer)).body.toString()));
+        const refusing = new SyslogServer(key, cert, options), accepting = new SyslogServer(key, cert, { requestCert: false });
+        await refusing.listen(port);
+        await start('--audit-syslog', `localhost:${port}`, '--audit-ca', path('log.pem'));
+        const began = lines().findLast(({ event }) => event === 'start');
+        await plant.daemon.line(new RegExp(`audit: syslog server localhost:\\d+ does not accept audit lines; check .*${reason}`));
+        await metric(0);
+        await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.23' });
+        await refusing.close();
+        await accepting.listen(port);
+        await accepting.until('the start', (text) => text.includes(`"seq":${began.seq},`));
+        await accepting.until('the refused login', (text) => text.includes('"from":"127.0.0.23"'));
+        await plant.daemon.line(/audit: syslog server localhost:\d+ accepts audit lines again/);
+        await metric(1);
+        await accepting.close();
+    });
