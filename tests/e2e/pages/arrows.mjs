@@ -54,7 +54,8 @@ assets:
 groups:
   - { id: wind, quantity: Wind, unit: m/s, min: 0, max: 12, prepare: [gp], gp: { range_m: 2 } }
 sources:
-  - { id: plc1, type: modbus, host: 127.0.0.1, port: ${plant.modbusPort}, poll_ms: 100, timeout_ms: 300, byte_order: ABCD, address_base: 1 }
+  - { id: plc1, type: modbus, host: 127.0.0.1, port: ${plant.modbusPort}, poll_ms: 100, timeout_ms: 5000, byte_order: ABCD,
+    address_base: 1 }
 tags: tags.csv
 `);
     const rows = SENSORS.flatMap((degrees, i) => {

@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
 import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
+import { until } from '../support/until.mjs';
 
 const why = notBuilt();
 const options = { skip: why, timeout: 200000 };
@@ -36,13 +37,11 @@ after(async () => {
 });
 
 test('it says what was noted, raised, acknowledged and shelved', options, async () => {
-    for (let tries = 0; tries < 20; tries++) { // the journal is written with a delay
+    await until('the shelved alarm', async () => { // the journal is written with a delay
         await page.goto(`${plant.url}handover.html`);
         await page.locator('[data-part=notes]').waitFor();
-        if (await page.locator('[data-part=shelved] td', { hasText: 'sensor is checked' }).count() > 0)
-            break;
-        await page.waitForTimeout(1000);
-    }
+        return await page.locator('[data-part=shelved] td', { hasText: 'sensor is checked' }).count() > 0;
+    });
     const rows = (name) => page.locator(`[data-part=${name}] tbody tr`).allTextContents();
     assert.match((await rows('notes')).join(), /P-101A.*<seal> drips.*kim \(local\)/);
     assert.match((await rows('raised')).join(), /TI-1 · High.*95\.\d+ \(90\.\d+\) °C/);

@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const absent = missing(), chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(chromium) ? 'chromium is not installed' : false;
@@ -60,10 +61,11 @@ const waitForState = (page, states) => page.waitForFunction((any) =>
     any.includes(globalThis.plantcast.session.model.alarms.list()[0]?.state ?? 'none'), states);
 const waitForMode = (page, mode) => page.waitForFunction((is) => globalThis.plantcast.session.welcomed &&
     globalThis.plantcast.session.model.alarms.known && globalThis.plantcast.session.model.alarms.mode === is, mode);
-// Returns the actions offered for the first alarm of the list, or of those set aside.
-const offered = async (page, list = '#alarms-list') => {
+// Waits until these actions are offered for the first alarm of the list, or of those set aside.
+const offers = async (page, wanted, role, list = '#alarms-list') => {
     await page.locator(`${list} tr`).first().waitFor();
-    return page.locator(`${list} tr`).first().locator('[data-action]').evaluateAll((all) => all.map((button) => button.dataset.action));
+    const actions = page.locator(`${list} tr`).first().locator('[data-action]');
+    await becomes(() => actions.evaluateAll((all) => all.map((button) => button.dataset.action)), wanted, role);
 };
 // Returns the server's answer to an action that the page does not offer.
 const ask = (page, action) => page.evaluate(async (what) => {
@@ -85,7 +87,7 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     await everyRole(async (page, role) => {
         await waitForState(page, ['unacknowledged']);
         await page.locator('#alarm-strip').tap();
-        assert.deepEqual(await offered(page), DOES[role], role);
+        await offers(page, DOES[role], role);
         await settle(page);
         await shoot(page, `roles-${role}`);
     });
@@ -96,8 +98,8 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     await pages.operator.locator('#shelve-reason').fill('calibration');
     await pages.operator.locator('#shelve button[type="submit"]').tap();
     await everyRole(async (page, role) => {
-        assert.deepEqual(await offered(page, '#alarms-aside'), role === 'viewer' ? [] : ['unshelve'], role);
-        assert.match(await page.locator('#alarms-aside tr').textContent(), /by operator-1, calibration/, 'everybody is told who and why');
+        await offers(page, role === 'viewer' ? [] : ['unshelve'], role, '#alarms-aside');
+        await page.locator('#alarms-aside tr', { hasText: /by operator-1, calibration/ }).waitFor(); // everybody is told who and why
     });
     await pages.engineer.locator('[data-action="unshelve"]').tap();
     await everyRole((page) => waitForState(page, ['unacknowledged']));
@@ -105,7 +107,7 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     await everyRole(async (page, role) => {
         await waitForState(page, ['acknowledged']);
         await page.locator('#alarms-list .acknowledged').waitFor();
-        assert.deepEqual(await offered(page), role === 'viewer' ? [] : ['shelve'], role);
+        await offers(page, role === 'viewer' ? [] : ['shelve'], role);
     });
 });
 
@@ -117,7 +119,7 @@ test('operators change and end the notes of their own account, engineers end all
     const untilUs = (Date.now() + 5 * 3600e3) * 1000;
     await post(pages.operator, 'of the operator', { until_us: untilUs });
     await post(pages.engineer, 'of the engineer', {});
-    const offers = { viewer: [[], []], operator: [['edit', 'end'], []], engineer: [['end'], ['edit', 'end']] };
+    const buttons = { viewer: [[], []], operator: [['edit', 'end'], []], engineer: [['end'], ['edit', 'end']] };
     await everyRole(async (page, role) => {
         await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 2);
         await page.locator('#views-toggle').tap();
@@ -125,7 +127,7 @@ test('operators change and end the notes of their own account, engineers end all
             const row = page.locator('#notes-list li', { hasText: text });
             await row.waitFor();
             for (const action of ['edit', 'end'])
-                await row.locator(`.${action}`).waitFor({ state: offers[role][i].includes(action) ? 'visible' : 'detached' });
+                await row.locator(`.${action}`).waitFor({ state: buttons[role][i].includes(action) ? 'visible' : 'detached' });
         }
     });
     const { operator, engineer } = pages;
@@ -158,8 +160,8 @@ for (const mode of ['display', 'mirror']) {
             await page.waitForFunction((words) => document.getElementById('alarm-mode').textContent === words,
                 mode === 'display' ? 'View only: acknowledge in the control system' : 'Mirrored from the control system');
             if (mode === 'display') // `display` mode has alarms from limits; `mirror` only those of the control system
-                assert.deepEqual(await offered(page), [], role);
-            assert.equal(await page.locator('#alarms [data-action]').count(), 0, role);
+                await offers(page, [], role);
+            await becomes(() => page.locator('#alarms [data-action]').count(), 0, role);
         });
         await shoot(pages.operator, `roles-${mode}`);
         assert.notEqual(await ask(pages.operator, 'acknowledge'), 'done');

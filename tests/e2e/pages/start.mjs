@@ -74,7 +74,7 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         await page.locator('#shown button').click();
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.length === 0);
         assert.deepEqual(await sets(), NONE);
-        assert.equal(await page.locator('#shown').isVisible(), false);
+        await page.locator('#shown').waitFor({ state: 'hidden' });
         await page.waitForFunction(() => /hide=&ghost=(&|$)/.test(location.hash));
         await page.reload();
         await waitForPicture(page);

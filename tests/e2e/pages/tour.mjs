@@ -9,6 +9,7 @@ import { arrive, openPage, SCREENSHOTS, settle, SHOOTS, waitForHealth, waitForPi
 import { missing, startPlant } from '../support/plant.mjs';
 import { promise } from '../support/promise.mjs';
 import { runProgram } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 280000 };
@@ -74,13 +75,10 @@ test('an alarm: counted at once, listed, and one click leads there', options, as
     await page.locator('#alarms-close').click();
     await page.locator('#card').waitFor();
     assert.match(await page.locator('#card h3').textContent(), new RegExp(HOT));
-    await page.waitForFunction(() => globalThis.plantcast.cameraController?.fly === null);
-    await settle(page);
-    const near = await page.evaluate((name) => {
-        const { overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(name));
-        return marker && { depth: marker.depth, occluded: marker.occluded };
+    await page.waitForFunction((name) => { // flown there
+        const { cameraController, overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(name));
+        return cameraController?.fly === null && marker && !marker.occluded && marker.depth < 8;
     }, HOT);
-    assert.ok(near && !near.occluded && near.depth < 8, `flown there: ${JSON.stringify(near)}`);
     await keep('3-there');
 });
 
@@ -96,12 +94,14 @@ test('its trend, and the instant before it began', options, async () => {
     await slider.fill('846'); // 846 s into a span of 900 s
     await waitForHealth(page, 'past');
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
-    assert.match(await page.locator('#banner').textContent(), /History/);
+    await page.locator('#banner', { hasText: /History/ }).waitFor();
     await settle(page);
-    const [banner, card, legend, picture] = await Promise.all(['#banner', '#card', '#legend', '#viewport'].map((id) =>
-        page.locator(id).boundingBox()));
-    assert.ok(card.y >= banner.y + banner.height && card.y + card.height <= picture.y + picture.height, 'the card is whole');
-    assert.ok(legend.y + legend.height <= picture.y + picture.height, 'the legend is whole');
+    await becomes(async () => {
+        const [banner, card, legend, picture] = await Promise.all(['#banner', '#card', '#legend', '#viewport'].map((id) =>
+            page.locator(id).boundingBox()));
+        return [card.y >= banner.y + banner.height && card.y + card.height <= picture.y + picture.height,
+            legend.y + legend.height <= picture.y + picture.height];
+    }, [true, true], 'card and legend are whole');
     await keep('4-past');
     await page.locator('#time-live').click();
     await page.waitForFunction(() => globalThis.plantcast.session.time.atUs === null && !globalThis.plantcast.session.picture.past);

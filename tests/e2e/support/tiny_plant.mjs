@@ -143,9 +143,11 @@ export class TinyPlant {
         return plant;
     }
 
-    // Returns a prepared plant with simulator and daemon, one side warm and one cold.
-    static async running() {
+    // Returns a prepared plant with simulator and daemon, one side warm and one cold. fresh: its readings stay good on a busy machine.
+    static async running({ fresh = false } = {}) {
         const plant = await TinyPlant.create();
+        if (fresh)
+            plant.keepFresh();
         await plant.start();
         await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
         return plant;
