@@ -30,6 +30,6 @@ void run_film(const struct daemon_access *access, int argc, char **argv)
     mem_free(line);
 #else
     (void)access, (void)argc;
-    fprintf(stderr, "plantcast: %s: films need H.264, but this program was built without H.264 (CODECS=jpeg)\n", argv[0]);
+    fprintf(stderr, "plantcast: %s: clips need H.264, but this program was built without H.264 (CODECS=jpeg)\n", argv[0]);
 #endif
 }

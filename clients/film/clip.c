@@ -71,7 +71,7 @@ static bool take_statement(struct film *film, const struct text *body)
 {
     if (film_statements_add(film->statements, (const uint8_t *)body->at, body->length))
         return true;
-    fprintf(stderr, "plantcast: %s: a picture has no signature: start plantcastd with --signing-key, and make --size at least 256x256\n",
+    fprintf(stderr, "plantcast: %s: a frame has no signature: start plantcastd with --signing-key, and make --size at least 256x256\n",
             film->options->from);
     return false;
 }
@@ -83,7 +83,8 @@ static bool download(struct film *film, int64_t at_us)
                             film->query.at ? film->query.at : "");
     int status = daemon_get(&film->url, path, &body);
     if (status && status != 200)
-        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", film->options->from, status, body.at ? body.at : "");
+        fprintf(stderr, "plantcast: %s: the daemon answered with HTTP status %d: "
+                        "%s\n", film->options->from, status, body.at ? body.at : "");
     bool good = status == 200 && (!film->options->is_signed || take_statement(film, &body)) && add_png(film, &body);
     text_finish(&body);
     mem_free(path);
@@ -103,7 +104,7 @@ static bool shoot(struct film *film, picture_fn *picture, long count, double all
     for (long i = 0; i < count && good; i++) {
         good = picture(film, options->from_us + (int64_t)((double)film->count * step_us));
         if (good && ++film->count % SAY_EACH == 0)
-            fprintf(stderr, "plantcast: %ld of %.0f pictures\n", film->count, all);
+            fprintf(stderr, "plantcast: %ld of %.0f frames\n", film->count, all);
     }
     return good;
 }
@@ -151,7 +152,7 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
     json_array_foreach(stops, i, stop) count += (double)pictures_of(film, stop);
     bool good = count <= MAX_PICTURES;
     if (!good)
-        fprintf(stderr, "plantcast: the film would have %.0f pictures; at most %d are possible: use a greater --speed or a shorter time\n",
+        fprintf(stderr, "plantcast: the clip would have %.0f frames; at most %d are possible: use a higher --speed or a shorter period\n",
                 count, MAX_PICTURES);
     if (good && !stops)
         good = shoot(film, picture, (long)count, count);
@@ -163,7 +164,7 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
         good = film_statements_put(film->statements, film->video) && (!stops || write_texts(film, stops));
     good = video_finish(&film->video, good);
     if (good)
-        printf("%s: %.0f pictures, %.1f s\n", options->out, count, count / options->fps);
+        printf("%s: %.0f frames, %.1f s\n", options->out, count, count / options->fps);
     return good;
 }
 
@@ -196,7 +197,8 @@ static char *ask_tours(struct film *film)
     struct text body = { 0 };
     int status = daemon_get(&film->url, "/api/v1/walls", &body);
     if (status && status != 200)
-        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", film->options->from, status, body.at ? body.at : "");
+        fprintf(stderr, "plantcast: %s: the daemon answered with HTTP status %d: "
+                        "%s\n", film->options->from, status, body.at ? body.at : "");
     char *answer = status == 200 && body.at ? mem_strdup(body.at) : NULL;
     text_finish(&body);
     return answer;

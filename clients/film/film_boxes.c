@@ -146,14 +146,14 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
         name[i] = type[i] > ' ' && type[i] < 0x7f ? (char)type[i] : '?';
     const char *place = *parent ? parent : "the file";
     if (rule == RULES)
-        return FAIL("unexpected box %s in %s: Plantcast's films have none", name, place);
+        return FAIL("unexpected box %s in %s: Plantcast's clips have no such box", name, place);
     if (walk->seen[rule])
         return FAIL("box %s occurs twice in %s", name, place);
     walk->seen[rule] = true;
     if (memcmp(type, "avcC", 4) == 0 && !has_two_sets(content, count))
         return FAIL("box avcC has more than one sequence parameter set or picture parameter set");
     return !rules[rule].content || content_fits(walk, rules[rule].content, content, count) ||
-           FAIL("box %s differs from that of Plantcast's films", name);
+           FAIL("box %s differs from that in Plantcast's clips", name);
 }
 
 /* Reads the picture's size from the innermost box, avc1. All other boxes must agree with that size. */
@@ -213,7 +213,7 @@ static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
         head_bytes = 2 * HEAD;
     }
     if (length < head_bytes || length > *left)
-        return FAIL("the film is incomplete: a box is truncated, or bytes follow the last one");
+        return FAIL("the clip is damaged: a box is truncated, or bytes follow the last one");
     *left -= length;
     length -= head_bytes;
     int rule = find_rule("", head + 4);
@@ -275,9 +275,9 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
         last = unit[i];
     }
     if (type != MESSAGE_TEXT && type != MESSAGE_RECOVERY)
-        return FAIL("unexpected H.264 message (SEI) of type %u, which Plantcast's films do not have: the film was changed", type);
+        return FAIL("unexpected H.264 message (SEI) of type %u, which Plantcast's clips do not have: the clip was changed", type);
     return (content == length + 1 && last == 0x80) ||
-           FAIL("a part of the video (NAL unit) has more than one H.264 message (SEI): the film was changed");
+           FAIL("a part of the video (NAL unit) has more than one H.264 message (SEI): the clip was changed");
 }
 
 bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_WHY_BYTES])
@@ -285,14 +285,14 @@ bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_W
     while (count > 4) {
         uint64_t length = number(sample, 4);
         if (length < 1 || length > count - 4)
-            return FAIL("a picture is damaged");
+            return FAIL("a frame is damaged");
         int type = sample[4] & 31;
         if (type == UNIT_MESSAGE && !is_plain_message(sample + 4, length, why))
             return false;
         if (type != UNIT_SLICE && type != UNIT_SLICE_OF_KEY && type != UNIT_MESSAGE)
-            return FAIL("unexpected H.264 unit of type %d: Plantcast's films have none", type);
+            return FAIL("unexpected H.264 unit of type %d: Plantcast's clips have no such unit", type);
         sample += 4 + length;
         count -= 4 + length;
     }
-    return count == 0 || FAIL("a picture is damaged");
+    return count == 0 || FAIL("a frame is damaged");
 }

@@ -72,7 +72,7 @@ bool film_statements_put(const struct film_statements *statements, struct video 
         mem_free(base64);
     } else {
         fprintf(stderr,
-                "plantcast: the signed statements of all pictures are too long for one film: use fewer pictures or a shorter time\n");
+                "plantcast: the signed statements of all frames are too long for one clip: use a lower --fps or a shorter period\n");
     }
     mem_free(bytes);
     text_finish(&all);
@@ -100,7 +100,7 @@ static bool read_statements(struct film_reader *reader)
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
     size_t length = entry ? strlen(entry->value) : 0;
     if (length < 4 || length % 4 || length > 2 * MAX_BYTES)
-        return FAIL("the film has no signed statements, or is damaged");
+        return FAIL("the clip has no signed statements, or is damaged");
     uint8_t *bytes = mem_array(length, 1);
     int count = EVP_DecodeBlock(bytes, (const unsigned char *)entry->value, (int)length);
     count -= (entry->value[length - 1] == '=') + (entry->value[length - 2] == '=');
@@ -118,7 +118,7 @@ static bool read_statements(struct film_reader *reader)
     reader->statements = status == Z_STREAM_END ? json_loadb(text.at, text.length, JSON_REJECT_DUPLICATES, NULL) : NULL;
     text_finish(&text);
     mem_free(bytes);
-    return json_is_array(reader->statements) || FAIL("the film's signed statements cannot be read");
+    return json_is_array(reader->statements) || FAIL("the clip's signed statements cannot be read");
 }
 
 /* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the description of colours from the
@@ -129,7 +129,7 @@ static bool open_film(struct film_reader *reader, const char *path)
     if (!film_boxes_plain(path, &reader->size, reader->why))
         return false;
     if (avformat_open_input(&reader->format, path, NULL, NULL) < 0 || avformat_find_stream_info(reader->format, NULL) < 0)
-        return FAIL("the film is incomplete");
+        return FAIL("the clip is incomplete");
     const AVStream *stream = reader->format->nb_streams == 1 ? reader->format->streams[0] : NULL;
     if (!stream || stream->codecpar->codec_id != AV_CODEC_ID_H264)
         return FAIL("expected one H.264 stream and nothing else in the file");
@@ -138,14 +138,14 @@ static bool open_film(struct film_reader *reader, const char *path)
     reader->packet = av_packet_alloc();
     reader->frame = av_frame_alloc();
     if (!reader->codec || !reader->packet || !reader->frame || avcodec_parameters_to_context(reader->codec, stream->codecpar) < 0)
-        return FAIL("libavcodec on this machine cannot decode the film");
+        return FAIL("libavcodec on this machine cannot decode the clip");
     reader->codec->thread_count = 1;
     reader->codec->color_primaries = AVCOL_PRI_UNSPECIFIED;
     reader->codec->color_trc = AVCOL_TRC_UNSPECIFIED;
     reader->codec->colorspace = AVCOL_SPC_UNSPECIFIED;
     reader->codec->color_range = AVCOL_RANGE_UNSPECIFIED;
     reader->codec->err_recognition = AV_EF_EXPLODE | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_CRCCHECK;
-    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("libavcodec on this machine cannot decode the film")) &&
+    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("libavcodec on this machine cannot decode the clip")) &&
            read_statements(reader);
 }
 
@@ -168,17 +168,17 @@ static bool next_picture(struct film_reader *reader)
         if (status == AVERROR_EOF)
             return false;
         if (status != AVERROR(EAGAIN))
-            return FAIL("a picture cannot be decoded");
+            return FAIL("a frame cannot be decoded");
         status = reader->ended ? AVERROR_EOF : av_read_frame(reader->format, reader->packet);
         if (status < 0 && status != AVERROR_EOF)
-            return FAIL("the film cannot be read to its end");
+            return FAIL("the clip cannot be read to its end");
         reader->ended = status < 0;
         if (!reader->ended && !film_units_plain(reader->packet->data, (size_t)reader->packet->size, reader->why))
             return false;
         status = avcodec_send_packet(reader->codec, reader->ended ? NULL : reader->packet);
         av_packet_unref(reader->packet);
         if (status < 0 && status != AVERROR_EOF)
-            return FAIL("a picture cannot be decoded");
+            return FAIL("a frame cannot be decoded");
     }
 }
 
@@ -188,15 +188,16 @@ static bool is_plain_picture(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
     if (frame->format != AV_PIX_FMT_GBRP || frame->crop_left || frame->crop_right || frame->crop_top || frame->crop_bottom)
-        return FAIL("the picture is not encoded as plantcast clip --signed encodes pictures");
+        return FAIL("the frame is not encoded in the way that `plantcast clip --signed` encodes frames");
     if (frame->color_primaries != AVCOL_PRI_BT709 || frame->color_trc != AVCOL_TRC_IEC61966_2_1 || frame->colorspace != AVCOL_SPC_RGB ||
         frame->color_range != AVCOL_RANGE_JPEG)
-        return FAIL("the H.264 stream (VUI) describes other colours than Plantcast writes: primaries %d, transfer %d, matrix %d, range %d",
+        return FAIL("the H.264 stream (VUI) describes other colours than those that Plantcast writes: primaries %d, transfer %d, matrix "
+                    "%d, range %d",
                     (int)frame->color_primaries, (int)frame->color_trc, (int)frame->colorspace, (int)frame->color_range);
     if (frame->sample_aspect_ratio.num != 0 && av_cmp_q(frame->sample_aspect_ratio, (AVRational){ 1, 1 }) != 0)
-        return FAIL("the H.264 stream (VUI) states that pixels are not square");
+        return FAIL("the H.264 stream (VUI) declares pixels that are not square");
     return (frame->width == reader->size.width_px && frame->height == reader->size.height_px) ||
-           FAIL("the size in box avc1 differs from the pictures' size");
+           FAIL("the size in box avc1 differs from the frames' size");
 }
 
 /* Returns the picture's pixels as red, green, blue (mem_free), or NULL if its colours or shape are not described as film/video.c writes
@@ -253,7 +254,7 @@ static bool takes_view(struct film_check *check, const json_t *statement)
     if (last && same_view(query, last))
         return true;
     if (last && !check->tour)
-        return FAIL("the view differs from that of the first picture (for a film of a tour, add --tour)");
+        return FAIL("the view differs from that of the first frame (for a clip of a tour, add --tour)");
     json_array_append_new(check->views, json_pack("{s:O,s:O}", "query", query, "at_us", json_object_get(statement, "at_us")));
     return true;
 }
@@ -266,17 +267,17 @@ static bool follows(struct film_check *check, const json_t *statement)
     struct film_reader *reader = &check->reader;
     int64_t at_us = json_integer_value(json_object_get(statement, "at_us")), pts = reader->frame->pts;
     if (at_us == 0)
-        return FAIL("the picture does not show a time of the past");
+        return FAIL("the frame does not show a time in the past");
     for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
         if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
-            return FAIL("the statement's '%s' differs from that of the first picture", same[i]);
+            return FAIL("the statement's '%s' differs from that of the first frame", same[i]);
     if (!takes_view(check, statement))
         return false;
     int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;
     if (check->count > 0 && (step_us <= 0 || (check->step_us && llabs(step_us - check->step_us) > 1)))
-        return FAIL("the previous picture is missing, or pictures were moved or inserted");
+        return FAIL("the previous frame is missing, or frames were moved or inserted");
     if (check->count > 0 && (pts_step <= 0 || (check->pts_step && pts_step != check->pts_step)))
-        return FAIL("the duration of the picture differs from that of the others");
+        return FAIL("the frame's duration differs from that of the other frames");
     check->step_us = check->count > 0 ? step_us : 0;
     check->pts_step = check->count > 0 ? pts_step : 0;
     check->at_us = at_us;
@@ -291,7 +292,7 @@ static bool verify_picture(struct film_check *check)
     const char *text = json_string_value(json_array_get(pair, 0)), *signature = json_string_value(json_array_get(pair, 1));
     uint8_t *rgb = pixels_of(reader);
     json_t *statement = NULL;
-    bool good = rgb && ((text && signature) || FAIL("no signed statement"));
+    bool good = rgb && ((text && signature) || FAIL("the frame has no signed statement"));
     good = good && (statement = signed_statement_verify(check->key, text, strlen(text), signature, reader->why));
     good = good && signed_statement_has_pixels(statement, rgb, reader->frame->width, reader->frame->height, reader->why);
     good = good && follows(check, statement);
@@ -324,11 +325,11 @@ static void print_film(const struct film_check *check, const char *path)
     char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES];
     timestamp_print(json_integer_value(json_object_get(check->first, "at_us")), from);
     timestamp_print(check->at_us, to);
-    printf("%s: the signatures of all %zu pictures are good, and none is missing between the first and the last\n", path, check->count);
+    printf("%s: the signatures of all %zu frames are good, and no frame is missing between the first and the last\n", path, check->count);
     printf("  plant %s, configuration %s, plantcastd %s\n", json_string_value(json_object_get(check->first, "plant")),
            json_string_value(json_object_get(check->first, "configuration")), json_string_value(json_object_get(check->first, "server")));
     json_array_foreach(check->views, i, view) print_view(view);
-    printf("  from %s to %s (history), a picture each %.6g s\n", from, to, (double)check->step_us / 1e6);
+    printf("  from %s to %s (history), one frame every %.6g s\n", from, to, (double)check->step_us / 1e6);
 }
 
 int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options, bool tour)
@@ -344,12 +345,12 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     }
     good = good && !*reader->why;
     if (good && check.count != json_array_size(reader->statements))
-        good = FAIL("the film has %zu pictures but signed statements of %zu pictures", check.count, json_array_size(reader->statements));
-    good = good && (check.count > 0 || FAIL("the film has no picture"));
+        good = FAIL("the clip has %zu frames but signed statements for %zu frames", check.count, json_array_size(reader->statements));
+    good = good && (check.count > 0 || FAIL("the clip has no frame"));
     if (good)
         print_film(&check, path);
     else if (opened)
-        fprintf(stderr, "plantcast: %s: picture %zu: %s\n", path, check.count + 1, reader->why);
+        fprintf(stderr, "plantcast: %s: frame %zu: %s\n", path, check.count + 1, reader->why);
     else
         fprintf(stderr, "plantcast: %s: %s\n", path, reader->why);
     json_decref(check.first);

@@ -23,7 +23,7 @@ json_t *tour_stops(const char *answer, const char *from, const char *id)
         text_add(&known, "%s%s", i ? ", " : "", saved_view_text(tour, "id"));
     }
     if (!stops)
-        fprintf(stderr, "plantcast: %s: there is no tour '%s' (tours: %s)\n", from, id, *known.at ? known.at : "none");
+        fprintf(stderr, "plantcast: %s: this plant has no tour '%s' (tours: %s)\n", from, id, *known.at ? known.at : "none");
     text_finish(&known);
     json_decref(all);
     return stops;

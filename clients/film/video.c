@@ -58,7 +58,7 @@ static bool open_codec(struct video *video, int width_px, int height_px, double 
     const char *name = video->lossless ? "libx264rgb" : "libx264";
     const AVCodec *library = avcodec_find_encoder_by_name(name);
     if (!library) {
-        fprintf(stderr, "plantcast: %s: this machine's libavcodec has no %s\n", video->path, name);
+        fprintf(stderr, "plantcast: %s: libavcodec on this machine has no %s\n", video->path, name);
         return false;
     }
     video->codec = avcodec_alloc_context3(library);
@@ -109,7 +109,7 @@ struct video *video_create(const char *path, int width_px, int height_px, double
     av_log_set_level(AV_LOG_ERROR);
     avformat_alloc_output_context2(&video->format, NULL, NULL, path);
     if (!video->format || video->format->oformat->video_codec == AV_CODEC_ID_NONE)
-        fprintf(stderr, "plantcast: %s: unknown kind of film; end the name with .mp4, .mkv or .mov\n", path);
+        fprintf(stderr, "plantcast: %s: unknown file format: the name must end in .mp4, .mkv or .mov\n", path);
     else if (open_codec(video, width_px, height_px, fps) && open_file(video))
         return video;
     video_finish(&video, false);

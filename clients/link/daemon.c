@@ -201,7 +201,7 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
     if (!exchange.status)
         fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
                 exchange.why[0] ? exchange.why : "no answer",
-                strstr(exchange.why, "SSL") ? "; name the daemon's certificate, or its authority, with --ca FILE" : "");
+                strstr(exchange.why, "SSL") ? "; pass the certificate of the daemon or of its authority with --ca FILE" : "");
     if (context)
         lws_context_destroy(context);
     mem_free(whole);

@@ -63,7 +63,7 @@ static struct h264_decoder *create(char why[H264_DECODER_WHY_BYTES])
     decoder->codec = avcodec_find_decoder(AV_CODEC_ID_H264);
     if (decoder->codec)
         return decoder;
-    snprintf(why, H264_DECODER_WHY_BYTES, "this machine's libavcodec cannot decode H.264");
+    snprintf(why, H264_DECODER_WHY_BYTES, "libavcodec on this machine cannot decode H.264");
     mem_free(decoder);
     return NULL;
 }

@@ -45,7 +45,7 @@ static void tell_metrics(struct video_program *program)
     GString *out = g_string_new("");
     struct outputs_counts counts;
     outputs_count(program->outputs, &counts);
-    add_metric(out, "plantcast_video_frames_total", "counter", "Frames encoded, once for all viewers.", counts.units);
+    add_metric(out, "plantcast_video_frames_total", "counter", "Frames encoded; each frame is encoded once for all viewers.", counts.units);
     add_metric(out, "plantcast_video_key_frames_total", "counter", "Key frames encoded.", counts.key_units);
     add_metric(out, "plantcast_video_bytes_total", "counter", "Bytes of encoded frames.", counts.bytes);
     add_metric(out, "plantcast_video_late_frames_total", "counter", "Frames skipped because drawing or encoding was late.", program->late);
@@ -194,7 +194,8 @@ int main(int argc, char **argv)
     int code = options_read(&program.options, &argc, &argv);
     if (code < 0) {
         if (!text_face_has(overlay_word(program.options.words, WORD_NO_DATA)))
-            fprintf(stderr, "no installed font has the letters of --language %s: boxes are shown instead; install fonts-nanum\n",
+            fprintf(stderr, "plantcast-video: no installed font has the letters of --language %s, so the picture shows boxes: install "
+                            "fonts-nanum\n",
                     program.options.language);
         gst_init(NULL, NULL);
         code = serve_video(&program);

@@ -53,7 +53,7 @@ static bool read_request(GInputStream *in, char request[MAX_REQUEST_BYTES + 1])
 static void answer(struct metrics *metrics, GOutputStream *out, bool known)
 {
     g_mutex_lock(&metrics->lock);
-    char *body = g_strdup(known ? metrics->text : "GET /metrics is expected\n");
+    char *body = g_strdup(known ? metrics->text : "Not found: expected GET /metrics\n");
     g_mutex_unlock(&metrics->lock);
     g_output_stream_printf(out, NULL, NULL, NULL,
                            "HTTP/1.1 %s\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: %zu\r\n"

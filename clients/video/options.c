@@ -11,15 +11,16 @@
 
 enum { MIN_PX = 320, MAX_PX = 4096, MIN_HEIGHT_PX = 180, MIN_FPS = 5, MAX_FPS = 30, SRT_LEAST_CHARS = 10, SRT_MOST_CHARS = 79 };
 
-static const char SUMMARY[] = "Serves a view of a Plantcast daemon as H.264 video by RTSP and SRT. All viewers share one encoding.\n"
-                              "The picture has markers of sensors, legend, clock and the age of the values.\n"
-                              "If the connection to the daemon or the values are lost, the picture says so within 3 s.";
+static const char SUMMARY[] = "Serves a view of a Plantcast daemon as H.264 video over RTSP and SRT. The video is encoded once for all "
+                              "viewers.\n"
+                              "The picture shows sensor markers, a legend, a clock and the age of the values.\n"
+                              "If the daemon or the values become unavailable, the picture says so within 3 s.";
 static const char DETAIL[] = "Give --rtsp, --srt or both.\n"
                              "If --listen is not 127.0.0.1, --readers-file or --open-readers is required.\n"
                              "Players open these addresses:\n"
                              "  RTSP  rtsp://HOST:PORT/plantcast (with user and password)\n"
-                             "  SRT   srt://HOST:PORT, in caller mode (the password of the viewers is the passphrase)\n"
-                             "Only SRT is encrypted. With --http PORT, http://127.0.0.1:PORT/metrics has metrics for Prometheus.\n"
+                             "  SRT   srt://HOST:PORT, in caller mode (the passphrase is the password in --readers-file)\n"
+                             "Only SRT is encrypted. With --http PORT, http://127.0.0.1:PORT/metrics serves metrics for Prometheus.\n"
                              "Exit status: 0 success, 2 wrong usage, 1 any other error.";
 
 static int wrong(const char *fmt, ...) G_GNUC_PRINTF(1, 2);
@@ -47,7 +48,7 @@ static char *first_line(const char *path)
     text[strcspn(text, "\r\n")] = 0;
     g_strstrip(text);
     if (!text[0] || strlen(text) > 256) {
-        wrong("%s: its first line should have 1 to 256 characters", path);
+        wrong("%s: the first line must have 1 to 256 characters", path);
         g_clear_pointer(&text, g_free);
     }
     return text;
@@ -58,7 +59,7 @@ static int read_readers(struct video_options *options, const char *path)
     char *line = first_line(path), *colon = line ? strchr(line, ':') : NULL;
     int code = -1;
     if (line && (!colon || colon == line || !colon[1]))
-        code = wrong("%s: its first line should be USER:PASSWORD", path);
+        code = wrong("%s: the first line must be USER:PASSWORD", path);
     else if (!line)
         code = 2;
     else {
@@ -66,7 +67,7 @@ static int read_readers(struct video_options *options, const char *path)
         options->password = g_strdup(colon + 1);
         size_t n = strlen(options->password);
         if (options->srt_port && (n < SRT_LEAST_CHARS || n > SRT_MOST_CHARS))
-            code = wrong("%s: the password is also the passphrase of SRT, which must have %d to %d characters, not %zu", path,
+            code = wrong("%s: the password is also the SRT passphrase, and must have %d to %d characters; it has %zu", path,
                          SRT_LEAST_CHARS, SRT_MOST_CHARS, n);
     }
     g_free(line);
@@ -130,7 +131,7 @@ static int check_together(struct video_options *options, bool open_readers)
 {
     unsigned char address[16];
     if (options->view && options->query)
-        return wrong("--view and --query exclude each other");
+        return wrong("--view and --query cannot be combined");
     if (!overlay_language_find(options->language, &options->words))
         return wrong("--language %s: expected en, ko or de", options->language);
     if (!options->rtsp_port && !options->srt_port)
@@ -138,10 +139,10 @@ static int check_together(struct video_options *options, bool open_readers)
     if (inet_pton(AF_INET, options->listen, address) != 1 && inet_pton(AF_INET6, options->listen, address) != 1)
         return wrong("--listen %s: expected an address such as 0.0.0.0 or ::", options->listen);
     if (!is_loopback(options->listen) && !options->user && !open_readers)
-        return wrong("--listen %s: everyone who reaches this address could watch; add --readers-file FILE, or --open-readers to allow that",
+        return wrong("--listen %s: anyone who can reach this address could watch; add --readers-file FILE, or --open-readers to allow that",
                      options->listen);
     if (options->user && open_readers)
-        return wrong("--readers-file and --open-readers exclude each other");
+        return wrong("--readers-file and --open-readers cannot be combined");
     return -1;
 }
 
@@ -152,18 +153,20 @@ int options_read(struct video_options *options, int *argc, char ***argv)
     *options = (struct video_options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000 };
     options->most_readers = 64;
     const GOptionEntry entries[] = {
-        { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "id of the view to show: a view of the plant file, or one saved on the page",
+        { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "id of the view to show: a view in the plant file, or one saved on the page",
           "ID" },
-        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "view to show, as parameters of /snapshot.png: group=temperature&camera=...",
+        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "view to show, as query parameters of /snapshot.png: "
+                                                               "group=temperature&camera=...",
           "PARAMETERS" },
         { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "language of all text in the picture: en, ko or de (default: en)",
           "LANGUAGE" },
         { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path,
           "file whose first line is a token for the daemon, made by `plantcast token`", "FILE" },
-        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "certificates (PEM) to trust instead of those of the system", "FILE" },
+        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "file of certificates (PEM) to trust instead of the system's "
+                                                                "certificates", "FILE" },
         { "size", 0, 0, G_OPTION_ARG_STRING, &size, "width and height of the video in pixels (default: 1280x720)", "WxH" },
-        { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames per second, 5 to 30, also if nothing changes (default: 10)", "N" },
-        { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "highest bit rate of the video in kbit/s (default: 4000)", "N" },
+        { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames per second, 5 to 30, even while nothing changes (default: 10)", "N" },
+        { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "maximum bit rate of the video in kbit/s (default: 4000)", "N" },
         { "every", 0, 0, G_OPTION_ARG_INT, &options->every_ms,
           "time between two pictures from the daemon in ms, 200 to 1000 (default: 1000)", "MS" },
         { "listen", 0, 0, G_OPTION_ARG_STRING, &options->listen,
@@ -173,11 +176,12 @@ int options_read(struct video_options *options, int *argc, char ***argv)
         { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "TCP port of 127.0.0.1 on which to serve /metrics", "PORT" },
         { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "file whose first line is USER:PASSWORD, which viewers must give",
           "FILE" },
-        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "require no password: everybody who reaches the address may watch",
+        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "require no password: anyone who can reach the address can watch",
           NULL },
         { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers,
-          "largest number of viewers of RTSP, and of SRT, at the same time (default: 64)", "N" },
-        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code, "add a row of blocks below the picture, from which programs read its time",
+          "maximum number of simultaneous viewers, for RTSP and for SRT each (default: 64)", "N" },
+        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code, "add a row of blocks below the picture that encodes the picture's time for "
+                                                            "programs",
           NULL },
         { "version", 0, 0, G_OPTION_ARG_NONE, &version, "print the version", NULL },
         { NULL, 0, 0, G_OPTION_ARG_NONE, NULL, NULL, NULL }

@@ -66,7 +66,7 @@ test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip 
     assert.equal(token('add', file, '--role', 'viewer', '--name', 'wall').code, 1);
     assert.equal(token('add', file, '--role', 'operator', '--name', 'guest', '--until', '2001-01-01').code, 0);
     assert.match(token('list', file).out,
-        /^viewer +wall {2}without end\noperator +guest {2}until [\d-]+T[\d:.]+Z {2}\(expired\)\n$/);
+        /^viewer +wall {2}no expiry\noperator +guest {2}until [\d-]+T[\d:.]+Z {2}\(expired\)\n$/);
     assert.equal(token('revoke', file, 'wall').code, 0);
     assert.equal(token('revoke', file, 'wall').code, 1);
     assert.match(token('list', file).out, /^operator +guest/);
@@ -81,7 +81,7 @@ test('a token for one plant is none for another', { skip }, async () => {
     const ours = token('add', file, '--role', 'viewer', '--name', 'ours', '--plant', 'Two boxes', '--until', '2199-12-31').out.trim();
     const theirs = token('add', file, '--role', 'viewer', '--name', 'plant', '--plant', 'Other plant').out.trim();
     assert.match(token('list', file).out, /ours {2}until 2200-01-01T[\d:.]+Z {2}plant Two boxes$/m);
-    assert.match(token('list', file).out, /^viewer +plant {2}without end {2}plant Other plant$/m);
+    assert.match(token('list', file).out, /^viewer +plant {2}no expiry {2}plant Other plant$/m);
     await behindProxy('--tokens', file);
     assert.equal((await ask('/api/v1/tags', { bearer: ours })).status, 200);
     assert.equal((await ask('/api/v1/tags', { bearer: theirs })).status, 401);
@@ -115,7 +115,7 @@ walls:
     writeFileSync(plant.file, `${before_}views:\n${list.join('')}${walls}`);
     const lobby = token('add', file, '--role', 'viewer', '--name', 'lobby', '--views', 'left,flat,page,gone').out.trim();
     const whole = token('add', file, '--role', 'viewer', '--name', 'whole').out.trim();
-    assert.match(token('list', file).out, /^viewer +lobby {2}without end {2}views left,flat,page,gone$/m);
+    assert.match(token('list', file).out, /^viewer +lobby {2}no expiry {2}views left,flat,page,gone$/m);
     for (const wrong of [['--views', ''], ['--views', 'a,,b'], ['--views', 'a b'], ['--views', 'left', '--role', 'operator']])
         assert.equal(token('add', file, '--role', 'viewer', '--name', 'x', ...wrong).code, 2, wrong.join(' '));
     try {

@@ -168,7 +168,7 @@ test('a wrong key, a damaged file and a newer version are refused by name, and n
     copy('newer');
     const list = third.path('root/newer/backup.json'), text = readFileSync(list, 'utf8');
     writeFileSync(list, text.replace(/"plantcast": ".*"/, '"plantcast": "9.0.0"'));
-    refused('newer', /Plantcast 9\.0\.0 made this backup: install version 9\.0\.0 or later/, '--identity /root/key');
+    refused('newer', /made by Plantcast 9\.0\.0: install version 9\.0\.0 or later/, '--identity /root/key');
     writeFileSync(list, text.replace('"version": 1', '"version": 2'));
     refused('newer', /has a version that this program cannot read/);
     refused('nothing', /has no backup\.json/);

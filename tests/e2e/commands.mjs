@@ -126,12 +126,13 @@ test('snapshot --view: views of the plant file and of the page, by id or title, 
             assert.deepEqual(await there(from, 'pump', ...more, '--camera', '3,-8,0,3,0,0'), ['P-101A', 'bar', 3, -0.5, 0]);
             assert.deepEqual(await there(from, 'pump', ...more, '--hide', '', '--camera', '0,-8,0,0,0,0', '--group', 'temperature'), front);
             for (const name of ['pimp', 'Twice'])
-                await refused(from, new RegExp(`no view has the id '${name}', or is the only one with this title; ids and titles of the ` +
-                    'views:\n  boxes +Both boxes\n  pump +Pump, close\n  pump-2 +Twice\n  pump-3 +Twice\n$'), '--view', name, ...more);
+                await refused(from, new RegExp(`'${name}' is neither the id of a view nor the title of exactly one view; ` +
+                    'ids and titles of the views:\n  boxes +Both boxes\n  pump +Pump, close\n  pump-2 +Twice\n  pump-3 +Twice\n$'),
+                '--view', name, ...more);
         }
         assert.equal((await run('snapshot', url, '--view', 'boxes', '-o', png, '--token-file', token('some'))).code, 0);
-        await refused(url, /answers 403: .*boxes/, '--view', 'pump', '--token-file', token('some'));
-        await refused(url, /answers 401/, '--view', 'pump');
+        await refused(url, /HTTP status 403: .*boxes/, '--view', 'pump', '--token-file', token('some'));
+        await refused(url, /HTTP status 401/, '--view', 'pump');
     });
 
 const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',
@@ -142,14 +143,14 @@ test('a command that is a program of its own is given the certificates and the t
     writeFileSync(mine, (await run('token', 'add', tokens, '--role', 'viewer', '--name', 'films')).out);
     await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'), '--tokens', tokens);
     const url = `https://localhost:${plant.port}/`;
-    for (const [more, why] of [[[], /name the daemon's certificate/], [['--ca', cert], /answers 401/]]) {
+    for (const [more, why] of [[[], /pass the certificate of the daemon/], [['--ca', cert], /HTTP status 401/]]) {
         const { code, err } = await run(...film(url, ...more));
         assert.equal(code, 1, err);
         assert.match(err, why);
     }
     const { code, out, err } = await run('--token-file', mine, ...film(url, '--ca', cert));
     assert.equal(code, 0, err);
-    assert.match(out, /film\.mp4: \d+ pictures/);
+    assert.match(out, /film\.mp4: \d+ frames/);
 });
 
 test('what is loaded when it is needed, and is missing or damaged, is named', { skip: noFilms, timeout: 100000 }, async () => {

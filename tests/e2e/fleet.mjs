@@ -67,7 +67,7 @@ test('a fleet file is checked, and each mistake has its line', options, () => {
         /fleet\.yaml:5:\d+: error: url: expected an address that begins/,
         /fleet\.yaml:6:\d+: error: url: expected an address without a password/,
         /fleet\.yaml:7:\d+: error: .*needs the key 'id'/, /fleet\.yaml:7:\d+: error: poll_s: expected/,
-        /fleet\.yaml:8:\d+: error: url: a plant with token_file needs .*https/])
+        /fleet\.yaml:8:\d+: error: url: a plant with `token_file` needs .*https/])
         assert.match(bad.err, line);
     assert.ok(!bad.err.includes('me:pw') && !bad.err.includes('fleet.yaml:9'));
     assert.equal(runProgram('plantcast', ['fleet', join(folder, 'fleet.yaml'), '--serve', '--address', '0.0.0.0']).code, 2);

@@ -186,14 +186,14 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
         if (/without H\.264/.test(made.err))
             return;
         assert.equal(made.code, 0, made.err);
-        assert.match(made.out, /11 pictures, 2\.2 s/);
+        assert.match(made.out, /11 frames, 2\.2 s/);
         assert.ok(statSync(film).size > 2000);
     }
     const tour = ['--from', String(BEGIN_S), '--fps', '4', '--size', '320x180', '--tour'];
     for (const from of [url, plant.file]) {
         const made = runProgram('plantcast', ['clip', from, '-o', film, ...tour, 'round'], 120000);
         assert.equal(made.code, 0, made.err);
-        assert.match(made.out, /20 pictures, 5\.0 s/);
+        assert.match(made.out, /20 frames, 5\.0 s/);
         const none = runProgram('plantcast', ['clip', from, '-o', join(plant.folder, 'none.mp4'), ...tour, 'rund']);
         assert.deepEqual([none.code, /no tour 'rund' \(tours: round\)/.test(none.err)], [1, true], none.err);
     }
@@ -205,7 +205,7 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
     for (const list of wrong)
         assert.equal(runProgram('plantcast', ['clip', url, '-o', film, ...list]).code, 2, list.join(' '));
     const odd = runProgram('plantcast', ['clip', plant.file, '-o', join(plant.folder, 'then.xyz'), ...args]);
-    assert.deepEqual([odd.code, /kind of film/.test(odd.err)], [1, true]);
+    assert.deepEqual([odd.code, /unknown file format/.test(odd.err)], [1, true]);
     const early = runProgram('plantcast', ['clip', plant.file, '-o', film, '--from', String(BEGIN_S - 60), ...args.slice(2)]);
     assert.deepEqual([early.code, /no readings recorded/.test(early.err), existsSync(film)], [1, true, true]);
 });

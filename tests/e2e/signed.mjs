@@ -387,7 +387,7 @@ test('a film is good picture by picture; one that was changed, cut or encoded ag
     assert.equal(made.code, 0, made.err);
     const check = (file, ...args) => runProgram('plantcast', ['verify', file, '--key', path('server.pub'), ...args], 90000);
     const { out } = await recorded(() => check(film, '--plant', plant.file, '--history', path('plant.history')));
-    assert.match(out, /the signatures of all 4 pictures are good, and none is missing/);
+    assert.match(out, /the signatures of all 4 frames are good, and no frame is missing/);
     assert.equal(out.match(/64200 of 64200 pixels agree with the redrawn picture within 1\/255/g).length, 4);
     assert.equal(out.match(/3 of 3 readings agree with the recorded history/g).length, 4);
     const bad = (file, why) => {
@@ -396,7 +396,7 @@ test('a film is good picture by picture; one that was changed, cut or encoded ag
         assert.match(told.err, why);
     };
     const other = runProgram('plantcast', ['verify', film, '--key', path('other.pub')]);
-    assert.match(other.err, /picture 1: the picture was signed with another key/);
+    assert.match(other.err, /frame 1: the picture was signed with another key/);
     const reencoded = (name, ...how) => {
         const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '0', '-movflags',
             'use_metadata_tags', ...how, path(name)], { encoding: 'utf8' });
@@ -418,16 +418,16 @@ test('a film is good picture by picture; one that was changed, cut or encoded ag
         '-map_metadata', '0', '-movflags', 'use_metadata_tags', path('sound.mp4')]).status, 0);
     bad(path('sound.mp4'), /box trak occurs twice/);
     bad(reencoded('pieces.mp4', '-c', 'copy', '-movflags', 'use_metadata_tags+frag_keyframe'), /unexpected box mvex/);
-    bad(reencoded('lossy.mp4', '-c:v', 'libx264rgb', '-crf', '20'), /picture 1: the pixels of the picture differ from the signed pixels/);
+    bad(reencoded('lossy.mp4', '-c:v', 'libx264rgb', '-crf', '20'), /frame 1: the pixels of the picture differ from the signed pixels/);
     bad(reencoded('yuv.mp4', '-c:v', 'libx264', '-pix_fmt', 'yuv420p', '-vf', 'crop=320:200'),
-        /not encoded as plantcast clip --signed|box colr/);
+        /not encoded in the way that `plantcast clip --signed`|box colr/);
     bad(reencoded('box.mp4', ...LOSSLESS, '-vf', "drawbox=10:10:1:1:red:fill:enable='eq(n,2)'"),
-        /picture 3: the pixels of the picture differ/);
+        /frame 3: the pixels of the picture differ/);
     const PASS = [...LOSSLESS, '-fps_mode', 'passthrough'];
     bad(reencoded('less.mp4', ...PASS, '-vf', "select='not(eq(n,1))'"),
-        /picture [23]: (the pixels .*differ|the duration of the picture differs)/);
-    bad(reencoded('short.mp4', ...LOSSLESS, '-frames:v', '3'), /the film has 3 pictures but signed statements of 4 pictures/);
-    bad(reencoded('slow.mp4', ...PASS, '-vf', "setpts='if(gte(N,2),PTS+3/TB,PTS)'"), /duration of the picture differs from that of the/);
+        /frame [23]: (the pixels .*differ|the frame's duration differs)/);
+    bad(reencoded('short.mp4', ...LOSSLESS, '-frames:v', '3'), /the clip has 3 frames but signed statements for 4 frames/);
+    bad(reencoded('slow.mp4', ...PASS, '-vf', "setpts='if(gte(N,2),PTS+3/TB,PTS)'"), /the frame's duration differs from that of the/);
     bad(reencoded('turned.mp4', '-c', 'copy', '-metadata:s:v', 'rotate=180'), /box tkhd differs/);
     assert.equal(spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '-1', '-c', 'copy', path('bare.mp4')]).status, 0);
     bad(path('bare.mp4'), /box (udta is missing|meta differs)/);
@@ -439,7 +439,7 @@ test('a film is good picture by picture; one that was changed, cut or encoded ag
         assert.match(told.err, new RegExp(why), what);
     }
     writeFileSync(path('cut.mp4'), bytes.subarray(0, bytes.length - 2000));
-    bad(path('cut.mp4'), /pictures|decoded|incomplete|read|damaged/);
+    bad(path('cut.mp4'), /frames|decoded|incomplete|read|damaged/);
     const plain = runProgram('plantcast', ['clip', plant.file, '-o', film, '--from', from, '--to', to, '--signed']);
     assert.equal(plain.code, 2);
     assert.match(plain.err, /needs the URL of a daemon/);
@@ -454,11 +454,11 @@ test('a tour is filmed signed, with its texts beside it; its views are printed',
     const check = (...args) => runProgram('plantcast', ['verify', film, '--key', path('server.pub'), ...args], 90000);
     const { code, out, err } = check('--tour', '--plant', plant.file);
     assert.equal(code, 0, out + err);
-    assert.match(out, /all 4 pictures are good[^]*view from \S+: .*camera=2,-4,3,0,0,0\b.*\n {2}view from \S+: .*group=pressure/);
+    assert.match(out, /all 4 frames are good[^]*view from \S+: .*camera=2,-4,3,0,0,0\b.*\n {2}view from \S+: .*group=pressure/);
     assert.equal(out.match(/64000 of 64000 pixels agree with the redrawn picture within 1\/255/g).length, 4);
     const strict = check();
     assert.equal(strict.code, 1, strict.out);
-    assert.match(strict.err, /picture 3: the view differs/);
+    assert.match(strict.err, /frame 3: the view differs/);
 });
 
 test('frames of a tile are not signed, whenever it is asked', { skip }, async () => {

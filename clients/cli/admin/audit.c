@@ -14,13 +14,14 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast audit verify FILE [--known LINE:HASH]\n"
           "\n"
-          "Checks that nobody altered the audit trail that plantcastd --audit FILE writes, including its older files.\n"
-          "Each line contains a hash of itself and of the line before, which reveals changed, removed and added lines.\n"
-          "FILE.head contains the hash of the last line, which reveals lines removed from the end.\n"
-          "If an intruder rewrote FILE and FILE.head together, only a hash kept elsewhere reveals the change:\n"
+          "Checks that nobody altered the audit trail written by plantcastd --audit FILE, including its older files.\n"
+          "Each line contains a hash of itself and of the previous line, so that changed, removed and added lines\n"
+          "are detected.\n"
+          "FILE.head contains the hash of the last line, so that lines removed from the end are detected.\n"
+          "If an intruder rewrote both FILE and FILE.head, only a hash that is kept elsewhere reveals the change:\n"
           "\n"
-          "  --known LINE:HASH   line number and hash of an audit line that the journal or the syslog server\n"
-          "                      recorded; proves that the audit trail is unchanged up to that line\n",
+          "  --known LINE:HASH   line number and hash of an audit line, as recorded by the journal or the syslog\n"
+          "                      server; proves that the audit trail is unchanged up to that line\n",
           out);
 }
 

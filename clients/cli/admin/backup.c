@@ -51,27 +51,28 @@ static void print_usage(FILE *out)
           "       plantcast backup --verify FOLDER\n"
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
-          "backup NAME backs up all files of the service plantcastd@NAME and verifies the backup. The service may run.\n"
-          "Included: plant file, models, options, keys, tokens, sign-in, tag list, history, alarm journal, audit trail,\n"
-          "views, notes, and all other files that the options or the plant file name. Not included: prepared files.\n"
+          "backup NAME backs up all files of the service plantcastd@NAME and verifies the backup. The service can keep running.\n"
+          "Included: plant file, models, options, keys, tokens, sign-in settings, tag list, history, alarm journal, audit\n"
+          "trail, views, notes, and all other files named in the options or the plant file. Not included: prepared files.\n"
           "restore FOLDER sets up the service from the backup, on a machine that has only the packages installed.\n"
           "\n"
           "  -o, --out FOLDER        folder to create for the backup (default: /var/backups/plantcast/NAME/TIME)\n"
-          "  --recipient KEY         public key (age1..., ssh-ed25519 ...) for which age encrypts keys and tokens;\n"
+          "  --recipient KEY         public key (age1..., ssh-ed25519 ...) with which age encrypts keys and tokens;\n"
           "                          may be repeated to encrypt for several recipients\n"
-          "  --recipients-file FILE  file of public keys for which age encrypts keys and tokens, one per line\n"
-          "  --passphrase            encrypt keys and tokens with a passphrase, for which age asks\n"
-          "  --without-secrets       leave keys, tokens and sign-in out of the backup; with restore: do not restore\n"
-          "                          the encrypted keys, tokens and sign-in of the backup\n"
+          "  --recipients-file FILE  file of public keys, one per line, with which age encrypts keys and tokens\n"
+          "  --passphrase            encrypt keys and tokens with a passphrase; age prompts for it\n"
+          "  --without-secrets       leave keys, tokens and sign-in settings out of the backup; with restore: do not\n"
+          "                          restore the encrypted keys, tokens and sign-in settings\n"
           "  --to sftp://[USER@]HOST[:PORT]/FOLDER    also copy the backup to HOST by SFTP, with an SSH key\n"
           "  --hook PROGRAM          run PROGRAM after the backup, with the backup's folder as its argument\n"
           "  --keep N                after the backup, delete all but the newest N backups of this plant in\n"
           "                          /var/backups/plantcast/NAME, and all but the newest N copies at --to\n"
-          "  --identity FILE         private key with which age decrypts (default: age asks for the passphrase)\n"
+          "  --identity FILE         private key with which age decrypts keys and tokens (default: age prompts for\n"
+          "                          the passphrase)\n"
           "  --root DIR              use the files below DIR instead of /, for tests and system images\n"
           "\n"
           "backup PLANT.yaml copies history, alarm journal, loop checks, plant file and tag list to FOLDER.\n"
-          "Only the owner can read FOLDER. The daemon may run meanwhile: the copy of each database is consistent.\n"
+          "Only the owner can read FOLDER. The daemon can keep running: the copy of each database is consistent.\n"
           "backup PLANT.yaml copies no models and follows no symbolic links.\n"
           "A file whose owner differs from the owner of its folder is skipped, even if root runs the command.\n"
           "\n"
@@ -82,7 +83,8 @@ static void print_usage(FILE *out)
           "If root runs restore, each restored file gets the owner of its folder.\n"
           "If one of the files to restore exists already, restore writes nothing and fails.\n"
           "\n"
-          "  --history DIR           folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n",
+          "  --history DIR           folder of recorded readings (default: the folder given in the plant file, else\n"
+          "                          /var/lib/plantcast/NAME/history for the service plantcastd@NAME, else PLANT.history)\n",
           out);
 }
 
@@ -238,9 +240,9 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
     bool good = false;
     job->folder = part;
     if (is_ours(tags) || !strcmp(tags, PLANT_FILE) || !strcmp(tags, MANIFEST))
-        say(plant->files.tags_path, "a backup uses the name of this tag list for another file: rename the tag list");
+        say(plant->files.tags_path, "a backup contains another file with the name of this tag list: rename the tag list");
     else if (access(out, F_OK) == 0)
-        say(out, "exists already: choose another folder for the backup with -o");
+        say(out, "this folder exists already: choose another folder for the backup with -o");
     else if (mkdir(part, 0700) != 0)
         say(part, strerror(errno));
     else {
@@ -267,7 +269,8 @@ static bool is_known_version(const char *path, const char *version)
 {
     if (!version || strverscmp(version, PLANTCAST_VERSION) <= 0)
         return true;
-    fprintf(stderr, "plantcast: %s: Plantcast %s made this backup: install version %s or later instead of " PLANTCAST_VERSION "\n", path,
+    fprintf(stderr, "plantcast: %s: this backup was made by Plantcast %s: install version %s or later instead "
+                    "of " PLANTCAST_VERSION "\n", path,
             version, version);
     return false;
 }
@@ -281,7 +284,7 @@ static json_t *read_manifest(const char *folder)
     bool good =
         json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
-        say(path, text ? "is not the file list of a backup, or has a version that this program cannot read" : strerror(errno));
+        say(path, text ? "this file is not the file list of a backup, or has a version that this program cannot read" : strerror(errno));
     good = good && is_known_version(path, json_string_value(json_object_get(manifest, "plantcast")));
     if (!good && manifest) {
         json_decref(manifest);
@@ -321,7 +324,8 @@ static bool is_whole(struct backup_job *job)
 static bool is_free(const char *path)
 {
     struct stat st;
-    return lstat(path, &st) != 0 || say(path, "exists already, so nothing was restored: move this file away or restore to another folder");
+    return lstat(path, &st) != 0 || say(path, "this file exists already, so nothing was restored: move it away or restore to another "
+                                              "folder");
 }
 
 /* Returns the path to which a file of the backup is restored (mem_free). tags: path of the tag list as the plant file writes it; NULL:

@@ -22,7 +22,7 @@ int daemon_download(const struct daemon_access *access, const char *url_text, co
             fprintf(stderr, "plantcast: %s: %s\n", out, strerror(-error));
         result = error ? 1 : 0;
     } else if (status) {
-        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", url_text, status, body.at ? body.at : "");
+        fprintf(stderr, "plantcast: %s: the daemon answered with HTTP status %d: %s\n", url_text, status, body.at ? body.at : "");
     }
     text_finish(&body);
     return result;

@@ -21,10 +21,10 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast drain PID [--wait SECONDS]\n"
           "\n"
           "Sends SIGUSR1 to the daemon with process ID PID, which moves its sessions to other daemons within 12 s.\n"
-          "Returns when all sessions are moved or the daemon has ended.\n"
+          "Returns when all sessions have moved or the daemon has exited.\n"
           "Intended for the preStop hook of a container and for ExecStop= of a systemd unit.\n"
           "\n"
-          "  --wait SECONDS  maximum time to wait until all sessions are moved; 0: do not wait (default: 13)\n",
+          "  --wait SECONDS  maximum time to wait until all sessions have moved; 0: do not wait (default: 13)\n",
           out);
 }
 

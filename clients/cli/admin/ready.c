@@ -11,7 +11,7 @@ static const char usage[] =
     "usage: plantcast ready URL\n"
     "\n"
     "Checks that the daemon at URL (http://HOST:PORT/ or https://HOST:PORT/) serves pictures.\n"
-    "Also checks that a WebSocket to the daemon can be opened, which a reverse proxy may block.\n"
+    "Also checks that a WebSocket to the daemon can be opened, because a reverse proxy may block WebSockets.\n"
     "If the daemon is not ready, prints the reason. Exit status: 0 ready, 1 not ready.\n";
 
 int cmd_ready(const struct daemon_access *access, int argc, char **argv)

@@ -21,11 +21,11 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast reload PID [--runtime DIR] [--timeout SECONDS]\n"
           "\n"
           "Sends SIGHUP to the daemon with process ID PID, which reloads its plant file and tag list.\n"
-          "Waits for the result. If the daemon rejects the files, prints the reasons; the old ones stay in use.\n"
+          "Waits for the result. If the daemon rejects the files, prints the reasons; the daemon keeps the old files in use.\n"
           "Intended for ExecReload= of a systemd unit. From another machine, use POST /api/v1/reload.\n"
           "\n"
-          "  --runtime DIR      folder to which the daemon writes the result, which is RUNTIME_DIRECTORY in its\n"
-          "                     environment (default: RUNTIME_DIRECTORY in the environment of this command)\n"
+          "  --runtime DIR      folder to which the daemon writes the result: the value of RUNTIME_DIRECTORY in the\n"
+          "                     daemon's environment (default: RUNTIME_DIRECTORY in this command's environment)\n"
           "  --timeout SECONDS  maximum time to wait for the result (default: 600)\n"
           "Exit status: 0 reloaded, 1 rejected.\n",
           out);
@@ -77,7 +77,7 @@ static int reload(const char *daemon, pid_t pid, const char *runtime, int timeou
         while (!(result = read_result(path, since_ns)) && kill(pid, 0) == 0 && clock_mono_ns() < end_ns)
             usleep(50000);
         status = result ? say(result)
-                        : fail(daemon, clock_mono_ns() >= end_ns ? "the reload had no result before --timeout"
+                        : fail(daemon, clock_mono_ns() >= end_ns ? "the daemon did not finish the reload within --timeout"
                                                                  : "the daemon exited during the reload");
     }
     json_decref(result);

@@ -18,9 +18,9 @@ static void print_usage(FILE *out)
           "Run this command on the machine of the core that leads. NAME: name of the service plantcastd@NAME.\n"
           "FOLDER: history folder of the core.\n"
           "\n"
-          "  maintenance  begin maintenance: the core leads alone, even while PostgreSQL is down. No other core\n"
-          "               takes over, even if this core stops, until this core runs again. PostgreSQL must answer\n"
-          "               when maintenance begins; /metrics then has plantcast_core_standby_maintenance 1\n"
+          "  maintenance  begin maintenance: this core leads alone, even while PostgreSQL is down. If this core\n"
+          "               stops, no other core takes over: no core leads until this core runs again. PostgreSQL must be\n"
+          "               reachable when maintenance begins. During maintenance, /metrics shows plantcast_core_standby_maintenance 1\n"
           "  normal       end maintenance: a standby that follows the core may take over again\n",
           out);
 }

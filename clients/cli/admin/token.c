@@ -27,20 +27,22 @@ static void print_usage(FILE *out)
           "       plantcast token list FILE\n"
           "       plantcast token revoke FILE NAME\n"
           "\n"
-          "add creates a token and prints the token once. FILE stores only the SHA-256 hash of the token.\n"
-          "A missing FILE is created.\n"
-          "A daemon with --tokens FILE applies changes of FILE within 3 s, and closes sessions of revoked tokens.\n"
+          "`add` creates a token and prints it once. FILE stores only the token's SHA-256 hash.\n"
+          "If FILE does not exist, `add` creates it.\n"
+          "A daemon with --tokens FILE applies changes to FILE within 3 s, and closes the sessions of revoked tokens.\n"
           "\n"
           "  --role ROLE      what the token permits: viewer, operator or engineer for users and programs;\n"
           "                   renderer or standby for a daemon that connects to a core\n"
           "  --name NAME      name of the user or program that will use the token\n"
           "  --until DATE     last day on which the token is valid, as YYYY-MM-DD (default: no expiry)\n"
-          "  --plant PLANT    name of the only plant for which the token is valid (default: all plants with FILE)\n"
-          "  --views ID,...   restrict a viewer's token to pictures (/snapshot.png?view=ID) of these views of the\n"
+          "  --plant PLANT    name of the only plant for which the token is valid (default: all plants whose\n"
+          "                   daemon uses FILE)\n"
+          "  --views ID,...   restrict a viewer's token to pictures (/snapshot.png?view=ID) of these views in the\n"
           "                   plant file\n"
-          "  --display WALL:NUMBER  restrict a viewer's token to this display of a video wall of the plant file;\n"
+          "  --display WALL:NUMBER  restrict a viewer's token to this display of a video wall in the plant file;\n"
           "                   implies --unattended\n"
-          "  --unattended     exempt the token from sign-out by plantcastd --lock-after: for video walls, programs\n"
+          "  --unattended     never sign out users of this token after inactivity (plantcastd --lock-after);\n"
+          "                   for video walls and programs\n"
           "\n"
           "FILE must be in a folder that root or you own, and must not be a symbolic link.\n"
           "To let the daemon read FILE: chown root:plantcast FILE; chmod 640 FILE\n",
@@ -177,7 +179,7 @@ static void print_holder(const struct token_holder *holder)
     char display[sizeof(holder->wall) + 32] = "";
     if (holder->display)
         snprintf(display, sizeof(display), "  display %s:%d", holder->wall, holder->display);
-    printf("%-10s %s  %s%s%s%s%s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "without end", until,
+    printf("%-10s %s  %s%s%s%s%s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "no expiry", until,
            holder->plant[0] ? "  plant " : "", holder->plant, holder->views[0] ? "  views " : "", holder->views, display,
            holder->unattended ? "  unattended" : "", holder->until_utc_ns <= clock_utc_ns() ? "  (expired)" : "");
 }
@@ -219,7 +221,7 @@ static int take_back(const char *path, const char *name)
         line += n;
     }
     if (old && !found)
-        fail_at(path, "this token file has no token of that name: see plantcast token list");
+        fail_at(path, "this token file has no token with that name: `plantcast token list` prints the names");
     else if (old)
         result = write_file(path, &text);
     text_finish(&text);

@@ -40,14 +40,14 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast fleet FLEET.yaml [--check]\n"
           "       plantcast fleet FLEET.yaml --serve [--address ADDRESS] [--port PORT] [--host NAME]\n"
           "\n"
-          "Serves one overview page and one /metrics for the daemons of many plants.\n"
-          "The page shows a small picture, the alarms by priority and the lost field devices of each plant,\n"
-          "and the version, certificate, disk space and last backup of each daemon.\n"
-          "If the daemon of a plant does not answer, the page shows since when.\n"
-          "The page has no sign-in: put a reverse proxy in front of the page that decides which users may see it.\n"
+          "Serves one overview page and one /metrics page for the daemons of many plants.\n"
+          "For each plant, the page shows a small picture, the alarms by priority and the field devices without a\n"
+          "connection. For each daemon, it shows the version, certificate, disk space and last backup.\n"
+          "If a daemon does not answer, the page shows since when.\n"
+          "The page has no sign-in: to control who can see it, put it behind a reverse proxy.\n"
           "MONITORING.md describes FLEET.yaml.\n"
           "\n"
-          "  --check            check FLEET.yaml for errors, and serve nothing\n"
+          "  --check            check FLEET.yaml for errors and exit\n"
           "  --address ADDRESS  address of this machine to listen on: 127.0.0.1 or ::1 (default: 127.0.0.1)\n"
           "  --port PORT        TCP port to listen on; 0: any free port (default: 8090)\n"
           "  --host NAME        host name under which browsers reach the reverse proxy; requests for other host\n"
@@ -223,7 +223,7 @@ static int serve(const struct fleet_file *file, const char *address, int port, c
         while (!atomic_load(&ending) && lws_service(context, 0) >= 0)
             continue;
     } else if (site.poll) {
-        fprintf(stderr, "plantcast: cannot listen on %s port %d: another program may use the port\n", address, port);
+        fprintf(stderr, "plantcast: cannot listen on %s port %d: another program may be using the port\n", address, port);
     }
     atomic_store(&serving, NULL);
     if (context)

@@ -36,7 +36,7 @@ static const char *wrong_with(const char *url)
     if (length == 0)
         return "the address contains no host name";
     if (memchr(host + 3, '@', length))
-        return "expected an address without a password: write a token to a file and name the file in token_file";
+        return "expected an address without a password: write a token to a file, and give the file's path in `token_file`";
     if (strpbrk(url, "?# \t\"<>"))
         return "expected the address of the plant's page, without ?, # and white space";
     return NULL;
@@ -109,7 +109,7 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct fleet
         plant->url = plain;
         if (plant->token_file && is_in_clear(plain))
             yaml_error(reader, yaml_map_place(&map, "url"),
-                       "url: a plant with token_file needs an address that begins with https:// or is on this machine");
+                       "url: a plant with `token_file` needs an https:// address, or a server on this machine");
     }
     if (!plant->name && plant->id)
         plant->name = mem_strdup(plant->id);
@@ -123,7 +123,7 @@ static void read_plants(struct yaml_reader *reader, yaml_node_t *node, void *rec
     struct fleet_file *file = record;
     int count = yaml_list_count(reader, node, "plants");
     if (count == 0 || count > FLEET_PLANTS)
-        yaml_error(reader, yaml_place(node), "plants: expected 1 to %d, found %d", FLEET_PLANTS, count);
+        yaml_error(reader, yaml_place(node), "plants: expected 1 to %d plants, found %d", FLEET_PLANTS, count);
     if (count <= 0 || count > FLEET_PLANTS)
         return;
     file->plants = mem_array((size_t)count, sizeof(*file->plants));

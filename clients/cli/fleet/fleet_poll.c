@@ -216,7 +216,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
     curl_multi_setopt(poll->multi, CURLMOPT_MAXCONNECTS, (long)(file->count + AT_ONCE));
     poll->started = pthread_create(&poll->thread, NULL, fleet_poll_main, poll) == 0;
     if (!poll->started) {
-        fprintf(stderr, "plantcast: cannot start a thread\n");
+        fprintf(stderr, "plantcast: cannot start the thread that polls the plants' servers\n");
         fleet_poll_stop(&poll);
     }
     return poll;

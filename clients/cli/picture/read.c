@@ -23,7 +23,7 @@ static void print_usage(FILE *out)
           "Prints the value that a pixel shows, and the range of values that have the same colour.\n"
           "PICTURE is a PNG or JPEG drawn with --strip legend (/snapshot.png: strip=legend).\n"
           "PICTURE may be scaled, compressed, or part of a screenshot.\n"
-          "The strip contains the range and the unit of the values; metadata of the file are not needed.\n"
+          "The strip contains the range and the unit of the values, so the file's metadata is not needed.\n"
           "X and Y are the column and row of a pixel, counted from 0 at the upper left corner.\n"
           "Exit status: 0 success, 1 no strip in the picture or no value at a pixel, 2 unreadable picture.\n",
           out);

@@ -40,7 +40,7 @@ bool saved_view_add_address(struct snapshot_options *options, const char *id, co
         *equals = 0;
         good = snapshot_add_arg(options, address.args[i], equals + 1);
         if (!good)
-            fprintf(stderr, "plantcast: view '%s': more than %d parameters, with those of the command line\n", id, SNAPSHOT_MAX);
+            fprintf(stderr, "plantcast: view '%s' and the command line together have more than %d parameters\n", id, SNAPSHOT_MAX);
     }
     view_address_finish(&address);
     return good;
@@ -66,7 +66,7 @@ static void print_unknown(const json_t *list, const char *from, const char *name
 {
     const json_t *view;
     size_t i;
-    fprintf(stderr, "plantcast: %s: no view has the id '%s', or is the only one with this title; %s\n", from, name,
+    fprintf(stderr, "plantcast: %s: '%s' is neither the id of a view nor the title of exactly one view; %s\n", from, name,
             json_array_size(list) ? "ids and titles of the views:" : "there are no views");
     json_array_foreach(list, i, view) fprintf(stderr, "  %-24s %s\n", saved_view_text(view, "id"), saved_view_text(view, "title"));
 }
@@ -100,7 +100,7 @@ bool saved_view_add_from_daemon(struct snapshot_options *options, bool present)
         /* the token permits only pictures of some views, not the list of views: the daemon decides by the view's id */
         good = snapshot_add_arg(options, "view", options->view);
     } else if (status) {
-        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", options->from, status, answer);
+        fprintf(stderr, "plantcast: %s: the daemon answered with HTTP status %d: %s\n", options->from, status, answer);
     }
     text_finish(&body);
     return good;

@@ -19,33 +19,33 @@ static const char snapshot_usage[] =
     "  -o, --out FILE          PNG file to write\n"
     "  --pick X,Y              print asset, position, value and nearest sensors at pixel X,Y as JSON;\n"
     "                          without -o, write no picture\n"
-    "  --at INSTANT            draw recorded readings of this instant instead of the present readings;\n"
-    "                          with --values: instant that the clock of the picture shows\n"
+    "  --at TIME               draw the readings recorded at this time instead of the present readings;\n"
+    "                          with --values: time that the picture's clock shows\n"
     "  --values FILE           with a plant file: CSV file of readings to draw; may be repeated\n"
     "                          Columns of FILE: tag,value[,quality][,unit] (default unit: the tag's Eng Units).\n"
-    "                          Tags that no such FILE contains are drawn as tags without data\n";
+    "                          Tags that are in none of these files are drawn without data\n";
 static const char clip_usage[] =
-    "usage: plantcast clip (PLANT.yaml | http://HOST:PORT/) -o OUT.mp4 --from INSTANT --to INSTANT [OPTION ...]\n"
+    "usage: plantcast clip (PLANT.yaml | http://HOST:PORT/) -o OUT.mp4 --from TIME --to TIME [OPTION ...]\n"
     "\n"
-    "Makes a film of recorded readings. Each picture shows the instant of its readings and the word HISTORY.\n"
+    "Renders recorded readings as a video clip. Each frame shows the time of its readings and the word HISTORY.\n"
     "\n"
-    "  -o, --out FILE          H.264 film to write; its name ends in .mp4, .mkv or .mov\n"
-    "  --from, --to INSTANT    start and end of the period of recorded readings that the film shows\n"
-    "  --tour ID               film the tour ID of the plant file: its views one after another, with texts\n"
-    "                          The tour sets view and length; of the view options, only --size is allowed\n"
-    "  --speed F               seconds of recorded time per second of film (default: 60; with --tour: 1)\n"
-    "  --fps F                 frames per second of the film (default: 25)\n"
-    "  --signed                store the server's signature of each picture in the film (plantcast verify);\n"
+    "  -o, --out FILE          H.264 video file to write; the name must end in .mp4, .mkv or .mov\n"
+    "  --from, --to TIME       start and end of the recorded period that the clip shows\n"
+    "  --tour ID               show the tour ID of the plant file: its views one after another, with captions\n"
+    "                          The tour determines views and length; of the view options, only --size is allowed\n"
+    "  --speed F               seconds of recorded time per second of the clip (default: 60; with --tour: 1)\n"
+    "  --fps F                 frames per second of the clip (default: 25)\n"
+    "  --signed                store the server's signature of each frame in the clip (see `plantcast verify`);\n"
     "                          needs a daemon with --signing-key\n"
-    "                          A signed film is lossless: large, and browsers cannot play it\n"
-    "                          The texts of a tour are written to OUT.vtt and are not signed\n";
+    "                          A signed clip is lossless: the file is large, and browsers cannot play it\n"
+    "                          The captions of a tour are written to OUT.vtt and are not signed\n";
 static const char instant_usage[] =
-    "  INSTANT                 a time such as 2026-11-20T10:00:00Z (or offset +01:00), seconds since 1970, or -8h (8 hours ago)\n"
+    "  TIME                    a time such as 2026-11-20T10:00:00Z (or offset +01:00), seconds since 1970, or -8h (8 hours ago)\n"
     "  --size WxH              width and height of the picture in pixels (default: 1280x720)\n";
 static const char view_usage[] =
-    "  --view NAME             camera and all settings of the named view with this id or title, of the plant file or\n"
-    "                          saved on the page. The readings are the present ones, or those of --at. Other options\n"
-    "                          replace settings of the view\n"
+    "  --view NAME             use the camera and all settings of the view with this id or title. The view is in the\n"
+    "                          plant file or was saved on the page. Other options override the view's settings.\n"
+    "                          The readings are the present ones, or those recorded at --at TIME\n"
     "Camera:\n"
     "  --camera EX,EY,EZ,TX,TY,TZ[,FOV]\n"
     "                          camera position E and target point T in metres, in plant coordinates, and\n"
@@ -53,8 +53,8 @@ static const char view_usage[] =
     "  --projection TYPE       projection of the camera: perspective or orthographic\n"
     "  --height M              height of the picture in metres, with --projection orthographic\n"
     "  --fit ITEM              move the camera so that this asset or tag fills the picture (default: whole plant)\n"
-    "  --side SIDE             side from which the camera looks at the item of --fit: top, bottom, front, back,\n"
-    "                          left, right, iso (diagonally from above) or now (the direction of --camera)\n"
+    "  --side SIDE             side from which the camera looks at the item given with --fit: top, bottom, front,\n"
+    "                          back, left, right, iso (diagonally from above) or now (the direction of --camera)\n"
     "Field (values on the surface, computed from the sensors; default: the settings of the sensor group):\n"
     "  --group ID              sensor group to show (default: first group of the plant file)\n"
     "  --distance METHOD       how distances from sensors are measured: geodesic (along the surface),\n"
@@ -73,16 +73,16 @@ static const char view_usage[] =
     "                          strength and decay of single sensors, instead of those in the tag list\n"
     "  --show QUANTITY         quantity that the colours show:\n"
     "                            value        readings of the sensors\n"
-    "                            distance     metres from the sensor of --sensor\n"
+    "                            distance     distance in metres from the sensor given with --sensor\n"
     "                            difference   change of the readings since --baseline\n"
     "                            operator     position of each reading between the alarm limits of its tag\n"
     "                            uncertainty  standard deviation of --interpolation gp\n"
     "                            blind        height of the smallest hot spot that the sensors would notice\n"
-    "  --sensor TAG            sensor from which --show distance measures\n"
-    "  --baseline BASELINE     readings with which --show difference compares: with a plant file, a CSV file\n"
-    "                          as for --values; with a daemon, the name of a saved baseline\n"
+    "  --sensor TAG            sensor to measure from, with --show distance\n"
+    "  --baseline BASELINE     readings to compare with, for --show difference: with a plant file, a CSV file as\n"
+    "                          for --values; with a daemon, the name of a saved baseline\n"
     "Colours:\n"
-    "  --range MIN,MAX         values at the two ends of the colour map (default: the range of the group)\n"
+    "  --range MIN,MAX         values at the two ends of the colour map (default: the range of the sensor group)\n"
     "  --scale linear|log      how values are spread over the colour map: linearly or logarithmically\n"
     "  --ramp UNITS            size of one colour band in the unit of the values; 0: continuous colours\n"
     "  --breaks V,V,...        values at which one colour band ends and the next begins; `group` or `limits`:\n"
@@ -94,7 +94,7 @@ static const char view_usage[] =
     "                          also an image file whose pixels, from left to right, are the colours\n"
     "Look:\n"
     "  --look STYLE            style of the surfaces: default, glossy, flat, or materials (colours of the model,\n"
-    "                          without the values of the sensors)\n"
+    "                          not coloured by the sensors' values)\n"
     "  --light X,Y,Z           direction from the plant towards the sun\n"
     "  --environment ID        surroundings that light the plant: sky, or ID of an environment in the plant file\n"
     "  --backdrop light|dark   background of the picture\n"
@@ -104,23 +104,26 @@ static const char view_usage[] =
     "  --select ASSET          draw an outline around this asset\n"
     "  --hide ASSET,...        hide these assets; \"\": show even the assets that the plant file hides\n"
     "  --isolate ASSET,...     show only these assets; \"\": show all assets\n"
-    "  --ghost ASSET,...       draw these assets transparent, without colours of values; \"\": no asset\n"
+    "  --ghost ASSET,...       draw these assets transparent, not coloured by values; \"\": no asset\n"
     "  --clip NX,NY,NZ,D[;...] cut away all points (x,y,z) with NX x + NY y + NZ z + D < 0; at most 6 planes\n"
     "  --clip-box X,Y,Z,X,Y,Z  cut away everything outside the box between these two corners (metres)\n"
-    "  --split \"PARAM=V;...\"   draw a second picture to the right of the first, with the same camera and options,\n"
-    "                          except for the options PARAM (written without --, such as interpolation=gp)\n"
-    "                          PARAM of --ramp, --radius and --reach: ramp_interval, radius_m and reach_m\n";
+    "  --split \"PARAM=V;...\"   draw a second picture to the right of the first, with the same camera and options\n"
+    "                          except for those given here. PARAM is the name of an option without --, such as\n"
+    "                          interpolation=gp; for --ramp, --radius and --reach, PARAM is ramp_interval,\n"
+    "                          radius_m and reach_m\n";
 static const char offline_usage[] =
     "Only with a plant file (offline):\n"
-    "  --history FOLDER        folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n"
-    "  --prepared FOLDER       output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
-    "  --tier still|moving     quality of the picture: as of a still or a moving camera (default: still)\n"
-    "  --no-overlay            leave out legend, markers of sensors and clock\n"
+    "  --history FOLDER        folder of recorded readings (default: the folder given in the plant file, or\n"
+    "                          PLANT.history; for the service plantcastd@NAME: /var/lib/plantcast/NAME/history)\n"
+    "  --prepared FOLDER       output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml;\n"
+    "                          for the service plantcastd@NAME: /var/lib/plantcast/NAME/prepared)\n"
+    "  --tier still|moving     quality of the picture, as for a still or a moving camera (default: still)\n"
+    "  --no-overlay            omit legend, sensor markers and clock\n"
     "  --field WHERE           where the field is computed: vertices (fast), or per-fragment (at each pixel;\n"
     "                          slow, for comparison) (default: vertices)\n"
     "  --gl CONTEXT            OpenGL context: auto (the first that works), egl-device, egl-surfaceless or\n"
-    "                          osmesa (draws on the CPU) (default: auto)\n"
-    "  --gl-device N           number of the GPU that draws (see `plantcastd --list-gl-devices`)\n";
+    "                          osmesa (draws on the CPU, not the GPU) (default: auto)\n"
+    "  --gl-device N           number of the GPU that draws the picture (see `plantcastd --list-gl-devices`)\n";
 
 /* Options that are also parameters of /snapshot.png: option and name of the parameter. */
 static const struct {
@@ -336,11 +339,11 @@ static int judge(const struct snapshot_options *options, bool clip, int left)
     if (!options->out && !options->pick)
         return wrong(clip, clip ? "-o FILE.mp4 is missing" : "-o FILE.png is missing");
     if (clip && (!options->from_text || (!options->to_text && !options->tour)))
-        return wrong(clip, "a film needs --from and --to, or --from and --tour");
+        return wrong(clip, "a clip needs --from and --to, or --from and --tour");
     if (options->tour && (options->to_text || !only_size(options)))
-        return wrong(clip, "--tour sets view and length of the film: leave out --to and all view options except --size");
+        return wrong(clip, "--tour determines the views and the length of the clip: omit --to and all view options except --size");
     if (options->is_signed && !strstr(options->out, ".mp4") && !strstr(options->out, ".mov"))
-        return wrong(clip, "--signed needs a film that ends in .mp4 or .mov, which can hold signatures");
+        return wrong(clip, "--signed needs an output file in .mp4 or .mov format: other formats cannot hold signatures");
     if (clip && !options->tour && options->from_us >= options->to_us)
         return wrong(clip, "--from must be earlier than --to");
     return -1;

@@ -11,14 +11,15 @@ static void print_usage(FILE *out)
           "                        [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
           "\n"
           "Checks the signature that a server with --signing-key wrote into PICTURE.png or CLIP.mp4.\n"
-          "A good signature proves that nobody changed pixels, readings, time, view or configuration since.\n"
-          "CLIP.mp4 is a film of `plantcast clip --signed`. A film with a missing picture is rejected.\n"
+          "A good signature proves that pixels, readings, time, view and configuration are unchanged since signing.\n"
+          "CLIP.mp4 is a clip made by `plantcast clip --signed`. A clip with a missing frame is rejected.\n"
           "\n"
           "  --key FILE          public key of the server (openssl pkey -in signing.key -pubout -out FILE)\n"
-          "  --tour              accept a film of a tour, whose view changes, and print each change\n"
+          "  --tour              accept a clip of a tour, in which the view changes, and print each change\n"
           "  --plant PLANT.yaml  redraw the picture from its readings, and count the pixels that agree within 1/255\n"
-          "  --prepared FOLDER   output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
-          "  --history FOLDER    compare the readings of the picture with the recorded readings in FOLDER\n"
+          "  --prepared FOLDER   output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml;\n"
+          "                      for the service plantcastd@NAME: /var/lib/plantcast/NAME/prepared)\n"
+          "  --history FOLDER    compare the picture's readings with the recorded readings in FOLDER\n"
           "Exit status: 0 all checks passed, 1 a check failed, 2 a check was not possible.\n",
           out);
 }

@@ -22,36 +22,37 @@ struct history_options {
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast history import PLANT.yaml FILE.csv [--folder DIR] [--start INSTANT [--unit ms|s|min|h]]\n"
-          "                                [--longest-gap TIME] [--encoding NAME]\n"
-          "       plantcast history export PLANT.yaml --tags A,B [--from INSTANT] [--to INSTANT] [--points N] [--folder DIR]\n"
+    fputs("usage: plantcast history import PLANT.yaml FILE.csv [--folder DIR] [--start TIME [--unit ms|s|min|h]]\n"
+          "                                [--longest-gap DURATION] [--encoding NAME]\n"
+          "       plantcast history export PLANT.yaml --tags A,B [--from TIME] [--to TIME] [--points N] [--folder DIR]\n"
           "\n"
-          "import adds readings, such as older ones, to the recorded history of a plant. The daemon may run meanwhile.\n"
+          "`import` adds readings to the recorded history of a plant, for example older ones. The daemon can keep running.\n"
           "FILE.csv has the columns Tag, Time, Value and optionally Quality and Unit,\n"
           "or FILE.csv has a column Time and one column for each tag.\n"
           "The time column is the one named Time, Timestamp, UTC, DateTime or Date, else the first column.\n"
           "Times look like 2026-11-20T10:00:00Z; times without a zone are in the time zone of the plant.\n"
-          "With --start, times are numbers that count from INSTANT in the unit of --unit.\n"
+          "With --start, times are numbers that count from that time, in the unit given with --unit.\n"
           "Values are in the tag's Eng Units, unless the column Unit names another unit.\n"
           "Blank cells, NaN and words such as Bad, No Data or I/O Timeout become readings of quality Bad.\n"
-          "If several rows of a tag have the same time, the last row counts.\n"
-          "If a row has an error, nothing is imported, and all errors are printed with line and column.\n"
+          "If several rows of a tag have the same time, the last row is used.\n"
+          "If any row has an error, nothing is imported, and all errors are printed with line and column.\n"
           "\n"
-          "export prints recorded readings as CSV that import can read (default: of the last hour).\n"
+          "`export` prints recorded readings as CSV that `import` can read (default: those of the last hour).\n"
           "\n"
-          "  --folder DIR     folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n"
-          "  --start INSTANT  instant that the number 0 in the time column represents\n"
+          "  --folder DIR     folder of recorded readings (default: the folder given in the plant file, or PLANT.history;\n"
+          "                   for the service plantcastd@NAME: /var/lib/plantcast/NAME/history)\n"
+          "  --start TIME     time that the number 0 in the time column stands for\n"
           "  --unit UNIT      unit of numbers in the time column: ms, s, min or h\n"
-          "  --longest-gap TIME  longest time between two readings of a tag, such as 90s, 15min, 8h or 2d\n"
-          "                   Between readings that are farther apart, the history has a gap without data.\n"
+          "  --longest-gap DURATION  show a gap without data between two readings of a tag that are farther apart\n"
+          "                   than DURATION, such as 90s, 15min, 8h or 2d.\n"
           "                   Default: the tag's column `Stale s`, unless shorter than the usual spacing of readings;\n"
           "                   else ten times the median spacing of the tag's readings (of all other tags' readings,\n"
           "                   if the tag has only two)\n"
           "  --encoding NAME  character encoding of FILE.csv, such as GB18030 or Windows-1251 (default: detected)\n"
-          "  --from, --to INSTANT  start and end of the period to export (default: the last hour)\n"
-          "  --points N       maximum number of rows for each tag (default: 20000). From more readings, export\n"
-          "                   prints the lowest, highest and mean value of short intervals\n"
-          "  INSTANT          a time such as 2026-11-20T10:00:00Z (or offset +01:00), seconds since 1970, or -8h (8 hours ago)\n",
+          "  --from, --to TIME  start and end of the period to export (default: the last hour)\n"
+          "  --points N       maximum number of rows for each tag (default: 20000). If there are more\n"
+          "                   readings, `export` prints the lowest, highest and mean value of short intervals\n"
+          "  TIME             a time such as 2026-11-20T10:00:00Z (or offset +01:00), seconds since 1970, or -8h (8 hours ago)\n",
           out);
 }
 
@@ -124,7 +125,7 @@ static void print_counts(const char *path, const struct import_counts *counts)
         printf("Encoding: %s\n", read_as);
         mem_free(read_as);
     }
-    printf("Bad samples: %lld\nDuplicate times: %lld (of the rows with equal tag and time, the last is used)\n", counts->bad,
+    printf("Bad samples: %lld\nDuplicate times: %lld (of rows with the same tag and time, the last row is used)\n", counts->bad,
            counts->duplicates);
     if (counts->samples)
         printf("Gaps without data: %lld (longer than %s%s%s)\n", counts->gaps, least, strcmp(least, most) ? " to " : "",
@@ -192,7 +193,7 @@ static int run_export(const struct history_options *options, const struct plant 
     if (options->from && !timestamp_parse(options->from, now_us, &from_us))
         return wrong("--from: expected " TIMESTAMP_FORMS ", found", options->from);
     if (from_us >= to_us)
-        return wrong("--from: expected an instant before --to, found", options->from ? options->from : "");
+        return wrong("--from: expected a time before --to, found", options->from ? options->from : "");
     struct history_reader *reader = history_reader_create(log, folder);
     history_reader_show_by(reader, plant);
     char *names = mem_strdup(options->tags), *rest = names;

@@ -23,17 +23,18 @@ struct suggest_options {
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast sensors suggest PLANT.yaml --add N [--group ID] [--asset ID] [--prepared FOLDER] [--csv]\n"
-          "       plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
+          "       plantcast sensors drift PLANT.yaml [--to TIME] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
           "       plantcast sensors accept PLANT.yaml ...      (details: plantcast sensors accept --help)\n"
           "\n"
           "suggest proposes positions for N more sensors that detect as many missed hot spots as possible.\n"
-          "A hot spot is missed if it raises the reading of no sensor by 5 % of the group's range.\n"
+          "A hot spot is missed if it raises no sensor's reading by at least 5 % of the group's range.\n"
           "The size of a hot spot is hot_spot_m of the sensor group (INTERPOLATIONS.md, show: blind).\n"
           "\n"
           "  --add N            number of sensors to propose\n"
           "  --group ID         sensor group of the new sensors (default: first group of the plant file)\n"
           "  --asset ID         propose positions only on this asset (default: all assets with sensors of the group)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml;\n"
+          "                     for the service plantcastd@NAME: /var/lib/plantcast/NAME/prepared)\n"
           "  --csv              print the proposed positions as CSV instead of text\n",
           out);
 }
@@ -49,7 +50,8 @@ static void print_suggestions(const struct suggest_options *options, const struc
             printf("%s,%.4f,%.4f,%.4f,%.5f,%.5f,%.5f,%.5f\n", asset, s->at_m[0], s->at_m[1], s->at_m[2], s->before, s->after,
                    s->unseen_before, s->unseen_after);
         else
-            printf("%2zu. %s at %.3f, %.3f, %.3f m: blindness falls from %.1f to %.1f %% (by %.1f); surface without any detection from "
+            printf("%2zu. %s at %.3f, %.3f, %.3f m: blindness falls from %.1f to %.1f %% (by %.1f); surface where no sensor detects "
+                   "anything: from "
                    "%.1f to %.1f %%\n",
                    i + 1, asset, s->at_m[0], s->at_m[1], s->at_m[2], 100 * s->before, 100 * s->after, 100 * (s->before - s->after),
                    100 * s->unseen_before, 100 * s->unseen_after);
@@ -58,7 +60,7 @@ static void print_suggestions(const struct suggest_options *options, const struc
         printf("%zu of %zu sensors proposed: more sensors would not detect more hot spots of group '%s'\n", count, options->count,
                group->id);
     if (!options->csv)
-        printf("Blindness of a place: how much hotter than its surroundings a hot spot of %g m must be there for a sensor to notice it, "
+        printf("Blindness of a place: how much hotter than its surroundings a hot spot of %g m must be before any sensor detects it, "
                "in %% of the group's range (%g %s).\n",
                group->hot_spot_m, group->max - group->min, group->unit);
 }

@@ -42,9 +42,11 @@ static void print_usage(FILE *out)
           "  --within M         only sensors at most M metres from the surface of their asset\n"
           "  --confidence C     only sensors whose match to their asset has at least this confidence, 0 to 1\n"
           "                     (confidences of matches are in matches.csv next to the tag list)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml;\n"
+          "                     for the service plantcastd@NAME: /var/lib/plantcast/NAME/prepared)\n"
           "  --dry-run          print the names of the sensors that would be accepted, and change nothing\n"
-          "  --undo LIST.N      restore the kept tag list LIST.N, if only the column `Place` has changed since\n"
+          "  --undo LIST.N      restore the kept tag list LIST.N, if nothing but the column `Place` has changed since\n"
+          "                     LIST.N was saved\n"
           "Exit status: 0 success, 1 no sensor was accepted or the tag list cannot be written.\n",
           out);
 }

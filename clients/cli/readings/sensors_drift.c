@@ -18,19 +18,21 @@ struct drift_options {
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
+    fputs("usage: plantcast sensors drift PLANT.yaml [--to TIME] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
           "\n"
           "Prints how far the readings of each sensor have drifted within one week.\n"
-          "Hourly means of the readings are compared with the values that the other sensors of the group\n"
-          "on the same asset predict (DRIFT.md).\n"
+          "Compares hourly means of the readings with the values predicted from the other sensors of the group\n"
+          "on the same asset (DRIFT.md).\n"
           "An asset needs at least three sensors of the group, and half a week of recorded readings.\n"
           "\n"
-          "  --to INSTANT       end of the week, such as 2026-11-20T10:00:00Z or -1d for a day ago (default: now)\n"
+          "  --to TIME          end of the week, such as 2026-11-20T10:00:00Z or -1d for a day ago (default: now)\n"
           "  --group ID         sensor group to check (default: all groups)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
-          "  --folder DIR       folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml;\n"
+          "                     for the service plantcastd@NAME: /var/lib/plantcast/NAME/prepared)\n"
+          "  --folder DIR       folder of recorded readings (default: the folder given in the plant file, or PLANT.history;\n"
+          "                     for the service plantcastd@NAME: /var/lib/plantcast/NAME/history)\n"
           "Output: CSV with columns tag, verdict (found, none or unknown), change, error, scatter, unit, hours, cause.\n"
-          "cause says what is missing for a verdict. A number that cannot be computed is empty.\n"
+          "The column `cause` says why a verdict is unknown. A number that cannot be computed is left empty.\n"
           "Exit status: 0 no sensor drifts, 1 a sensor drifts.\n",
           out);
 }

@@ -21,7 +21,7 @@ static void print_usage(FILE *out)
           "             (see plantcast tags --browse --help)\n"
           "  --probe    read one address of a Modbus device, and print the value in every type and byte order\n"
           "             DEVICE is HOST, HOST:PORT or a serial line /dev/LINE (19200 baud, even parity).\n"
-          "             ADDRESS is such as hr:0, or 2!400001 for unit 2. The device is never written to\n",
+          "             ADDRESS is an address such as hr:0, or 2!400001 for unit 2. Nothing is written to the device\n",
           out);
 }
 
@@ -99,7 +99,7 @@ static json_t *fetch_page(const struct daemon_url *url, const char *name, size_t
     int status = daemon_get(url, path, &body);
     json_t *page = status == 200 && body.at ? json_loads(body.at, 0, NULL) : NULL;
     if (status && !json_is_array(json_object_get(page, "tags"))) {
-        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", name, status, body.at ? body.at : "");
+        fprintf(stderr, "plantcast: %s: the daemon answered with HTTP status %d: %s\n", name, status, body.at ? body.at : "");
         json_decref(page);
         page = NULL;
     }

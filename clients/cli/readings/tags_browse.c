@@ -24,7 +24,7 @@ static void print_usage(FILE *out)
           "                      [--certificate FILE --key FILE --trusted FOLDER [--server-name NAME]]\n"
           "\n"
           "Prints the numeric variables of an OPC UA server as a tag list (CSV); each array element is a row.\n"
-          "The options mean the same as the keys of a source of type opcua in the plant file (SOURCES.md).\n"
+          "The options correspond to the keys of an `opcua` source in the plant file (SOURCES.md).\n"
           "Without --certificate the connection is not encrypted. Nothing is written to the server.\n",
           out);
 }

@@ -99,7 +99,7 @@ static bool on_time(struct load_generator *load, int64_t now_ns)
         if (!viewer->done)
             viewer_on_time(viewer, now_ns);
         if (viewer->raw && !raw_websocket_is_open(viewer->raw) && now_ns - viewer->begin_ns > CONNECT_TIMEOUT_NS)
-            viewer_fail(viewer, "no answer for 20 s");
+            viewer_fail(viewer, "the daemon did not answer for 20 s");
         speak(viewer);
         if (viewer->done)
             leave(viewer);

@@ -24,7 +24,7 @@ static void print_usage(FILE *out)
           "Opens N sessions on the daemon at URL, decodes every frame, and prints frame rates and latencies:\n"
           "\n"
           "  input to frame    time from sending a camera position until a frame of that or a newer position is decoded\n"
-          "                    (each session sends 60 camera positions a second, or as many as --hz says)\n"
+          "                    (each session sends 60 camera positions a second, or N with --hz N)\n"
           "  sensor to frame   time from a changed reading at the daemon until a frame with that reading is decoded\n"
           "  behind leader     with --follow: time from a camera position of the leader until a follower has decoded\n"
           "                    a frame of that position, not counting the first 3 s\n"
@@ -39,8 +39,8 @@ static void print_usage(FILE *out)
           "  --save-signed FOLDER  write signed frames to FOLDER/SESSION-FRAME.png, for `plantcast verify`;\n"
           "                    implies --signed refined\n"
           "  --stall N         make the last N sessions stop reading after their first frame, like hung clients;\n"
-          "                    the printed figures leave these sessions out\n"
-          "  --blind           acknowledge frames without decoding, to run many sessions on a small machine\n"
+          "                    these sessions are excluded from the printed figures\n"
+          "  --blind           acknowledge frames without decoding them, to run many sessions on a small machine\n"
           "                    Over https://, one thread serves all sessions and reads only the headers of frames\n"
           "  --json            print the figures as JSON\n",
           out);

@@ -122,9 +122,9 @@ static void print_table(const struct probe *probe, const struct summary *sum)
         printf("  signed           %8d\n", sum->signed_frames);
     printf("  frames/s         %8.1f per session, lowest %.1f\n", sum->fps, sum->fps_lowest);
     printf("  kB/frame         %8.1f\n", sum->kb_per_frame);
-    printf("  Mbit/s           %8.2f together\n", sum->mbit_per_s);
+    printf("  Mbit/s           %8.2f in total\n", sum->mbit_per_s);
     if (probe->seconds > VIEWER_SETTLES_S)
-        printf("  steady           %8.1f kbit/s together\n", sum->steady_kbit_per_s);
+        printf("  steady           %8.1f kbit/s in total\n", sum->steady_kbit_per_s);
     if (sum->errors)
         printf("  error messages   %8d\n", sum->errors);
     printf("  %-16s %8s %8s %8s %8s\n", "", "p50", "p95", "p99", "max");

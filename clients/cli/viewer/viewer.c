@@ -179,7 +179,7 @@ static void on_frame(struct viewer *viewer)
         return;
     }
     if (!viewer->params.blind && !decoder_decode(viewer->decoder, &frame, bytes + WIRE_FRAME_HEADER_BYTES)) {
-        viewer_fail(viewer, "a frame of the daemon cannot be decoded");
+        viewer_fail(viewer, "a frame from the daemon cannot be decoded");
         return;
     }
     int64_t now_ns = clock_mono_ns();
@@ -253,7 +253,7 @@ void viewer_on_time(struct viewer *viewer, int64_t now_ns)
     if (viewer->result.frames && (double)(now_ns - viewer->result.first_ns) >= viewer->params.seconds * 1e9)
         viewer->done = true;
     else if (now_ns - since_ns > FRAME_TIMEOUT_NS && expects_frames(viewer))
-        viewer_fail(viewer, "no frame for 20 s");
+        viewer_fail(viewer, "the daemon sent no frame for 20 s");
     else
         viewer_schedule(viewer, now_ns);
 }
