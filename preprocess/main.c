@@ -35,17 +35,17 @@ static const char usage[] =
     "Results of an earlier run are reused if their inputs have not changed.\n"
     "Only one run at a time works in an output folder; a second run waits.\n"
     "\n"
-    "  --output DIR    output folder for the prepared files (default: NAME.prepared next to NAME.yaml)\n"
-    "  --report FORMAT text: print the results of all assets; json: print the same results as JSON\n"
-    "                  (default: text of the assets that were computed in this run, at most 40 rows)\n"
+    "  --output DIR    output folder for the prepared files (default: PLANT.prepared next to PLANT.yaml)\n"
+    "  --report FORMAT text: print the results for all assets; json: print the same results as JSON\n"
+    "                  (default: text, only for the assets computed in this run, at most 40 rows)\n"
     "                  preprocess/REPORT.md explains each number. Progress goes to standard error\n"
-    "  --debug-view[=DIR]  also write ASSET.glb for each asset to DIR (default: NAME.debug next to NAME.yaml)\n"
+    "  --debug-view[=DIR]  also write ASSET.glb for each asset to DIR (default: PLANT.debug next to PLANT.yaml)\n"
     "                  ASSET.glb shows the prepared surface in any glTF viewer: sample points, bridges across\n"
-    "                  gaps, open edges, interior patches, and as colour the distance from a sensor\n"
+    "                  gaps, open edges and interior patches; colours show the distance from a sensor\n"
     "  --asset ID      prepare or print only this asset\n"
-    "  --sensor TAG    sensor whose distances --debug-view and `distances` show (default: first of each asset)\n"
-    "  --memory MB     memory in MB of the machine that will run the daemon (default: of this machine)\n"
-    "                  A plant that does not fit is refused, with the number of triangles that would fit\n"
+    "  --sensor TAG    sensor from which --debug-view and `distances` measure (default: first on each asset)\n"
+    "  --memory MB     memory in MB of the machine that will run the daemon (default: this machine's)\n"
+    "                  A plant that needs more is refused; the message says how many triangles would fit\n"
     "  --diff OLD NEW  compare two revisions of a plant; OLD and NEW: plant file or folder of prepared files\n"
     "                  Prints assets that were added, removed, moved or changed, sensors whose surface moved,\n"
     "                  and tags that lost their position (exit status 1 if a tag lost its position)\n"
@@ -53,9 +53,9 @@ static const char usage[] =
     "                  (default: 1 % of the asset's diagonal, but at most 0.01 m)\n"
     "  --help          print this text\n"
     "\n"
-    "`distances` prints for each vertex of the asset the position of the vertex and its distances from the\n"
-    "sensor, along the surface and straight, as CSV: x,y,z,geodesic_m,euclidean_m (metres, plant coordinates).\n"
-    "SIGINT and SIGTERM end a run within 5 s. Finished assets are kept; the next run prepares all others.\n"
+    "`distances` prints, for each vertex of the asset, the vertex position and the distances to the sensor\n"
+    "along the surface and in a straight line, as CSV: x,y,z,geodesic_m,euclidean_m (metres, plant coordinates).\n"
+    "SIGINT and SIGTERM end a run within 5 s. Finished assets are kept; the next run prepares the others.\n"
     "Exit status: 0 success, 1 input or disk error, 2 wrong usage.\n";
 
 struct prep_options {
@@ -163,11 +163,11 @@ static int read_options(int argc, char **argv, struct prep_options *options)
     if (optind < argc)
         return wrong_use("too many arguments: ", argv[optind]);
     if (options->distances && (!options->asset || !options->sensor))
-        return wrong_use("", "the command distances needs --asset and --sensor");
+        return wrong_use("", "the command 'distances' requires --asset and --sensor");
     if (options->tolerance_m > 0 && !options->diff)
-        return wrong_use("", "--tolerance needs --diff");
+        return wrong_use("", "--tolerance requires --diff");
     if (!options->distances && !options->debug_view && options->sensor)
-        return wrong_use("", "--sensor needs the command distances or --debug-view");
+        return wrong_use("", "--sensor requires the command 'distances' or --debug-view");
     return 0;
 }
 

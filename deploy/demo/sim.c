@@ -29,27 +29,27 @@ static const char usage_text[] =
     "  --port N         TCP port of the first simulated device; further devices get the next ports\n"
     "                   (default: the port of the first source in the plant file)\n"
     "  --bind ADDRESS   IPv4 address of this machine to listen on (default: 127.0.0.1)\n"
-    "  --values FILE    CSV file of recorded series that tags replay; may be repeated. FILE has one of three forms:\n"
-    "                   wide: a header line, and one column for each series. The name of the time column ends\n"
-    "                   in _ms, _s, _min or _h, or the times look like 2026-11-20T10:00:00Z (without a zone:\n"
+    "  --values FILE    CSV file of recorded series for tags to replay; may be repeated. FILE has one of three forms:\n"
+    "                   wide: a header line, a time column and one column for each series. The time column's name ends\n"
+    "                   in _ms, _s, _min or _h, or its times look like 2026-11-20T10:00:00Z (without a zone:\n"
     "                   in the time zone of the plant).\n"
-    "                   one value a line: a header line Tag,Time,Value.\n"
-    "                   long: no header line; each line is time in ms,type,entity,property,value\n"
+    "                   one value per line: a header line Tag,Time,Value.\n"
+    "                   long: no header line; each line is TIME,TYPE,ENTITY,PROPERTY,VALUE, with TIME in ms\n"
     "  --map TAG=SERIES[*SCALE[+OFFSET]]\n"
-    "                   let TAG replay SERIES: the name of a column, or entity/property of a long file;\n"
+    "                   let TAG replay SERIES: the name of a column, or ENTITY/PROPERTY in a long file;\n"
     "                   may be repeated\n"
     "  --speed X        run the simulation X times as fast as real time (default: 1)\n"
     "  --loop           repeat each recorded series from its start (default: keep the last value of the series)\n"
     "  --mqtt HOST:PORT publish the tags of MQTT sources to this broker, as numbers or JSON\n"
-    "                   Use a separate broker: subscribers cannot tell simulated values from measured ones\n"
+    "                   Use a separate broker: subscribers cannot tell simulated values from measured values\n"
     "  --control PORT   accept the commands below on this TCP port of 127.0.0.1\n"
     "  --help           print this text\n"
     "\n"
     "A tag without a recorded series varies around the value in column `Sim Value` of the tag list\n"
-    "(default: 40 % of the range of the tag). Column `Sim Loop` names the part of the process of a tag.\n"
+    "(default: 40 % of the tag's range). Column `Sim Loop` names the part of the process where the tag is.\n"
     "PLANT.map next to PLANT.yaml may contain options, one per line: TAG=SERIES (as for --map),\n"
     "`values FILE`, `speed X`, `loop`; # begins a comment.\n"
-    "Simulated faults (upsets), which occur one after another, and the tags that each fault changes:\n";
+    "Simulated faults (upsets) occur one after another. Each fault changes these tags:\n";
 
 struct sim_options {
     const char *plant, *bind, *broker;
@@ -63,7 +63,7 @@ struct sim_options {
 
 static void print_help(void)
 {
-    printf("%s%s\nCommands at the control port:\n%s", usage_text, process_upset_help(), sim_control_help);
+    printf("%s%s\nCommands on the control port:\n%s", usage_text, process_upset_help(), sim_control_help);
 }
 
 static bool read_port(const char *name, const char *text, int *out)
@@ -156,7 +156,7 @@ static bool open_port(struct sim_port *port, const char *address, int number, si
     int status = sim_port_open(port, address, number, take, arg);
     if (status)
         fprintf(stderr, "plantcast-sim: cannot listen on %s:%d: %s%s\n", address, number, strerror(-status),
-                status == -EADDRINUSE ? "; stop the other plantcast-sim if one runs, or give the source another port" : "");
+                status == -EADDRINUSE ? "; stop any other plantcast-sim, or give the source another port" : "");
     return status == 0;
 }
 

@@ -9,14 +9,14 @@
 #include <sys/socket.h>
 
 const char sim_control_help[] =
-    "  set TAG VALUE   hold the tag at VALUE, in the Eng Units of the tag; nan, inf: for floating-point types\n"
+    "  set TAG VALUE   hold the tag at VALUE, in the tag's Eng Units; nan and inf: floating-point types only\n"
     "  get TAG         print the present value of the tag\n"
-    "  fail TAG        answer requests for the registers of the tag with Modbus exception 2 (illegal address)\n"
-    "  release TAG     undo `set` and `fail` for the tag\n"
+    "  fail TAG        answer requests for the tag's registers with Modbus exception 2 (illegal address)\n"
+    "  release TAG     end `set` and `fail` for the tag\n"
     "  pause           stop answering requests and publishing values; connections stay open\n"
-    "  resume          undo `pause`\n"
-    "  stats           print the number of reads and of refused requests, and the present simulated fault\n"
-    "  quit            end plantcast-sim\n"
+    "  resume          end `pause`\n"
+    "  stats           print the number of reads, the number of refused requests and the present simulated fault\n"
+    "  quit            exit plantcast-sim\n"
     "  The answer to each command is one line: `ok`, `ok ...` or `error: ...`.\n";
 
 struct sim_command {

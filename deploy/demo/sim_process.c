@@ -281,6 +281,6 @@ const char *process_upset_help(void)
            "                       offgas, distillate, column or reboiler\n"
            "  exchanger fouled     tags whose Sim Loop contains feed, preheat, exchanger, bottoms, product or column\n"
            "  bearing worn         tags whose Sim Loop contains pump or motor, or begins with P-, K-, C- or EA-;\n"
-           "                       one machine each time\n"
+           "                       one machine at a time\n"
            "Tags whose Sim Loop contains storage, weather or steam change slowly.\n";
 }

@@ -134,7 +134,7 @@ void distance_cache_open(struct distance_cache *cache, struct log *log, const ch
     cache->fd = open(cache->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     cache->may_write = cache->fd >= 0;
     if (cache->fd < 0)
-        log_warn(log, "cache file %s: cannot be opened: %s; distances are computed again", cache->path, strerror(errno));
+        log_warn(log, "cache file %s: cannot be opened: %s; the distances will be recomputed", cache->path, strerror(errno));
     cache->records = mem_array(count, sizeof(*cache->records));
     for (size_t p = 0; p < count; p++)
         cache->records[p] = SIZE_MAX;
@@ -149,7 +149,7 @@ void distance_cache_close(struct distance_cache *cache)
     if (cache->fd >= 0)
         close(cache->fd);
     if (cache->damaged > 0)
-        log_warn(cache->log, "cache file %s: the distances of %zu sensors are damaged or incomplete; they are computed again", cache->path,
+        log_warn(cache->log, "cache file %s: the distances from %zu sensors are damaged or incomplete and will be recomputed", cache->path,
                  cache->damaged);
     pthread_mutex_destroy(&cache->lock);
     mem_free(cache->path);

@@ -191,7 +191,7 @@ json_t *folder_report(struct log *log, const char *folder, uint64_t key)
 {
     size_t size;
     char *path = path_of(folder, key, REPORT), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
-    json_t *report = text ? parse(log, path, text, size, "the report lacks the numbers of this asset") : NULL;
+    json_t *report = text ? parse(log, path, text, size, "the report will not include this asset's figures") : NULL;
     mem_free(path);
     mem_free(text);
     return report;
@@ -329,7 +329,7 @@ int folder_finish(struct log *log, const char *folder, const struct folder_entry
     size_t size = 0;
     char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
     json_t *old_root =
-        old ? parse(log, path, old, size, "the file is written again, without the names of model parts that are not drawn") : NULL;
+        old ? parse(log, path, old, size, "the file will be rewritten without the names of model parts that are not drawn") : NULL;
     char *text = manifest_text(log, folder, entries, count, old_root);
     json_decref(old_root);
     int status = text ? 0 : -ENOMEM;

@@ -103,7 +103,7 @@ static bool convert_one(const struct plant *plant, const struct plant_conversion
     if (!good) {
         diag_error(diag, plant->files.path, how->line, 0, "convert: '%s' cannot be read: %s", how->from, strerror(errno));
     } else if (!is_made(made, how, from.at)) {
-        fprintf(progress, "plantcast-prep: making %s from %s\n", how->model, how->from);
+        fprintf(progress, "plantcast-prep: creating %s from %s\n", how->model, how->from);
         good = make(how, why) && add_hash(how->model, "", &to);
         if (good)
             json_object_set_new(made, how->model, json_pack("{s:s,s:s}", "from", from.at, "model", to.at));

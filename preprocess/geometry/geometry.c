@@ -190,12 +190,13 @@ static bool find_origin(struct geometry *geometry, const struct node_primitives 
         geometry->origin_m[axis] = (box.low[axis] + box.high[axis]) / 2;
         size_m = fmax(size_m, side_m);
         if (!isfinite(geometry->origin_m[axis]) || side_m > MAX_SIZE_M)
-            return wrong(why, "the size of the asset is %g m along axis %d, more than %g m", side_m, axis, MAX_SIZE_M);
+            return wrong(why, "the asset extends %g m along axis %d, more than the maximum of %g m: check the model's "
+                              "unit", side_m, axis, MAX_SIZE_M);
     }
     if (size_m > COARSE_SIZE_M)
         median_of(parts, params, geometry->origin_m);
     return size_m >= MIN_SIZE_M ||
-           wrong(why, "the size of the asset is %g m, less than %g m: is the model's unit right?", size_m, MIN_SIZE_M);
+           wrong(why, "the asset is only %g m in size, less than the minimum of %g m: check the model's unit", size_m, MIN_SIZE_M);
 }
 
 double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3]

@@ -47,28 +47,29 @@ static void print_usage(FILE *out)
           "       plantcast import --undo [--force] -o FOLDER\n"
           "       plantcast import --serve [--port N] [MODEL... TAGS] -o FOLDER\n"
           "\n"
-          "Converts CAD exports to GLB with names, hierarchy and attributes, and writes a plant.yaml for the models.\n"
+          "Converts CAD exports to GLB models with names, hierarchy and attributes, and writes a plant.yaml for them.\n"
           "If FOLDER contains a plant already, the exports are imported as a new revision of that plant:\n"
-          "the import searches the new geometry for the assets and sensors of the plant.\n"
+          "the import finds the plant's assets and sensors in the new geometry.\n"
           "review.csv then lists what was added, removed, moved or renamed, and which tags lost their position.\n"
           "\n"
-          "  MODEL             file of a CAD export in one of these formats:\n"
+          "  MODEL             CAD export, in one of these formats:\n"
           "                    glTF (.glb .gltf), STEP (.step .stp .stpz), IGES (.iges .igs), IFC (.ifc .ifczip),\n"
           "                    meshes (.obj .stl .ply .fbx .dae .zae .3ds), RVM of AVEVA PDMS, E3D or Marine (.rvm;\n"
-          "                    attributes in a file of the same name that ends in .att or .txt)\n"
+          "                    its attributes are in a file of the same name with the ending .att or .txt)\n"
           "                    Files of all formats but glTF may be compressed with gzip (.stp.gz)\n"
           "  --name NAME       name of the plant (default: file name of the first model)\n"
           "  --dry-run         print what a new revision would change, and change nothing\n"
-          "  --undo            undo the last revision: restore models, plant file, tag list and matches\n"
-          "  --force           with --undo: undo even if files were edited since; edited files are kept as NAME.undone\n"
+          "  --undo            undo the last import: restore the previous models, plant file, tag list and matches\n"
+          "  --force           with --undo: undo even if files were edited since the import; edited files are kept as\n"
+          "                    NAME.undone\n"
           "  --anew            write a new plant.yaml and tags.csv; the old files are kept as NAME.1, NAME.2, ...\n"
-          "  --report FILE     write a JSON report of lost, left out, guessed and wrong parts to FILE (IMPORT.md)\n"
-          "  --serve           serve a web page on this machine, on which to upload models and tag lists, match tags\n"
-          "                    and place sensors\n"
-          "  --port N          TCP port of the page of --serve (default: 8080)\n",
+          "  --report FILE     write a JSON report of lost, omitted, guessed and wrong parts to FILE (IMPORT.md)\n"
+          "  --serve           serve a web page on this machine for uploading models and tag lists, matching tags\n"
+          "                    and placing sensors\n"
+          "  --port N          TCP port of the web page, with --serve (default: 8080)\n",
           out);
     options_print(out);
-    fputs("Exit status: 0 success, 1 nothing imported, 2 wrong usage, 3 some models could not be read, all other models were imported.\n",
+    fputs("Exit status: 0 success, 1 nothing imported, 2 wrong usage, 3 imported without the models that could not be read.\n",
           out);
 }
 

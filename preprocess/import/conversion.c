@@ -72,7 +72,7 @@ static bool add_attributes(struct cad_model *model, const char *path, const stru
     if (!good)
         return fail(why, "%s: %s", path, reason);
     if (counts.elements == 0)
-        return fail(why, "%s: this attribute file has no elements (NEW ... END): rename the file if it contains no attributes", path);
+        return fail(why, "%s: this attribute file has no elements (NEW ... END): if it is not an attribute file, rename it", path);
     text_add(said, "attributes of %s: %zu elements, of which %zu are in the model; %zu values\n", text_base_name(path), counts.elements,
              counts.matched, counts.attributes);
     encoding_say(said, "attributes", &counts.encoding);
@@ -86,7 +86,7 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
         text_add(said, "left out: %zu faces, %.1f m2, that are hidden behind a neighbour's face (--keep-covered keeps hidden faces)\n",
                  counts->covered_faces, counts->covered_m2);
     if (counts->unknown_chunks > 0)
-        text_add(said, "error\t%zu\tRVM: unknown chunks were skipped, the first unknown chunk is %s\n", counts->unknown_chunks,
+        text_add(said, "error\t%zu\tRVM: unknown chunks were skipped; the first one is %s\n", counts->unknown_chunks,
                  counts->unknown_chunk);
 }
 

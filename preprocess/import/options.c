@@ -11,12 +11,13 @@ const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s 
 
 void options_print(FILE *out)
 {
-    fputs("  --chord MM        largest distance in mm between a curved surface and its triangles (default: 1)\n"
-          "  --units UNIT      unit of length of models whose file states no unit: m, mm, cm, in or ft\n"
-          "  --mesh-units UNIT unit of length of OBJ, STL, PLY and 3DS models only\n"
-          "  --up AXIS         axis that points up in models whose file states no up axis: y or z\n"
+    fputs("  --chord MM        maximum distance in mm between a curved surface and its triangles (default: 1)\n"
+          "  --units UNIT      unit of length for models whose file states no unit: m, mm, cm, in or ft\n"
+          "  --mesh-units UNIT unit of length for OBJ, STL, PLY and 3DS models only\n"
+          "  --up AXIS         up axis for models whose file states none: y or z\n"
           "  --encoding NAME   character encoding of the names in the model, such as GB18030 or Windows-1251\n"
-          "                    (default: as the model states, else the most likely encoding, which is printed)\n"
+          "                    (default: the encoding that the model states, else the most likely one, which is\n"
+          "                    printed)\n"
           "  --keep-covered    keep faces of RVM models that are hidden behind a neighbouring face\n"
           "  --timeout S       maximum time in seconds for reading one model (default: 120)\n"
           "  --memory MB       maximum memory in MB for reading one model (default: 2048)\n"

@@ -312,7 +312,7 @@ struct cloud_heat *cloud_heat_create(struct log *log, const struct surface *surf
     if (factor(cloud))
         return cloud;
 error:
-    log_err(log, "heat method on %zu points failed: %s", cloud->count,
+    log_err(log, "cannot compute distances by the heat method on %zu points: %s", cloud->count,
             cloud->common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     cloud_heat_destroy(&cloud);
     return NULL;
@@ -433,7 +433,7 @@ static cholmod_dense *solve(const struct cloud_heat *cloud, cholmod_factor *fact
 {
     cholmod_dense *x = cholmod_solve(CHOLMOD_A, factor, b, common);
     if (!x)
-        log_err(cloud->log, "heat method on %zu points failed: out of memory", cloud->count);
+        log_err(cloud->log, "cannot compute distances by the heat method on %zu points: out of memory", cloud->count);
     return x;
 }
 

@@ -474,7 +474,7 @@ bool gaussian_solve(struct influence *influence, const struct influence_task *ta
     if (good)
         find_deviations(&solving);
     else
-        log_err(task->log, "Gaussian process between %zu sensors on %zu points, range %g m, failed: %s", influence->count,
+        log_err(task->log, "cannot compute the Gaussian process of %zu sensors on %zu surface points with range %g m: %s", influence->count,
                 mesh->mesh.point_count, params->range_m,
                 common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     finish(&solving, &common);

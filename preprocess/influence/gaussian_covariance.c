@@ -147,7 +147,7 @@ bool gaussian_covariance_init(struct gaussian_covariance *covariance, struct log
         laplacian.mass_m2 = NULL;
         covariance->scale = mem_array(mesh->mesh.point_count, sizeof(*covariance->scale));
     } else
-        log_err(log, "covariance of %zu sensors on %zu points failed: out of memory", count, mesh->mesh.point_count);
+        log_err(log, "cannot compute the covariance of %zu sensors on %zu surface points: out of memory", count, mesh->mesh.point_count);
     laplacian_finish(&laplacian);
     return good;
 }
@@ -261,7 +261,8 @@ bool gaussian_covariance_find(struct gaussian_covariance *covariance, struct log
         mem_free(slope.between[side]);
     gaussian_bodies_scale(&covariance->bodies, count, covariance->values, covariance->scale);
     if (slope.status != CHOLMOD_OK)
-        log_err(log, "covariance of %zu sensors on %zu points, range %g m, failed: %s", count, covariance->row_count, range_m,
+        log_err(log, "cannot compute the covariance of %zu sensors on %zu surface points with range %g m: "
+                     "%s", count, covariance->row_count, range_m,
                 slope.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     return slope.status == CHOLMOD_OK;
 }

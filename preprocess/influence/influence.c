@@ -175,7 +175,8 @@ bool influence_conduct(struct influence *influence, const struct influence_task 
     if (good)
         make_symmetric(influence);
     else
-        log_err(task->log, "conduction between %zu sensors on %zu points failed: %s", influence->count, mesh->mesh.point_count,
+        log_err(task->log, "cannot compute heat conduction between %zu sensors (%zu surface points): "
+                           "%s", influence->count, mesh->mesh.point_count,
                 common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     cholmod_free_factor(&conduct.factor, &common);
     cholmod_finish(&common);

@@ -320,7 +320,7 @@ bool transport_angles(struct influence *influence, struct log *log, struct worke
         workers_for(workers, influence->count, 1, solve_some, &transport);
     good = good && !transport.failed;
     if (!good)
-        log_err(log, "directions of %zu sensors on %zu points cannot be computed: %s", influence->count, mesh->mesh.point_count,
+        log_err(log, "cannot compute the directions of %zu sensors on %zu surface points: %s", influence->count, mesh->mesh.point_count,
                 common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     cholmod_free_factor(&transport.factor, &common);
     cholmod_finish(&common);

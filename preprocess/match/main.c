@@ -15,26 +15,26 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast match PLANT TAGS [OPTION ...]\n"
           "\n"
-          "Finds the equipment of an imported plant to which each tag of a control system's tag list belongs.\n"
+          "Finds the equipment to which each tag of a control system's tag list belongs, in an imported plant.\n"
           "Writes tags.csv, matches.csv (each match with its reason) and the sensor groups of plant.yaml.\n"
-          "Entries of these files that were edited by hand are kept.\n"
+          "Entries in these files that were edited by hand are kept.\n"
           "A file match_rules.csv (Tag,Equipment) in the plant's folder contains patterns, applied in their order.\n"
-          "A file aliases.csv (Alias,Equipment) in the plant's folder contains other names of equipment.\n"
+          "A file aliases.csv (Alias,Equipment) in the plant's folder lists other names of equipment.\n"
           "\n"
           "  PLANT                 folder of the plant, or its plant.yaml\n"
           "  TAGS                  tag list: CSV, .xlsx, or an export of Kepware, Ignition, AVEVA, Emerson, Honeywell\n"
-          "  --equipment NODES     nodes of the models that become assets; may be repeated. NODES is level=N (all\n"
-          "                        nodes of level N of the hierarchy), a pattern of node names, or @FILE (a file\n"
-          "                        with one node name per line)\n"
+          "  --equipment NODES     model nodes to use as assets; may be repeated. NODES is level=N (all nodes at\n"
+          "                        level N of the hierarchy), a pattern for node names, or @FILE (a file with\n"
+          "                        one node name per line)\n"
           "  --encoding NAME       character encoding of TAGS, such as GB18030 or Windows-1251 (default: detected)\n"
-          "  --decide FILE         CSV file (Tag,Status,Asset) of decisions to apply as if edited in matches.csv\n"
-          "  --source ID           source of plant.yaml (connection to field devices) that provides these tags\n"
-          "  --modbus HOST[:PORT]  create source ID as a Modbus device at HOST, or change the address of the source\n"
-          "  --unit N              Modbus unit identifier of the source, 0 to 255\n"
-          "  --byte-order ORDER    byte order of values in several registers: ABCD, CDAB, BADC or DCBA\n"
-          "  --address-base N      number of the source's first register in TAGS, 0 or 1 (default: 1)\n"
-          "  --timeout S           maximum time in seconds for the matching (default: 120)\n"
-          "  --memory MB           maximum memory in MB for the matching (default: 2048)\n"
+          "  --decide FILE         CSV file (Tag,Status,Asset) of decisions, which have the effect of edits in matches.csv\n"
+          "  --source ID           source in plant.yaml (connection to field devices) that provides these tags\n"
+          "  --modbus HOST[:PORT]  create source ID as a Modbus device at HOST, or change that source's address\n"
+          "  --unit N              Modbus unit identifier for the source, 0 to 255\n"
+          "  --byte-order ORDER    byte order of values that span several registers: ABCD, CDAB, BADC or DCBA\n"
+          "  --address-base N      address that TAGS uses for the source's first register, 0 or 1 (default: 1)\n"
+          "  --timeout S           maximum time in seconds for matching (default: 120)\n"
+          "  --memory MB           maximum memory in MB for matching (default: 2048)\n"
           "  --dry-run             print the changes, and write nothing\n"
           "Exit status: 0 success, 1 input cannot be read or the result would be invalid (nothing is written), 2 wrong usage.\n",
           out);
@@ -110,7 +110,8 @@ int main(int argc, char **argv)
             break;
         case EQUIPMENT:
             if (params.equipment_count == EQUIPMENT_MOST) {
-                fprintf(stderr, "plantcast match: --equipment: more than %d options: put the names into a file, --equipment @FILE\n",
+                fprintf(stderr, "plantcast match: --equipment: given more than %d times: put the names into a file and use --equipment "
+                                "@FILE\n",
                         EQUIPMENT_MOST);
                 return 2;
             }

@@ -76,23 +76,23 @@ static void print_list(const struct matching_run *run)
     else if (*list->encoding.name && strcmp(list->encoding.name, "UTF-8") != 0)
         printf("%s: read as %s\n", path, list->encoding.name);
     if (list->same > 0)
-        printf("%s: %zu rows are exact repetitions of a tag: each tag is used once\n", path, list->same);
+        printf("%s: ignored %zu duplicate rows\n", path, list->same);
     if (list->differing > 0)
-        printf("%s: %zu rows repeat a tag with different contents: the first row is used: %s%s\n", path, list->differing,
+        printf("%s: %zu rows repeat a tag with different contents: only the first row of each tag is used: %s%s\n", path, list->differing,
                list->differing_lines, list->differing > 5 ? ", ..." : "");
     if (list->renamed > 0)
-        printf("%s: %zu tags have the name of a tag in another folder of the control system: these tags are named FOLDER/TAG\n", path,
+        printf("%s: %zu tags share their name with a tag in another folder of the control system: they are named FOLDER/TAG\n", path,
                list->renamed);
     for (const char *line = list->remarks.at, *end; line && *line; line = *end ? end + 1 : end) {
         end = line + strcspn(line, "\n");
         printf("%s: %.*s\n", path, (int)(end - line), line);
     }
     if (list->nameless > 0)
-        printf("%s: %zu rows without a tag name are left out\n", path, list->nameless);
+        printf("%s: ignored %zu rows without a tag name\n", path, list->nameless);
     if (list->control > 0)
-        printf("%s: %zu control characters are read as blanks\n", path, list->control);
+        printf("%s: replaced %zu control characters by blanks\n", path, list->control);
     if (list->damaged > 0)
-        printf("%s: %zu characters are not valid %s: shown as \xef\xbf\xbd\n", path, list->damaged,
+        printf("%s: %zu characters are not valid %s: replaced by \xef\xbf\xbd\n", path, list->damaged,
                *list->encoding.name ? list->encoding.name : "text");
 }
 
@@ -120,7 +120,7 @@ static bool choose_equipment(struct matching_run *run)
         return false;
     plant_destroy(&run->plant);
     run->plant = plant;
-    printf("%s: %d assets chosen\n", run->params->plant, count);
+    printf("%s: %d nodes selected as assets\n", run->params->plant, count);
     return model_index_read(&run->site, run->plant, why) || fail_at(run->params->plant, why);
 }
 

@@ -85,7 +85,7 @@ static bool fill_with_zeros(struct document_work *work, const json_t *number, ui
                      (long long)json_integer_value(number), count);
     unsigned char *own = mem_try_array(count * element + 1, 1);
     if (!own)
-        return wrong(work->why, "out of memory for accessor %lld", (long long)json_integer_value(number));
+        return wrong(work->why, "cannot read accessor %lld: out of memory", (long long)json_integer_value(number));
     document_point_accessor(work, accessor, document_add_buffer(work, (struct document_bytes){ own, (size_t)(count * element), own }));
     work->document->total_bytes -= (size_t)(count * element);
     return true;
@@ -231,7 +231,7 @@ static bool make_plain(struct document_work *work)
     strip(work->root);
     work->document->json = json_dumps(work->root, JSON_COMPACT);
     if (!work->document->json)
-        return wrong(work->why, "out of memory for the JSON of the model");
+        return wrong(work->why, "cannot load the model's JSON: out of memory");
     work->document->json_bytes = strlen(work->document->json);
     return true;
 }

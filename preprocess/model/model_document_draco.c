@@ -45,7 +45,7 @@ static bool take_indices(struct document_work *work, const struct draco_mesh *me
     size_t count = 3 * (size_t)draco_mesh_triangle_count(mesh);
     uint32_t *own = mem_try_array(count + 1, sizeof(*own));
     if (!own)
-        return wrong(work->why, "%s: out of memory for %zu indices", what, count);
+        return wrong(work->why, "%s: cannot decode %zu indices: out of memory", what, count);
     draco_mesh_indices(mesh, own);
     json_t *accessor = json_pack("{s:i,s:I,s:s}", "componentType", 5125, "count", (json_int_t)count, "type", "SCALAR");
     size_t number = add_accessor(work, accessor, (unsigned char *)own, count * sizeof(*own));

@@ -83,7 +83,7 @@ static bool expand(struct document_work *work, const char *what, json_t *view, c
                      json_integer_value(json_object_get(view, "byteLength")));
     unsigned char *own = mem_try_array(size + 1, 1);
     if (!own)
-        return wrong(work->why, "%s: out of memory for %zu bytes", what, size);
+        return wrong(work->why, "%s: cannot decode %zu bytes: out of memory", what, size);
     if (size > 0 && !decode(&p, own)) {
         mem_free(own);
         return wrong(work->why, "%s: EXT_meshopt_compression: the %zu bytes of compressed data are damaged", what, p.from.size);

@@ -115,7 +115,8 @@ static unsigned char *base64_decode(const char *text, size_t *size, char *why)
     unsigned char *out = mem_try_array(length / 4 * 3 + 3, 1);
     unsigned bits = 0;
     if (!out || length % 4 == 1) {
-        wrong(why, out ? "data URI: the base64 data of %zu digits are truncated" : "out of memory for %zu base64 digits", length);
+        wrong(why, out ? "data URI: the base64 data of %zu digits are truncated" : "data URI: cannot decode %zu base64 digits: out of "
+                                                                                   "memory", length);
         goto error;
     }
     for (size_t i = 0; i < length; i++) {

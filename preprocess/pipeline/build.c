@@ -202,7 +202,7 @@ static void make_levels(struct build *build)
     int64_t since_ns = clock_mono_ns();
     build->failed[0] = !levels_make(&build->levels, &build->geometry, build->workers);
     if (build->failed[0])
-        wrong(build->why, "out of memory for the levels of detail of %u vertices", build->geometry.vertex_count);
+        wrong(build->why, "cannot compute the levels of detail: out of memory (%u vertices)", build->geometry.vertex_count);
     report->repeated_triangles = (uint32_t)build->levels.repeated;
     report->levels_s = seconds_since(&since_ns);
 }
@@ -272,7 +272,7 @@ static void split(struct build *build)
                                                                  .arg = build },
                                          &build->distances);
     if (build->failed[0])
-        wrong(build->why, "out of memory for the levels of detail of %u vertices", build->geometry.vertex_count);
+        wrong(build->why, "cannot compute the levels of detail: out of memory (%u vertices)", build->geometry.vertex_count);
     build->output->report.split_measured = build->findings.measured_count;
     build->output->report.split_kept = build->findings.kept_count;
     linear_error_finish(&linear);
@@ -292,7 +292,7 @@ static void check(struct build *build)
     if (!known && !is_constant(input->plant, input->sensors, input->sensor_count))
         build->failed[1] = !surface_check(measured->surface, &measured->field);
     if (build->failed[1])
-        wrong(build->why, "out of memory while checking the distances along the asset's surface");
+        wrong(build->why, "cannot check the distances along the asset's surface: out of memory");
     if (!input->cache) {
         *report = *found;
     } else if (!known) {
@@ -372,7 +372,7 @@ static bool put_in_order(struct build *build, uint32_t own)
         memcpy(report->levels[i].left, build->levels.at[i].left, sizeof(report->levels[i].left));
     }
     mem_free(new_of);
-    return good || wrong(build->why, "out of memory for the levels of detail of %u vertices", g->vertex_count);
+    return good || wrong(build->why, "cannot compute the levels of detail: out of memory (%u vertices)", g->vertex_count);
 }
 
 /* Computes the influence file (weights of sensors for harmonic, fin and gp). Needs the surface and the vertices in their final order. */
@@ -434,7 +434,7 @@ static void *make_file(void *arg, size_t bytes)
     struct build *build = arg;
     int status = folder_draft(&build->output->file, build->input->folder, build->input->key, bytes);
     if (status != 0)
-        wrong(build->why, "the prepared file of the asset, %zu bytes, cannot be written to %s: %s", bytes, build->input->folder,
+        wrong(build->why, "the asset's prepared file (%zu bytes) cannot be written to %s: %s", bytes, build->input->folder,
               strerror(-status));
     return build->output->file.bytes;
 }
@@ -445,7 +445,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     const struct geometry *g = &build->geometry;
     struct build_output *output = build->output;
     if (!distance_rows_pack(&build->distances, build->workers))
-        return wrong(build->why, "out of memory for the distances of %zu sensors", input->sensor_count);
+        return wrong(build->why, "cannot compute the distances from %zu sensors: out of memory", input->sensor_count);
     struct asset_parts parts = {
         .key = input->key,
         .positions_m = (const float(*)[3])g->positions_m,
@@ -482,15 +482,15 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
     /* error text in case asset_build() fails for lack of memory; a later failure overwrites it */
-    wrong(build->why, "out of memory for the prepared file of the asset");
+    wrong(build->why, "cannot create the asset's prepared file: out of memory");
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
-        return wrong(build->why, "the distances of the asset cannot be written to %s: %s", input->folder, strerror(build->write_error));
+        return wrong(build->why, "the asset's distances cannot be written to %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
     /* check the asset file as a reader would, because an invalid file must not be written */
     return asset_view_fresh(&output->view, bytes, size, view_why) ||
-           wrong(build->why, "the prepared file of the asset would be invalid: %s", view_why);
+           wrong(build->why, "the asset's prepared file would be invalid: %s", view_why);
 }
 
 static bool build_file(struct build *build)

@@ -494,7 +494,8 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
 {
     const struct plant *plant = run->prepare->plant;
     if (asset->rebuilt_because)
-        diag_warning(run->diag, plant->files.path, asset->plant->line, 0, "asset %s: a prepared file was not usable and is rebuilt (%s)",
+        diag_warning(run->diag, plant->files.path, asset->plant->line, 0, "asset %s: the prepared file is unusable and will be rebuilt "
+                                                                          "(%s)",
                      asset->plant->id, asset->rebuilt_because);
     for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
         const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];

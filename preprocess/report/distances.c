@@ -60,7 +60,7 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
         return false;
     }
     if (!folder_unpack(&file)) {
-        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: out of memory for the distances of the asset",
+        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: cannot compute the asset's distances: out of memory",
                    asset->plant->id);
         folder_close(&file);
         return false;

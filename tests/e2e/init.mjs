@@ -168,7 +168,7 @@ test('`make run` twice on a machine: the second takes another port, and both are
         runs.push(new Program('', [own.file, String(port)], {}, ['deploy/run']));
         await runs.at(-1).line(/^plantcast: ready /m);
     }
-    assert.match(runs[1].said, new RegExp(`port ${own.modbusPort} is taken; the simulated PLC has \\d+`));
+    assert.match(runs[1].said, new RegExp(`port ${own.modbusPort} is in use; the simulated PLC uses port \\d+`));
     assert.doesNotMatch(runs[0].said, /is taken/);
     assert.equal(readFileSync(own.file, 'utf8'), yaml);
     for (const port of ports)
@@ -227,7 +227,7 @@ test('without npm or a network no page without charts is built', () => {
     writeFileSync(join(bin, 'npm'), '#!/bin/sh\nexit 1\n', { mode: 0o755 });
     const offline = run(`${bin}:/usr/bin:/bin`);
     assert.notEqual(offline.status, 0);
-    assert.match(offline.stderr, /could not fetch uPlot/);
+    assert.match(offline.stderr, /could not download uPlot/);
 });
 
 test('a package that this Debian does not have is left out if it is optional, and is an error if it is not', () => {

@@ -423,7 +423,7 @@ CASE(what_cannot_be_cut_is_refused)
         { HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}",
           "none of the asset's 2 triangles has an area" },
         { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS "}",
-          "the size of the asset is 2e+07 m along axis 1, more than 1e+07 m" },
+          "the asset extends 2e+07 m along axis 1, more than the maximum of 1e+07 m: check the model's unit" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         struct geometry g;

@@ -173,7 +173,7 @@ CASE(a_speck_is_refused)
         char words[100];
         write_plates(c, 10, 10, (double[]){ sizes_m[i], sizes_m[i] }, 1, here);
         prep_case_expect(c, "$PLANT", 1);
-        snprintf(words, sizeof(words), "the size of the asset is %g m, less than 1e-06 m", sizes_m[i]);
+        snprintf(words, sizeof(words), "the asset is only %g m in size, less than the minimum of 1e-06 m", sizes_m[i]);
         prep_case_says(&c->err, "plant.yaml:3: error: asset A: ");
         prep_case_says(&c->err, words);
     }
