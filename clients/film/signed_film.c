@@ -195,7 +195,7 @@ static bool is_plain_picture(struct film_reader *reader)
                     "%d, range %d",
                     (int)frame->color_primaries, (int)frame->color_trc, (int)frame->colorspace, (int)frame->color_range);
     if (frame->sample_aspect_ratio.num != 0 && av_cmp_q(frame->sample_aspect_ratio, (AVRational){ 1, 1 }) != 0)
-        return FAIL("the H.264 stream (VUI) declares pixels that are not square");
+        return FAIL("the H.264 stream (VUI) states that pixels are not square");
     return (frame->width == reader->size.width_px && frame->height == reader->size.height_px) ||
            FAIL("the size in box avc1 differs from the frames' size");
 }

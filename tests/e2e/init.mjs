@@ -168,7 +168,7 @@ test('`make run` twice on a machine: the second takes another port, and both are
         runs.push(new Program('', [own.file, String(port)], {}, ['deploy/run']));
         await runs.at(-1).line(/^plantcast: ready /m);
     }
-    assert.match(runs[1].said, new RegExp(`port ${own.modbusPort} is in use; the simulated PLC uses port \\d+`));
+    assert.match(runs[1].said, new RegExp(`port ${own.modbusPort} is taken; the simulated PLC has \\d+`));
     assert.doesNotMatch(runs[0].said, /is taken/);
     assert.equal(readFileSync(own.file, 'utf8'), yaml);
     for (const port of ports)
