@@ -21,7 +21,7 @@ let plant, relay;
 before(async () => {
     if (options.skip)
         return;
-    plant = await TinyPlant.running();
+    plant = await TinyPlant.running({ fresh: true });
     await plant.tell('set TI-1 94');
     await plant.tell('set TI-2 94'); // gives the field one colour everywhere
     relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 120 });

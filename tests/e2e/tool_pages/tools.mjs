@@ -18,7 +18,7 @@ let plant, url, browser, page;
 before(async () => {
     if (options.skip)
         return;
-    plant = await TinyPlant.running();
+    plant = await TinyPlant.running({ fresh: true });
     url = `http://127.0.0.1:${plant.port}/`;
     browser = await openPage(url, SCREEN);
     page = browser.page;
