@@ -217,7 +217,7 @@ static bool parse_follow(const struct plant *plant, const json_t *o, struct mess
     out->follow = json_is_integer(session) && json_integer_value(session) > 0 ? (uint64_t)json_integer_value(session) : 0;
     if (out->follow || json_is_null(session))
         return true;
-    message_fail(error, "bad_field", "session: expected the number of a session, or null");
+    message_fail(error, "bad_field", "session: expected a session number, or null");
     return false;
 }
 

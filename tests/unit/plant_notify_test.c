@@ -74,7 +74,7 @@ CASE(what_is_wrong_is_said_at_its_place)
           { "plant.yaml", 10, 5, "expected exactly one of email, webhook" },
           { "plant.yaml", 12, 18, "unknown recipient 'b'" }, { "plant.yaml", 12, 30, "or a span such as mon-fri" },
           { "plant.yaml", 12, 47, "a span such as 06:00-14:00" }, { "plant.yaml", 13, 31, "priority: expected" },
-          { "plant.yaml", 13, 83, "expected more than the preceding 9" }, { "plant.yaml", 13, 11, "rule 'r' is listed twice" },
+          { "plant.yaml", 13, 83, "expected a number greater than the preceding 9" }, { "plant.yaml", 13, 11, "rule 'r' is listed twice" },
           { "plant.yaml", 14, 5, "a rule needs the key 'to'" });
 }
 

@@ -417,7 +417,7 @@ CASE(wrong_types_are_named)
           { "plant.yaml", 3, 66, "limits: expected a mapping" });
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, breaks: [0.1, x, 0.5, 0.3], isolines: 5, scale: log }]");
     FOUND(f, { "plant.yaml", 3, 58, "breaks: expected a number, found 'x'" },
-          { "plant.yaml", 3, 66, "breaks: expected more than the preceding 0.5, found 0.3" },
+          { "plant.yaml", 3, 66, "breaks: expected a number greater than the preceding 0.5, found 0.3" },
           { "plant.yaml", 3, 82, "isolines: expected a list" },
           { "plant.yaml", 3, 92, "scale: a logarithmic scale needs min above 0, found 0" });
 }

@@ -162,7 +162,7 @@ CASE(what_is_wrong_is_said_at_its_place)
           { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "the names of panes' areas" },
           { "plant.yaml", 18, 13, "must have exactly one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no area 'b'" },
           { "plant.yaml", 20, 13, "must have exactly one of views" }, { "plant.yaml", 20, 55, "'b' is used by two panes" },
-          { "plant.yaml", 20, 102, "allowed only in a pane of views" }, { "plant.yaml", 20, 78, "the grid has no area 'z'" },
+          { "plant.yaml", 20, 102, "allowed only in a pane that has `views`" }, { "plant.yaml", 20, 78, "the grid has no area 'z'" },
           { "plant.yaml", 20, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 20, 115, "'b' is used by two panes" },
           { "plant.yaml", 13, 7, "wall 'r' is listed twice" });
 }
@@ -195,7 +195,7 @@ CASE(what_tours_name_must_be_there)
     FOUND(c, { "plant.yaml", 8, 7, "id: expected letters" }, { "plant.yaml", 9, 32, "dwell_s" },
           { "plant.yaml", 11, 10, "stops: expected at least one" }, { "plant.yaml", 13, 11, "view" },
           { "plant.yaml", 14, 7, "tour 'u' is listed twice (first at line 12)" },
-          { "plant.yaml", 20, 68, "every_s: allowed only in a pane of views" },
+          { "plant.yaml", 20, 68, "every_s: allowed only in a pane that has `views`" },
           { "plant.yaml", 20, 90, "tour: expected one item, found 2" });
     load(c, "views: [{ id: all, view: x }]\ntours: [{ id: round, stops: [{ view: al }, { view: none }] }]\n"
             "walls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, tour: raund }]");

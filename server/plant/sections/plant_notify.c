@@ -215,8 +215,9 @@ static void read_escalation(struct yaml_reader *reader, yaml_node_t *node, void 
         struct yaml_map map;
         bool good = yaml_map_read(reader, yaml_list_item(reader, node, i), "a step", keys, &step, &map) && yaml_map_good(&map, "after_min");
         if (good && i > 0 && step.step.after_min <= rule->rule.steps[i].after_min)
-            yaml_error(reader, yaml_map_place(&map, "after_min"), "after_min: expected more than the preceding %.9g, found %.9g",
-                       rule->rule.steps[i].after_min, step.step.after_min);
+            yaml_error(reader, yaml_map_place(&map, "after_min"),
+                       "after_min: expected a number greater than the preceding %.9g, found %.9g", rule->rule.steps[i].after_min,
+                       step.step.after_min);
         rule->rule.steps[1 + i] = step.step;
         rule->rule.step_count = (size_t)i + 2;
     }

@@ -192,7 +192,7 @@ static void check_alone(struct yaml_reader *reader, const struct yaml_map *map, 
     for (const struct plant_source *other = plant->sources; other < source; other++) {
         if (same_text(other->device, source->device))
             yaml_error(reader, yaml_map_place(map, "device"),
-                       "device: '%s' is already used by source %s; one source reads all units of a line", source->device,
+                       "device: '%s' is already used by source %s; a single source must read all units on one line", source->device,
                        other->id ? other->id : "?");
         for (int i = 0; i < source->host_count && way_of(source) == BY_SOCKET; i++)
             for (int k = 0; k < other->host_count; k++)

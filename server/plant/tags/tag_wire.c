@@ -226,7 +226,7 @@ static void read_ne43(struct tag_wire *wire)
     struct plant_tag *tag = wire->tag;
     tag->scale.ne43 = cell_flag(wire->columns, COL_NE43);
     if (tag->scale.ne43 && tag->scale.kind == SCALING_NONE)
-        cell_error(wire->columns, COL_NE43, "NE 43: expected Scaling Linear or Square Root, whose Raw Low is 4 mA and Raw High 20 mA");
+        cell_error(wire->columns, COL_NE43, "NE 43: requires Scaling to be Linear or Square Root, with Raw Low 4 mA and Raw High 20 mA");
 }
 
 /* Parses a sentinel: 0x8000 is compared bit by bit, -32768 or 1.5e3 as a number. Returns false if the text is neither. */

@@ -173,9 +173,9 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
         yaml_error(reader, yaml_map_place(&map, pane_kind_names[pane->kind]), "%s: expected one item, found %zu",
                    pane_kind_names[pane->kind], pane->item_count);
     else if (pane->on_alarm && pane->kind != PANE_VIEWS && pane->kind != PANE_TOUR)
-        yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: allowed only in a pane of views");
+        yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: allowed only in a pane that has `views`");
     else if (pane->kind != PANE_VIEWS && yaml_map_has(&map, "every_s"))
-        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: allowed only in a pane of views");
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: allowed only in a pane that has `views`");
     if (!pane->area)
         return;
     if (!grid_has(display, pane->area))

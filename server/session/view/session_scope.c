@@ -42,8 +42,7 @@ static bool read_view(const struct session *session, const char *id, struct view
     /* bare: gives no readings, because opening a view must not save a baseline, which needs the role operator */
     const struct params_context params = { .scene = context->services->scene, .baselines = context->services->baselines, .bare = true };
     struct view read;
-    const char *address =
-        session_scope_find_view(context->services, session->identity.role, &session->identity.holder, id, "named", error);
+    const char *address = session_scope_find_view(context->services, session->identity.role, &session->identity.holder, id, "named", error);
     if (!address || !view_named_read(&params, address, view->width_px, view->height_px, &read, error))
         return false;
     if (read.at_us) {
@@ -251,8 +250,9 @@ bool session_scope_allows(const struct session *session, const struct message *m
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
              /* picks are allowed to a display with pictures, because it uses them to find a free side for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
-        message_fail(error, "not_allowed", "this token belongs to display %d of wall %s, and permits only messages of a display",
-                     holder->display, holder->wall);
+        message_fail(error, "not_allowed",
+                     "this token belongs to display %d of wall %s, and permits only the messages that a display sends", holder->display,
+                     holder->wall);
     else
         return true;
     return false;
