@@ -49,7 +49,7 @@ test('a model is made when it must be, and only then', { skip }, () => withPlant
     const makes = (why, made, row) => {
         const said = prep();
         assert.equal(said.status, 0, said.stderr);
-        assert.equal(/making .*plate\.glb from .*plate\.cad/.test(said.stderr), made, why);
+        assert.equal(/creating .*plate\.glb from .*plate\.cad/.test(said.stderr), made, why);
         assert.match(said.stdout, row);
     };
     write(COPY);

@@ -124,7 +124,7 @@ test('as the first process of a container, it ends when it is told to while it p
         let said = '';
         child.stderr.on('data', (chunk) => { said += chunk; });
         const ended = new Promise((done) => child.once('exit', (code) => done(code)));
-        await until('a model that is made', () => /making .*more\.glb/.test(said), 30, () => said);
+        await until('a model that is made', () => /creating .*more\.glb/.test(said), 30, () => said);
         const [first] = readFileSync(`/proc/${child.pid}/task/${child.pid}/children`, 'utf8').split(' ');
         process.kill(Number(first), 'SIGTERM');
         assert.equal(await ended, 0, said);

@@ -130,7 +130,7 @@ CASE(instruments_say_what_they_can_measure)
                     "C,40003,,open,\n"
                     "D,40003,,1 2 3 4 5,\n"
                     "E,40003,,0x,\n");
-    FOUND(c, { "tags.csv", 2, 9, "NE 43: expected Scaling Linear or Square Root" },
+    FOUND(c, { "tags.csv", 2, 9, "NE 43: requires Scaling to be Linear or Square Root" },
           { "tags.csv", 2, 14, "Flatline s: expected a number from 0.001" },
           { "tags.csv", 3, 10, "Open Circuit: expected at most 4 raw values such as 0x8000 or -32768, found '0xZZ'" },
           { "tags.csv", 4, 10, "found 'open'" }, { "tags.csv", 5, 10, "found '5'" }, { "tags.csv", 6, 10, "found '0x'" });

@@ -204,6 +204,10 @@ test('legend and markers are of the picture that is seen, however late the one c
     const relay = await Relay.open(plant.port, { bytesPerS: 1e8, delayMs: 0 });
     await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
+        await page.evaluate(() => { // another camera than at home, which the page would fit to the shape of the halves
+            const { session } = globalThis.plantcast, { camera } = session;
+            session.setCamera({ ...camera, eye: camera.eye.map((m) => 1.1 * m) });
+        });
         await settle(page);
         const said = () => page.evaluate(() => {
             const { overlay, session } = globalThis.plantcast;

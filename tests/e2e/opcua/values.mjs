@@ -96,7 +96,7 @@ test('a notification that is lost is noticed, and all nodes are read', options, 
     await server.set('TI-2', 62);
     await until('TI-2', { ...good, value: 62 });
     await until('TI-1', { ...good, value: 61 });
-    await said(/source plc: notifications of the server are missing: reading all nodes/);
+    await said(/source plc: notifications from the server are missing: reading all nodes/);
     assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
 });
 
