@@ -149,7 +149,8 @@ CASE(text_is_compressed_if_the_browser_accepts_gzip)
     temp_write_text(f->web, "long.css", long_text);
     temp_write_text(f->web, "noise.txt", noise);
     struct web_site *site = site_create(NULL, f->web);
-    const struct site_file *file = site_find(site, "/long.css");
+    struct site_file *file = site_find(site, "/long.css");
+    assert_ptr_equal(site_form_for(file, "gzip"), &file->gzip);
     expect_gzip(file, long_text);
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++)
         if ((site_form_for(file, cases[i].accept) == &file->gzip) != cases[i].gzip)

@@ -106,14 +106,14 @@ static int stream_without_upgrade(struct server_context *server, struct http_exc
 
 static int file(struct server_context *server, struct http_exchange *request, const char *path)
 {
-    const struct site_file *found = site_find(server->http.site, path);
+    struct site_file *found = site_find(server->http.site, path);
     char seen[64] = "", accepted[128] = "";
     request->sandboxed = !strncmp(path, "/keeper/", 8);
     if (!found)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
     lws_hdr_copy(request->wsi, accepted, sizeof(accepted), WSI_TOKEN_HTTP_ACCEPT_ENCODING);
     const struct site_form *form = site_form_for(found, accepted);
-    request->varies = found->gzip.bytes != NULL;
+    request->varies = true;
     if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, form->etag))
         return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", form->etag);
     request->gzip = form == &found->gzip;

@@ -142,7 +142,7 @@ struct web_site {
 
 static void add_file(struct web_site *site, struct log *log, const char *full, const char *path)
 {
-    struct site_file file = { .type = type_of(path) };
+    struct site_file file = { .type = type_of(path), .compresses = true };
     if (!file.type || !path_harmless(path) || !inside(site->folder, full))
         return;
     file.plain.bytes = text_read_file(full, MAX_FILE_BYTES, &file.plain.count);
@@ -154,7 +154,6 @@ static void add_file(struct web_site *site, struct log *log, const char *full, c
         file.plain.count = drop_comments(file.plain.bytes, file.plain.count);
     file.path = mem_strdup(path);
     set_etag(&file.plain);
-    file.gzip = compressed(&file.plain);
     mem_grow(&site->files, &site->capacity, site->count + 1, sizeof(*site->files));
     site->files[site->count++] = file;
 }
@@ -212,12 +211,12 @@ void site_destroy(struct web_site **pointer)
     *pointer = NULL;
 }
 
-const struct site_file *site_find(const struct web_site *site, const char *path)
+struct site_file *site_find(const struct web_site *site, const char *path)
 {
     size_t length = strlen(path);
     char *whole = length && path[length - 1] == '/' ? mem_printf("%sindex.html", path) : NULL;
     const struct site_file wanted = { .path = whole ? whole : (char *)(uintptr_t)path };
-    const struct site_file *found = site->count ? bsearch(&wanted, site->files, site->count, sizeof(*site->files), by_path) : NULL;
+    struct site_file *found = site->count ? bsearch(&wanted, site->files, site->count, sizeof(*site->files), by_path) : NULL;
     mem_free(whole);
     return found;
 }
@@ -231,13 +230,23 @@ static bool allows_gzip(const char *element, size_t length)
     return strcspn(name, "; \t") == 4 && !strncasecmp(name, "gzip", 4) && (!weight || strtod(weight + 2, NULL) > 0);
 }
 
-const struct site_form *site_form_for(const struct site_file *file, const char *accept_encoding)
+static bool accepts_gzip(const char *accept_encoding)
 {
-    for (const char *at = accept_encoding; file->gzip.bytes && *at; at += *at == ',') {
+    bool accepts = false;
+    for (const char *at = accept_encoding; *at && !accepts; at += *at == ',') {
         size_t length = strcspn(at, ",");
-        if (allows_gzip(at, length))
-            return &file->gzip;
+        accepts = allows_gzip(at, length);
         at += length;
     }
-    return &file->plain;
+    return accepts;
+}
+
+const struct site_form *site_form_for(struct site_file *file, const char *accept_encoding)
+{
+    if (!accepts_gzip(accept_encoding))
+        return &file->plain;
+    if (file->compresses)
+        file->gzip = compressed(&file->plain);
+    file->compresses = false;
+    return file->gzip.bytes ? &file->gzip : &file->plain;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The web client's files, as found when the daemon starts: read into memory from one folder, so that a running daemon never serves files of
-   a newer version. Thread: one creates it; immutable from then on. */
+   a newer version. Thread: the one that creates it, then only the event loop. */
 #ifndef NET_SITE_H
 #define NET_SITE_H
 #include <stdbool.h>
@@ -18,7 +18,9 @@ struct site_file {
     char *path;       /* path in the URL, decoded, with its leading '/' */
     const char *type; /* MIME type, static text */
     struct site_form plain;
-    struct site_form gzip; /* compressed (RFC 1952); bytes NULL: the file hardly shrinks, as an image */
+    /* the file compressed (RFC 1952), from the first request on that accepts gzip; bytes NULL: not yet, or the file hardly shrinks */
+    struct site_form gzip;
+    bool compresses; /* true: no request has accepted gzip yet */
 };
 
 struct web_site;
@@ -28,8 +30,8 @@ struct web_site *site_create(struct log *log, const char *folder);
 void site_destroy(struct web_site **site); /* destroys the site and sets *site to NULL; accepts a pointer to NULL */
 /* Returns the file of a decoded path that starts with '/', or NULL; a path that ends with '/' means index.html there. The file lives as
    long as the site. */
-const struct site_file *site_find(const struct web_site *site, const char *path);
+struct site_file *site_find(const struct web_site *site, const char *path);
 /* Returns the smallest form that the value of the HTTP header Accept-Encoding allows (RFC 9110, 12.5.3). "" allows only plain. */
-const struct site_form *site_form_for(const struct site_file *file, const char *accept_encoding);
+const struct site_form *site_form_for(struct site_file *file, const char *accept_encoding);
 
 #endif
