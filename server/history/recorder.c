@@ -12,8 +12,9 @@ struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
     int64_t sampling_us; /* interval at which the tag's source looks for changes */
-    int64_t silence_us;  /* after a longer time without samples, the last value held until sampling_us before the next sample */
-    int64_t stale_us;    /* after a longer time without samples, the value is unknown; INT64_MAX: never */
+    /* after a longer time without samples, the last value held until sampling_us before the next sample; INT64_MAX: samples are imported,
+       and nothing is recorded for a time without samples */
+    int64_t silence_us;
     /* time and quality of the sample that is the latest in time, which need not have arrived last: a source may state an old time */
     int64_t latest_us;
     uint32_t quality;
@@ -36,11 +37,6 @@ static double span_of(const struct plant *plant, const struct plant_tag *tag)
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
 }
 
-static int64_t stale_of(const struct plant_tag *tag)
-{
-    return tag->validity.stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->validity.stale_s * US_PER_S) : INT64_MAX;
-}
-
 /* Returns the longest time between two samples of a tag over which the recorded line may slope. `Stale s` may permit a far longer silence:
    live pictures show the last value until then. */
 static int64_t silence_of(const struct plant *plant, const struct plant_tag *tag)
@@ -60,7 +56,7 @@ struct history_tag *history_tags(const struct plant *plant)
             .unit = plant_tag_unit(plant, (int)i),
             .step = tag->signal.type == DATA_BIT,
             .within = isnan(tag->deadband) ? plant->history.deadband_percent / 100 * span_of(plant, tag) : tag->deadband,
-            .stale_us = stale_of(tag),
+            .stale_us = tag->validity.stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->validity.stale_s * US_PER_S) : INT64_MAX,
         };
     }
     return tags;
@@ -79,7 +75,6 @@ struct recorder *recorder_create(const struct plant *plant, int64_t begin_us)
         recorder->lanes[i].latest_us = begin_us;
         recorder->lanes[i].sampling_us = (int64_t)plant_tag_scan_ms(plant, &plant->tags[i]) * 1000;
         recorder->lanes[i].silence_us = begin_us == INT64_MIN ? INT64_MAX : silence_of(plant, &plant->tags[i]);
-        recorder->lanes[i].stale_us = begin_us == INT64_MIN ? INT64_MAX : stale_of(&plant->tags[i]);
         recorder->lanes[i].params = (struct swinging_door_params){
             /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2 deadband +
                deviation, which is 2 within/4 + within/2 here */
@@ -130,12 +125,13 @@ static void put(struct recorder *recorder, int tag, const struct history_point *
 static void put_silence(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
 {
     const struct recorder_lane *lane = &recorder->lanes[tag];
+    const int64_t stale_us = recorder->tags[tag].stale_us;
     struct history_point newest;
-    if (!recorder_newest(recorder, tag, &newest) || !history_point_usable(&newest))
+    if (lane->silence_us == INT64_MAX || !recorder_newest(recorder, tag, &newest) || !history_point_usable(&newest))
         return;
     int64_t silent_us = sample->t_us - newest.t_us;
-    if (silent_us > lane->stale_us && sample->quality != QUALITY_BAD_COMMUNICATION_ERROR)
-        newest = (struct history_point){ newest.t_us + lane->stale_us, NAN, QUALITY_BAD_COMMUNICATION_ERROR };
+    if (silent_us > stale_us && sample->quality != QUALITY_BAD_COMMUNICATION_ERROR)
+        newest = (struct history_point){ newest.t_us + stale_us, NAN, QUALITY_BAD_COMMUNICATION_ERROR };
     else if (silent_us > lane->silence_us && history_point_joined(&newest, sample, lane->params.step))
         newest.t_us = sample->t_us - lane->sampling_us;
     else
