@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes a depth grid, the coarse depth of a frame by which a client shows it from another camera (depth_grid.h): quantises the depths of
-   its cells to codes, predicts each code from those of neighbouring cells, and deflates the differences. */
+/* Encodes a depth grid: coarse depth of a frame, with which a client redraws the frame for a moved camera (depth_grid.h).
+   Quantises the depths of the cells to codes, predicts each code from the codes of neighbouring cells, and deflates the
+   differences. */
 #include "render/depth_grid.h"
 
 #include <math.h>
@@ -15,16 +16,15 @@
 enum { MASK_SIDE = DEPTH_CELL_PX / 2, MASK_BYTES = MASK_SIDE * MASK_SIDE / 8, MOST_LEVELS = 4095 };
 enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
 enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
-/* allowance in bytes for the ends of deflate blocks in the payload of a depth grid, which deflateBound() does not count: one block per
-   part */
+/* bytes reserved for the ends of deflate blocks in a depth grid's payload, which deflateBound() does not count: one block per part */
 enum { MOST_BLOCK_BYTES = 100 };
-/* Camera movement up to which a depth grid must let the client warp a picture correctly, to a fraction of a pixel. Unit: distance from the
-   camera to the surface. 0.1 corresponds to an orbit by six degrees. */
+/* Camera movement, as a fraction of the distance from the camera to the surface, for which the depth grid must let clients warp
+   a picture to within a fraction of a pixel. 0.1 corresponds to orbiting by six degrees. */
 static const double MOVEMENT = 0.1;
-/* Shifts in pixels on the screen that a camera movement by MOVEMENT causes. STEP_SHIFT_PX: smallest shift between two depths that counts as
-   a step between them. UNIT_SHIFT_PX: shift between two depths whose codes differ by 1. */
+/* Shifts on the screen, in pixels, when the camera moves by MOVEMENT. STEP_SHIFT_PX: two depths that shift apart by at least
+   this much form a step. UNIT_SHIFT_PX: two depths whose codes differ by 1 shift apart by this much. */
 static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
-/* Ground whose inverse distance from the camera (1/m) is below this counts as background: it is more than 100 km away. */
+/* Ground whose inverse distance from the camera (1/m) is below this, that is, farther away than 100 km, counts as background. */
 static const double LEAST_INVERSE = 1e-5;
 
 /* --- from the depth buffer to metres ----------------------------------------------------------------------------------------- */
@@ -102,8 +102,7 @@ struct coder {
     const struct depth_lens *lens;
     int width_px, height_px, columns, rows;
     float *nears, *fars; /* depths; -INFINITY: background */
-    /* by cell: 1: the ground lies in front of the cell's surface, so near and far side are swapped, and the mask of the surface must be
-       inverted */
+    /* by cell: 1: the ground lies in front of the cell's surface; near and far are then swapped, and the mask must be inverted */
     uint8_t *swapped;
     uint16_t *near, *far, *masks; /* masks: of divided cells */
     uint8_t *data;
@@ -134,16 +133,16 @@ static void coder_finish(struct coder *coder)
     mem_free(coder->data);
 }
 
-/* Returns the pixel coordinate, along one axis, of the middle of a depth grid cell. Of a cell that extends beyond the frame, only the part
-   inside counts. */
+/* Returns the pixel coordinate, along one axis, of the centre of a depth grid cell. For a cell that extends beyond the frame,
+   this is the centre of the part inside. */
 static double middle(int cell, int px)
 {
     int begin = cell * DEPTH_CELL_PX, end = begin + DEPTH_CELL_PX;
     return 0.5 * (begin + (end < px ? end : px));
 }
 
-/* Gives depth grid cells that show background the depth of the ground: as the far depth behind the cell's surface, or as the only depth.
-   Then finds the range of depths of all cells. */
+/* Replaces the background in depth grid cells with the ground's depth: as the far depth behind the cell's surface, or as the
+   cell's only depth. Then finds the depth range of all cells. */
 static void find_depths(struct coder *coder)
 {
     float low = INFINITY, high = -INFINITY;
@@ -222,7 +221,7 @@ static inline int predicted_back(int left, int up, int corner)
     return corner >= most ? least : corner <= least ? most : left + up - corner;
 }
 
-/* Writes the depth code of the farthest surface of each cell, as its difference from the prediction. */
+/* Writes the depth code of each cell's farthest surface, as its difference from the prediction. */
 static uint8_t *put_back(const struct coder *coder, uint8_t *out)
 {
     int columns = coder->columns;
@@ -234,8 +233,8 @@ static uint8_t *put_back(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Writes the near code (depth code of the nearer side) of each cell that a depth step divides. It is predicted by the near code of the
-   left, upper or upper left neighbour: the first of these that is nearer than the far side of the cell. */
+/* Writes the near code (depth code of the nearer side) of each cell that contains a depth step. The prediction is the near code
+   of the left, upper or upper left neighbour: the first of these that is nearer than the cell's far side. */
 static uint8_t *put_near(const struct coder *coder, uint8_t *out)
 {
     size_t i = 0, columns = (size_t)coder->columns;
@@ -251,13 +250,13 @@ static uint8_t *put_near(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Reduces a cell's mask, one bit per pixel, to MASK_SIDE x MASK_SIDE bits, each 1 if at least one of 2 x 2 pixels belongs to the near
-   surface. Some pixels of the far surface thus move with the near one. The opposite would be more visible: a thin near object, such as a
-   handrail, would appear twice. */
+/* Reduces a cell's mask, one bit per pixel, to MASK_SIDE x MASK_SIDE bits, each 1 if at least one of 2 x 2 pixels belongs to
+   the near surface. Some pixels of the far surface thus move with the near one. The opposite error would be more visible: a
+   thin near object, such as a handrail, would appear twice. */
 static unsigned coarse_mask(uint64_t mask)
 {
-    /* this line and the next merge each square of 2 x 2 pixels into one bit: 1 if any of the four is near. These bits are 0, 2, 4 and 6 of
-       every second row; the lines after that move them together */
+    /* this line and the next merge each square of 2 x 2 pixels into one bit, set if any of the four is near. The results are
+       bits 0, 2, 4 and 6 of every second row; the lines after that pack them together */
     mask |= mask >> 1;
     mask |= mask >> DEPTH_CELL_PX;
     mask &= 0x0055005500550055;
@@ -267,8 +266,8 @@ static unsigned coarse_mask(uint64_t mask)
     return (unsigned)((mask | mask >> 24) & 0xffff);
 }
 
-/* Returns the mask of a neighbouring cell, from which the mask of cell `i` is predicted. A neighbour that no depth step divides has no
-   mask: the result is all ones if its depth is closer to the near side of cell `i` than to the far side, else 0. */
+/* Returns the mask that serves as prediction for cell `i`: that of a neighbouring cell. A neighbour without a depth step has no
+   mask: the result is then all ones if its depth is closer to the near side of cell `i` than to the far side, else 0. */
 static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t i)
 {
     int back = coder->far[neighbour];
@@ -277,9 +276,8 @@ static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t 
     return abs(back - coder->near[i]) < abs(back - coder->far[i]) ? 0xffff : 0;
 }
 
-/* Writes in which bits the masks of the cells differ from their predictions. A bit is predicted from the bits to its left and above it. If
-   these are equal, the prediction is their value; otherwise it is the opposite of the upper left bit, so that an edge continues
-   straight. */
+/* Writes which bits of the cells' masks differ from their predictions. If the bits to the left and above are equal, the
+   prediction is their value. Otherwise it is the inverse of the upper left bit, so that an edge continues straight. */
 static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
 {
     size_t i = 0, columns = (size_t)coder->columns;
@@ -299,8 +297,8 @@ static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Deflates the parts of the payload (codes of the far sides, of the near sides, and so on) one by one, so that each gets Huffman codes of
-   its own. */
+/* Deflates the parts of the payload (codes of the far sides, of the near sides, and so on) separately, so that each gets its
+   own Huffman codes. */
 static uint8_t *deflated(const uint8_t *data, uint8_t *const ends[PARTS], size_t *bytes)
 {
     enum { RAW = -15, MEMORY = 8, LEVEL = 1 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Depth grid: coarse depth of a frame, with which a client shows the frame from another camera (PROTOCOL.md, Depth grid). Immutable;
-   reference-counted; may be released on any thread. */
+/* Depth grid: coarse depth of a frame, with which a client can show the frame from another camera (PROTOCOL.md, Depth grid).
+   Immutable; reference-counted; may be released on any thread. */
 #ifndef RENDER_DEPTH_GRID_H
 #define RENDER_DEPTH_GRID_H
 #include "protocol/wire.h"
@@ -24,7 +24,7 @@ struct depth_lens {
     double offset, factor;
     /* A difference in depth within a cell counts as a step, which divides the cell, if it exceeds step * depth + least_step. */
     float step, least_step;
-    /* the ground, onto which shadows fall: its depth at the pixel (x, y) is ground[0] x + ground[1] y + ground[2] */
+    /* the ground that receives shadows: its depth at the pixel (x, y) is ground[0] x + ground[1] y + ground[2] */
     bool has_ground;
     /* ground_from_pixel: homogeneous matrix, column by column, from a pixel (x, y, 1) to the position (u s, v s, s) on the ground; u, v:
        0..1 */
@@ -33,8 +33,8 @@ struct depth_lens {
 
 struct depth_grid {
     _Atomic int refs;
-    /* header of the message that carries the grid to clients; sequence number and x_px, y_px are not set yet, because they differ from one
-       message to another */
+    /* header of the message that carries the grid to clients; sequence number and x_px, y_px are not set yet, because they
+       differ between messages */
     struct wire_depth wire;
     uint8_t *payload;
 };
@@ -47,12 +47,12 @@ static inline int depth_cells_along(int px)
    from positions on the drawn ground rectangle, 0..1 along each side, to the plant; NULL: the view shows no ground. */
 void depth_lens_init(struct depth_lens *lens, const struct view_constants *constants, const double *plant_from_ground, int width_px,
                      int height_px);
-/* Encodes the cells (squares of pixels) of a frame as a depth grid; `cells` is row by row. Returns NULL when out of memory. The caller owns
-   the grid (depth_grid_unref). */
+/* Encodes the cells (squares of pixels) of a frame as a depth grid; `cells` is in row order. Returns NULL when out of memory.
+   The caller owns the grid (depth_grid_unref). */
 struct depth_grid *depth_grid_create(const struct depth_cell *cells, const struct depth_lens *lens, int width_px, int height_px);
 struct depth_grid *depth_grid_ref(struct depth_grid *grid); /* accepts NULL */
 void depth_grid_unref(struct depth_grid **grid);            /* accepts a pointer to NULL */
-/* Returns whether both depth grids are equal, so that a client that has received `a` need not be sent `b`; both may be NULL. */
+/* Returns whether two depth grids are equal, so that a client that has received `a` need not be sent `b`. Both may be NULL. */
 bool depth_grid_equal(const struct depth_grid *a, const struct depth_grid *b);
 
 #endif

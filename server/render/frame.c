@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates and releases frames, and makes frames that show a part of another one. */
+/* Creates and releases frames, and creates frames that show part of another frame. */
 #include "render/frame.h"
 
 #include <assert.h>
@@ -13,8 +13,8 @@
 #include "render/frame_record.h"
 #include "value/quality.h"
 
-/* Largest distance in pixels from a marker's position to any pixel of its drawn symbol, by which parts of a frame find symbols that reach
-   into them. */
+/* Maximum distance in pixels from a marker's position to any pixel of its symbol: a part of a frame includes markers up to this
+   far outside. */
 static const float MARK_PX = 48;
 
 static size_t pixel_bytes(const struct frame *frame)
@@ -81,7 +81,7 @@ static uint64_t hash_part(uint64_t content, const struct frame_part *part)
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 {
     struct frame *frame = mem_new(sizeof(*frame));
-    /* copies the members from `view` on; those before it hold the reference count, which other threads change meanwhile */
+    /* copies the members from `view` on; the ones before it hold the reference count, which other threads may change meanwhile */
     size_t plain = offsetof(struct frame, view);
     assert(part->x_px >= 0 && part->y_px >= 0 && part->x_px + part->width_px <= whole->width_px &&
            part->y_px + part->height_px <= whole->height_px);

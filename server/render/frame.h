@@ -32,7 +32,7 @@ struct frame_label { /* a visible point on an isoline, where the label of the is
        arrow */
     uint16_t stroke;
 };
-/* minimum distance between the arrows of a frame in pixels; the longest arrow is almost that long */
+/* minimum distance in pixels between the arrows of a frame; the longest arrow is almost that long */
 #define FRAME_ARROW_PX(width_px) fmax(48, (width_px) / 24.0)
 
 struct frame_part { /* a rectangle of a frame, in pixels from the top left. width_px 0: the whole frame */
@@ -49,7 +49,7 @@ struct frame {
     uint8_t *bgrx;                /* 4 bytes per pixel (blue, green, red, unused), rows from the top */
     /* if this frame is a part of another (frame_cut): reference to the other frame, which owns the pixels; NULL: this frame owns them */
     struct frame *whole;
-    struct frame_pool *pool;      /* pool to which this frame's pixel buffer returns; NULL: the buffer is from no pool */
+    struct frame_pool *pool;      /* pool to which this frame's pixel buffer returns; NULL: the buffer does not belong to a pool */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
     /* visible points on isolines at which the isoline's value may be written (more points than labels fit), and the arrows of fields that
@@ -67,8 +67,8 @@ struct frame {
     struct baseline baseline;    /* baseline from which the frame shows differences; id 0: none */
     /* copies of the readings from which the frame was drawn (render/frame_record.h); NULL: none were requested */
     struct frame_record *record;
-    /* depth grid of the frame, or of each half of a split view: coarse depth by which clients warp the picture to a moved camera; NULL:
-       none */
+    /* depth grid of the frame, or of each half of a split view: coarse depth with which clients warp the picture for a moved
+       camera; NULL: none */
     struct depth_grid *depth[2];
     /* hash of the view and of the versions of its fields, without sequence numbers and times; two frames with the same hash look the
        same */

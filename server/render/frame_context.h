@@ -26,11 +26,11 @@ struct frame_context {
     /* reference method, for tests: shaders compute the field at each fragment from all sensors; NULL: the field is interpolated between
        vertices */
     struct reference *reference;
-    /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
+    /* maximum surface error of a level of detail, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
     double error_px;
     uint64_t shape; /* content_hash_shape() of the frame plan: a hash of all that the frame shows except values and colours */
-    bool gives_depth; /* true: the frame gets a depth grid, by which clients warp the picture to a moved camera (render/depth_grid.h) */
-    bool measured;  /* true: the frame receives the field's values as floats instead of colours */
+    bool gives_depth; /* true: the frame gets a depth grid, with which clients warp the picture for a moved camera (render/depth_grid.h) */
+    bool measured;  /* true: the frame gets the field's values as floats instead of colours */
 };
 
 /* Returns the level of detail that the frame plan chose for an asset. */

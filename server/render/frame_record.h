@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A frame record: copies of all readings that a frame was drawn from, used to say later what the frame showed. Immutable once made;
-   reference-counted; may be released on any thread. */
+/* A frame record: copies of all readings that a frame was drawn from, used to report later what the frame showed. Immutable
+   once made; reference-counted; may be released on any thread. */
 #ifndef RENDER_FRAME_RECORD_H
 #define RENDER_FRAME_RECORD_H
 #include "loopcheck/loop_checks.h"
 #include "render/view.h"
 #include "value/baselines.h"
 
-enum { FRAME_RECORD_BASELINES = 2 }; /* baselines in a record at most: one for each half of a split view */
+enum { FRAME_RECORD_BASELINES = 2 }; /* maximum number of baselines in a record: one for each half of a split view */
 struct frame_record {
     _Atomic int refs;
     struct snapshot *readings;

@@ -7,7 +7,7 @@
 enum render_store {
     STORE_FIELDS,   /* vertex values of shown fields, in main memory and on the GPU */
     STORE_LIGHT,    /* baked light, on the GPU and as copies in main memory */
-    STORE_PICTURES, /* visibility buffers (triangle and light of each pixel) of views whose camera stands still */
+    STORE_PICTURES, /* visibility buffers (triangle and light of each pixel) of views with a still camera */
     STORE_TARGETS,  /* framebuffers */
     STORE_ROOM,     /* working memory (pixel buffers and lists) of the software renderer */
     STORE_MODELS,   /* geometry on the GPU, except data mapped from files; needed for every frame, so it is never evicted */
@@ -20,7 +20,7 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
 /* Sets the memory limit for all caches; geometry (models) is not limited. The frame being drawn may exceed the limit. Call between
    frames. */
 void renderer_bound_memory(struct renderer *renderer, size_t bytes);
-/* Frees all caches; keeps the geometry (models) and the default light. Called when no client watches; no job may be under way. */
+/* Frees all caches; keeps the geometry (models) and the default light. Called when no clients are watching; no job may be in progress. */
 void renderer_drop_caches(struct renderer *renderer);
 
 #endif

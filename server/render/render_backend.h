@@ -21,7 +21,7 @@ struct render_backend {
     void (*finish)(struct renderer *renderer);
     /* Returns whether the backend can draw this frame. */
     bool (*can)(const struct frame_context *context);
-    /* Returns whether the backend draws this frame in about the time of a preview. */
+    /* Returns whether the backend draws this frame about as fast as a preview. */
     bool (*is_quick)(struct renderer *renderer, const struct frame_context *context);
     /* Begins to draw the job's frame. at_once true: the caller calls end or submit next; false: the caller may draw other frames in
        between. Returns false on failure, logged; the caller then calls abandon. */

@@ -13,7 +13,7 @@ struct render_backend;
 
 struct render_job {
     const struct render_backend *backend;
-    union { /* state of the job that belongs to the backend; NULL: none */
+    union { /* the backend's own state for this job; NULL: none */
         struct gl_job *gl;
         struct soft_job *soft;
     } of;
@@ -27,8 +27,7 @@ struct render_job {
     struct fields_entry *copies;
     int *visible;
     struct isoline_points isolines;
-    /* true: the backend keeps the job's visibility buffer, so that the same view with other readings is drawn in about the time of a
-       preview */
+    /* true: the backend keeps the job's visibility buffer, so that the same view with other readings is drawn about as fast as a preview */
     bool keeps;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws frames: turns a frame plan into a frame by one of the render backends. */
+/* Draws frames: turns a frame plan into a frame with one of the render backends. */
 #include "render/renderer.h"
 
 #include <math.h>

@@ -22,14 +22,14 @@ struct frame_pool *renderer_frames(const struct renderer *renderer);
 /* Returns the planner that makes this renderer's frame plans (render/plan/frame_planner.h). Owned by the renderer. */
 const struct frame_planner *renderer_planner(const struct renderer *renderer);
 
-/* Returns whether renderer_draw() takes about the time of a preview. That is so if the frame is a preview, if it differs only in values and
-   colours from a refined frame drawn recently, or if the GPU is fast enough. */
+/* Returns whether renderer_draw() is about as fast as for a preview. It is if the frame is a preview, if it differs only in
+   values and colours from a refined frame drawn recently, or if the GPU is fast enough. */
 bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan);
 /* Draws the frame in a single call. The caller owns it (frame_unref). NULL on failure, logged. */
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan);
 
-/* Begins a job that draws the frame in steps; other frames can be drawn in between. The job copies everything it needs from the plan. Any
-   number of jobs may be under way. renderer_end() or renderer_abandon() frees the job. NULL on failure, logged. */
+/* Begins a job that draws the frame in steps; other frames can be drawn in between. The job copies everything it needs from the
+   plan. Any number of jobs may be in progress. renderer_end() or renderer_abandon() frees the job. NULL on failure, logged. */
 struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan);
 /* Returns whether a frame with the same view and other readings will be quick (renderer_is_quick) once this job has ended. */
 bool renderer_keeps(const struct render_job *job);
@@ -47,21 +47,20 @@ struct render_job *renderer_submit(struct renderer *renderer, const struct frame
 /* Returns whether the GPU has finished a job of renderer_submit(), so that renderer_end() returns without waiting. */
 bool renderer_is_complete(const struct render_job *job);
 
-/* Sets for how long (ns) each preview computes (bakes) the light set of its view if that is not ready yet. Meanwhile previews use the most
-   similar light set that is ready; if none is ready, this call bakes a rough one. With 0, the initial value, a preview waits until its
-   light is baked. Refined frames always wait. Returns false when the GPU is out of memory, logged. */
+/* Sets how long (ns) each preview spends on baking the light set of its view while that is not ready. Meanwhile previews use
+   the most similar light set that is ready; if none is ready, this call bakes a rough one. With 0, the initial value, a preview
+   waits until its light is baked. Refined frames always wait. Returns false when the GPU is out of memory, logged. */
 bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
 /* Computes the light set of the default view (renderer_usual_light) for about budget_ns; call while no client waits for a frame. Returns
    true when it is complete. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
-/* Chooses whether frames that are begun later get depth grids, by which clients warp pictures (render/depth_grid.h); initially they do
-   not. */
+/* Sets whether frames begun from now on get depth grids, with which clients warp pictures (render/depth_grid.h); initially they do not. */
 void renderer_set_depth(struct renderer *renderer, bool gives_depth);
 bool renderer_gives_depth(const struct renderer *renderer);
-/* Sets whether GL draws all frames (true), even those that the software backend would draw on machines without a GPU. */
+/* Sets whether GL draws all frames (true), including those that the software backend would draw on machines without a GPU. */
 void renderer_use_gl(struct renderer *renderer, bool always);
-/* Chooses how the field is computed: per_fragment true: at each fragment, over all sensors, on the finest level
+/* Sets how the field is computed. per_fragment true: at each fragment, from all sensors, on the finest level
    (render/reference/reference.h), which is slow; false: interpolated between vertices. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);
 

@@ -31,7 +31,7 @@ struct renderer {
     bool always_gl;
     bool gives_depth; /* frames get depth grids */
     int64_t bake_budget_ns;  /* time that each preview spends on baking light, ns; 0: a preview waits until its light is baked */
-    /* which assets the last frame that was drawn in one call showed; light is baked only while this does not change */
+    /* assets shown in the last frame that was drawn in one call; light is baked only while these stay the same */
     struct visibility shown;
 };
 

@@ -10,8 +10,8 @@
 #include "render/gl/model.h"
 
 struct draw_instance { /* as in shaders/instance.glsl */
-    /* Rows of the matrix that turns normals of the asset into eye space. The fourth elements of the three rows are indices of the asset's
-       first block: in the buffer of baked light, in the buffer of field values; the third is unused. */
+    /* Rows of the matrix that transforms the asset's normals to eye space. The fourth elements of rows 0 and 1 are the index of
+       the asset's first block in the baked light buffer and in the field value buffer; that of row 2 is unused. */
     float normals[3][4];
     float clip_from_file[16];
     float from_file[3][4]; /* rows */
@@ -20,7 +20,7 @@ struct draw_instance { /* as in shaders/instance.glsl */
 struct draw_batch_state {
     GLuint program;
     const struct gl_model *model;
-    /* buffers (pool.h) with baked light and with field values per vertex; field NULL: the asset has no group of sensors or no reading */
+    /* buffers (pool.h) with baked light and with field values per vertex; field NULL: the asset has no sensor group or no reading */
     const struct pool_page *light, *field;
     int front;    /* as scene_asset.front */
     int material; /* index of the material in the model; -1: the shader program reads no material */
@@ -37,10 +37,9 @@ struct draw_command { /* for glMultiDrawElementsIndirect */
 
 struct draw_batch {
     struct draw_batch_state state;
-    /* commands of this batch: index of the first and number, in the array `sorted`; valid after draw_batches_upload() */
+    /* this batch's commands in the array `sorted`: index of the first, and number; valid after draw_batches_upload() */
     size_t first, count;
-    /* next element of a list of the model's batches, in which a batch of equal state is searched: index of the batch made before this one;
-       SIZE_MAX: none */
+    /* index of the model's previous batch: links the list of the model's batches that is searched for one of equal state; SIZE_MAX: none */
     size_t older;
 };
 
@@ -66,14 +65,14 @@ void draw_batches_finish(struct draw_batches *batches);
 void draw_batches_begin(struct draw_batches *batches, size_t model_count);
 /* Copies an instance (an asset's placement) into the list of instances and returns its index there. */
 uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct draw_instance *instance);
-/* Returns the index of a batch with that state, and makes one if there is none. model: the model's index. in_order: draw commands must keep
-   the order in which they are added, so only the newest batch may be used again. */
+/* Returns the index of a batch with this state; adds a batch if there is none. model: the model's index. in_order: draw
+   commands must keep the order in which they are added, so only the newest batch may be reused. */
 size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch_state *state, size_t model, bool in_order);
 /* Adds the draw of a whole submesh. shown: 1: the submesh is drawn; 0: it is drawn only if an occlusion test on the GPU enables the draw
    (render/gl/occlusion.h). */
 void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                               uint32_t shown);
-/* Adds draws of those clusters of a submesh that culling does not remove. Returns the number of triangles added. */
+/* Adds draws of the clusters of a submesh that survive culling. Returns the number of triangles added. */
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                           const struct culling *culling);
 /* Sorts the draw commands by batch, and uploads commands and instances to the GPU. places true: also uploads, for each command, its index
@@ -82,8 +81,8 @@ bool draw_batches_upload(struct draw_batches *batches, bool places);
 /* Draws one batch. The caller has set the batch's state and bound its mesh. */
 void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);
 
-/* Overwrites a GL buffer with new data of a frame; grows the buffer if needed. *room: size of the buffer in bytes. Returns false when the
-   GPU is out of memory, logged. */
+/* Overwrites a GL buffer with the new data of a frame, and grows it if needed. *room: size of the buffer in bytes. Returns
+   false when the GPU is out of memory, logged. */
 bool draw_batches_refill(struct log *log, GLuint *buffer, size_t *room, size_t bytes, const void *data);
 
 #endif

@@ -19,7 +19,7 @@ struct tile {
     int x_px, y_px, width_px, height_px; /* one tile: a rectangle in pixels, from the top left of the frame */
 };
 
-/* Divides the frame into tiles. whole: true: one tile covers the whole frame; false: tiles have at most 16 cells of 64 x 64 pixels. */
+/* Divides the frame into tiles. whole true: one tile covers the whole frame; false: tiles have at most 16 cells of 64 x 64 pixels. */
 void frame_tiles_init(struct frame_tiles *tiles, const struct frame_context *context, bool whole);
 void frame_tiles_finish(struct frame_tiles *tiles);
 /* returns the number of cells (squares of pixels) that cover the frame; each pass (enum gl_pass) draws each cell once */

@@ -43,8 +43,8 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
     block->lines[2] = block->lines[3] = 0;
 }
 
-/* Sets block->shade: how the brightness of a surface selects a row of the shaded colour map. In looks where light must not change colours,
-   it is always the middle row. */
+/* Sets block->shade, which maps a surface's brightness to a row of the shaded colour map. In looks in which light must not
+   change colours, that is always the middle row. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
     /* range of a surface's brightness from the first to the last row of the shaded colour map; darker or brighter surfaces are clamped */
@@ -72,7 +72,7 @@ static void fill_clip(struct frame_uniforms *block, const struct frame_context *
     }
 }
 
-/* Factor of the brightness of assets without a field before a dark backdrop, on which large pale floors would glare at full brightness. */
+/* Brightness factor of assets without a field in front of a dark backdrop, where large pale floors would glare at full brightness. */
 static const float DIM_CONTEXT = 0.55f;
 
 void frame_uniforms_fill(struct frame_uniforms *block, const struct frame_context *context)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fixed array of slots for frames whose results the GPU still computes. */
+/* A fixed array of slots for frames whose results the GPU is still computing. */
 #include "render/gl/frames_in_flight.h"
 
 #include "gpu/program.h"

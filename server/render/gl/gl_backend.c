@@ -21,18 +21,18 @@ enum { REFINED_SAMPLES = 4 };
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
-/* GPU time in nanoseconds of the last refined frame, below which the next one is drawn in one call, like a preview, instead of in steps. */
+/* Maximum GPU time of the last refined frame, in nanoseconds, for drawing the next one in one call, like a preview, instead of in steps. */
 static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
 /* Minimum number of triangles in a frame for occlusion culling: a slow GPU needs about half a millisecond to draw them. Where GL runs on
    the processor, testing the bounding boxes of assets costs more than it saves. */
 enum { OCCLUSION_MIN_TRIANGLES = 250000 };
-/* Expected time per pixel and pass of GL on a processor in nanoseconds, until measured. */
+/* Initial estimate of the time per pixel and pass, in nanoseconds, where GL runs on the processor; used until measured. */
 static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
 
 struct gl_job {
     struct target target;
     struct frame_tiles tiles;
-    /* place of the frame among those that the GPU still computes (frames_in_flight.h); NULL: the frame is not submitted to the GPU yet */
+    /* slot of the frame while the GPU computes its results (frames_in_flight.h); NULL: the frame is not submitted to the GPU yet */
     struct frame_in_flight *in_flight;
     size_t drawn;                      /* number of assets of the current tile drawn so far, nearest first */
     bool short_of_memory;              /* true: the GPU ran out of memory while drawing, so the frame's content is undefined */
@@ -102,8 +102,8 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
     return true;
 }
 
-/* Prepares to continue a job after the renderer drew other frames. The job then holds a reference to its light set (baked light), so that
-   the set is not evicted. Returns false on failure, logged. */
+/* Prepares to continue a job after the renderer has drawn other frames. The job then holds a reference to its light set (baked
+   light), so that the set is not evicted. Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);
@@ -123,7 +123,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
     job->of.gl = mem_new(sizeof(*job->of.gl));
     job->of.gl->target = target;
     job->context.target = &job->of.gl->target;
-    /* a GPU gets one tile for the whole frame, which it draws in the time that a processor needs for one small tile */
+    /* on a GPU, one tile covers the whole frame: the GPU draws it in the time that a processor needs for one small tile */
     frame_tiles_init(&job->of.gl->tiles, &job->context, at_once || !renderer->gl->software);
     renderer_upload_fields(renderer, plan, &job->context, job->frame);
     return true;
@@ -143,8 +143,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
 
 /* --- tiles ------------------------------------------------------------------------------------------------------------------ */
 
-/* Draws some of the tile's surfaces. Returns TRIANGLE_NS times the number of triangles drawn: the expected part of the time that does not
-   depend on pixels. *done: true once the whole tile is drawn. */
+/* Draws some of the tile's surfaces. Returns TRIANGLE_NS times the number of triangles drawn: the expected share of the drawing
+   time that does not depend on pixels. *done: true once the whole tile is drawn. */
 static double draw_surfaces(struct renderer *renderer, struct render_job *job, const struct tile *tile, bool *done)
 {
     struct gl_job *own = job->of.gl;

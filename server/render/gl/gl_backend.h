@@ -24,8 +24,8 @@ struct gl_backend {
     int64_t refined_ns;         /* GPU time in nanoseconds that the last refined frame took; 0: unknown */
 };
 
-/* Binds the light set (baked light), the colour map and the uniforms of a frame in GL. Call it again when the frame is continued after
-   others were drawn. Returns false when out of GPU memory, logged. */
+/* Binds the light set (baked light), the colour map and the uniforms of a frame in GL. Call it again before continuing the
+   frame after other frames were drawn. Returns false when out of GPU memory, logged. */
 bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context);
 
 #endif

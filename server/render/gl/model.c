@@ -22,7 +22,7 @@ static bool make_mesh(struct gl_model *model, struct gl *gl)
     return mesh_init(&model->mesh, gl, model->file->path, &params);
 }
 
-/* Collects, for one submesh, all primitives of a level of detail that have this material. */
+/* Makes the submesh of a material: collects all primitives of a level of detail that have this material. */
 static void fill_batch(struct model_submesh *submesh, const struct asset_view *view, const struct asset_level *level, uint32_t material)
 {
     submesh->material = material;

@@ -11,7 +11,7 @@ enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL
 /* colour ramps of a material (tables of colours from dark to bright). MUTED: greyed, for assets without a field; OWN: the material's own
    colours */
 enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS };
-enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
+enum { MODEL_LIGHT_STEPS = 64 }; /* number of texels in a material's colour ramp */
 
 struct model_submesh { /* all triangles of one material in one level of detail */
     uint32_t material;
@@ -46,8 +46,7 @@ struct gl_model {
     GLuint *textures;
     size_t level_count, material_count, texture_count;
     GLuint material_buffer;
-    /* tables, in main memory, of the colour ramps by MODEL_MUTED and MODEL_OWN: per material MODEL_LIGHT_STEPS colours from dark to
-       bright */
+    /* colour ramps in main memory, by MODEL_MUTED and MODEL_OWN: MODEL_LIGHT_STEPS colours per material, from dark to bright */
     uint32_t *ramp_texels[MODEL_RAMPS];
     GLuint ramps[MODEL_RAMPS];          /* textures of the colour ramps, by MODEL_MUTED and MODEL_OWN; one row per material */
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Occlusion culling: computes bounding boxes of assets, uploads them with the draw commands that each box's test enables, and runs the
-   tests. */
+/* Occlusion culling: computes bounding boxes of assets, uploads them with the ranges of draw commands that they enable, and
+   runs the tests. */
 #include "render/gl/occlusion.h"
 
 #include <limits.h>

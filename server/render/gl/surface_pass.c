@@ -16,9 +16,9 @@ enum { MATERIAL = 2, TEXTURES = 3 };
 static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
-/* Returns whether a variant of the shader program is compiled at start because most plants use it; others are compiled when first used.
-   Variants for section planes are rare. Previews use textures only to cut holes, which is rare, too. Without a field, only the plain
-   program and, in refined frames, the textured one are frequent. */
+/* Returns whether a variant of the shader program is compiled at start because most plants use it; other variants are compiled
+   on first use. Variants for section planes are rare. Previews use textures only to cut holes, which is rare, too. Without a
+   field, only the plain program and, in refined frames, the textured one are frequent. */
 static bool is_used(int tier, int variant)
 {
     if (variant & SURFACE_CLIP)
@@ -95,8 +95,7 @@ static int choose_variant(const struct frame_context *context, const struct mode
     int variant = field ? SURFACE_FIELD : 0;
     if (field && (context->colormap.lines || view->color_scale.log))
         variant |= SURFACE_RICH;
-    /* in the operator's display, assets without a field are grey (RICH without FIELD): no material may have a colour close to those that
-       mean alarm limits */
+    /* in the operator's display, assets without a field are grey (RICH without FIELD): no material colour may resemble an alarm colour */
     if (!field && view_is_operator(view))
         variant |= SURFACE_RICH;
     if (field && view->look == LOOK_GLOSSY)
@@ -221,8 +220,8 @@ static void set_material(const struct frame_context *context, const struct draw_
         glBindTextures(UNIT_MAPS, MODEL_MAPS, material->maps);
 }
 
-/* Sets those parts of the GL state in which a batch (`is`) differs from the present state (`was`). was NULL: the present state is unknown,
-   so everything is set. */
+/* Sets those parts of the GL state in which a batch (`is`) differs from the current state (`was`). was NULL: the current state
+   is unknown, so everything is set. */
 static void set_state(const struct draw_batches *batches, const struct frame_context *context, const struct draw_batch_state *is,
                       const struct draw_batch_state *was)
 {

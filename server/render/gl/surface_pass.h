@@ -17,8 +17,8 @@ enum surface_variant {
     SURFACE_VARIANTS = 32
 };
 
-/* Kind of a surface program: whether it writes colours or (MEASURE) field values, and where the field is computed. Programs of all kinds
-   but SURFACE_PICTURE are compiled when first needed. */
+/* Kind of a surface program: whether it writes colours or (MEASURE) field values, and where the field is computed. Programs of
+   all kinds but SURFACE_PICTURE are compiled on first use. */
 enum surface_program_kind {
     SURFACE_PICTURE,
     SURFACE_PIXEL_FIELD,
@@ -35,7 +35,7 @@ struct surface_pass {
     /* minimum number of triangles in a frame for occlusion culling; INT_MAX: no occlusion culling, clusters outside the frustum are still
        culled */
     int least_hiding;
-    bool one_by_one; /* true: each asset is drawn with GL calls of its own instead of in batches; for comparison in tests */
+    bool one_by_one; /* true: each asset is drawn with its own GL calls instead of in batches; for comparison in tests */
     struct draw_batches opaque, blended;
     /* number of triangles submitted to GL so far, without culled ones; the caller sets it to 0 for each frame */
     int triangles;

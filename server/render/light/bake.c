@@ -13,10 +13,9 @@
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
-/* openness (visible part of the sky, 0..255) at every point of a rough light set, which is baked fast by leaving openness out */
+/* constant openness (visible part of the sky, 0..255) in a rough light set, which is baked fast because openness is not computed */
 static const uint8_t ROUGH_OPENNESS = 190;
-/* Lower bound of openness (0: no sky is visible from a point, 1: the whole sky) when users hide assets as large as the plant. It is
-   proportionally less for smaller ones. Openness is baked with all assets shown, so places next to hidden assets would stay dark. */
+/* edge length from which a triangle counts as large, in texels of the sky's depth maps */
 static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width: a filtered lookup also reads the texels around a point */
 static const double SUN_MARGIN = 0.002;
@@ -113,8 +112,8 @@ static int sun_map_px(const struct gpu_scene *gpu_scene)
     return SUN_MAP_PX < gpu_scene->gl->max_texture_px ? SUN_MAP_PX : gpu_scene->gl->max_texture_px;
 }
 
-/* Draws the depth of one asset into a depth map, if `shown` includes the asset. layer: layer of the map; -1: the map is no array. error_m:
-   largest geometric error of the level of detail that is drawn. */
+/* Draws the depth of one asset into a depth map, if `shown` includes the asset. layer: layer of the map; -1: the map is not an
+   array. error_m: largest geometric error of the level of detail that is drawn. */
 static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double clip_from_plant[16],
                         const struct visibility *shown, double error_m)
 {
@@ -253,8 +252,8 @@ static void bind_vertices(const struct bake *bake)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
 }
 
-/* Bakes light at points inside large triangles (edge of at least LARGE_FACE_TEXELS). If there is no memory for the points, light is sampled
-   at vertices only. */
+/* Bakes light at points inside large triangles (edge of at least LARGE_FACE_TEXELS). If memory for the points runs out, light
+   is sampled at vertices only. */
 static void faces_bit(struct bake *bake)
 {
     const struct scene_asset *asset = &bake->gpu_scene->scene->assets[bake->asset];

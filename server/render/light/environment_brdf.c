@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes which fraction of the light of a uniform environment a surface reflects, by roughness and viewing angle: GGX with
+/* Computes the fraction of a uniform environment's light that a surface reflects, by roughness and viewing angle: GGX with
    height-correlated Smith masking, as glTF specifies. */
 #include "render/light/environment.h"
 #include "render/light/ggx.h"

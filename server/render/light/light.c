@@ -107,8 +107,8 @@ void light_drop(struct light *light, const struct light_key *usual)
             drop(light, &light->sets[i]);
 }
 
-/* Returns an empty slot of the cache of light sets (baked light). First drops sets that exceed the memory limit and that nobody holds.
-   NULL: all slots are held. */
+/* Returns an empty slot of the cache of light sets (baked light). First drops sets that no job holds, least recently used first,
+   until there is room for `bytes` more. NULL: all slots are held. */
 static struct light_set *make_room(struct light *light, size_t bytes)
 {
     for (;;) {
@@ -167,8 +167,8 @@ static void drop_rough(struct light *light)
             drop(light, &light->sets[i]);
 }
 
-/* Ends the bake, all of whose GL calls must be issued, and puts its light set (baked light) into the cache. Returns NULL on failure,
-   logged. */
+/* Ends the bake, whose GL calls must all have been issued, and puts its light set (baked light) into the cache. Returns NULL on
+   failure, logged. */
 static struct light_set *end(struct light *light)
 {
     struct light_set baked, *set;

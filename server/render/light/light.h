@@ -14,8 +14,8 @@ struct light {
     /* matrix to plant coordinates from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
     double ground_height_m; /* height of the ground: its coordinate along the up axis */
-    /* GPU memory of all light sets (baked light) in bytes: bound_bytes: limit; bytes: what they take. A set that a job holds (light_hold)
-       is never dropped, even above the limit */
+    /* GPU memory of all light sets (baked light) in bytes. bound_bytes: limit; bytes: in use. A set that a job holds
+       (light_hold) is never dropped, even above the limit */
     size_t bound_bytes, bytes;
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the openness file. The file stores a hash of everything that openness depends on, to recognise an outdated file: assets,
-   their placement and files, GL driver and program version. */
+/* Reads and writes the openness file. To detect an outdated file, it stores a hash of everything that openness depends on:
+   assets, their placement and files, GL driver and program version. */
 #include "render/light/openness.h"
 
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* this macro makes the size of XXH3's hash state known, so that the state can be on the stack */
+#define XXH_STATIC_LINKING_ONLY /* this macro exposes the definition of XXH3's hash state, so that the state can be on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"

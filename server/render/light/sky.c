@@ -19,8 +19,8 @@ static double backdrop(double height, bool dark, int channel)
     return from + (end - from) * pow(fmin(height > 0 ? height : -1.6 * height, 1), 0.65);
 }
 
-/* Fills the table of backdrop colours. Each row has another dither offset, one for each pixel of a 4x4 square, so that slow gradients show
-   no visible steps. */
+/* Fills the table of backdrop colours. Each row has a different dither offset, one for each pixel of a 4x4 square, so that slow
+   gradients show no banding. */
 static void make_backdrops(struct sky *sky)
 {
     static const int bayer[SKY_ROUNDINGS] = { 0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5 };

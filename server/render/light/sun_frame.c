@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits the sun's frustum: bounds all assets as seen from the sun, with the rotation around the sun's direction that makes the longer side
-   shortest. */
+/* Fits the sun's frustum around all assets as seen from the sun, rotated about the sun's direction so that its longer side is
+   as short as possible. */
 #include "render/light/sun_frame.h"
 
 #include <math.h>

@@ -59,7 +59,7 @@ static int count_cell(const struct item_buckets *crowd, double column, double ro
     for (int i = crowd->heads[bucket(crowd, column, row)]; i >= 0 && count < MAX_NEIGHBOURS; i = crowd->next[i]) {
         const struct crowd_item *other = &crowd->items[i];
         double x = other->x - item->x, y = other->y - item->y;
-        /* compares the grid cell, too, because markers of several grid cells may be in one bucket of the hash table */
+        /* compares the grid cell, too, because several grid cells may share a bucket of the hash table */
         bool is_here = cell_of(crowd, other->x) == column && cell_of(crowd, other->y) == row;
         count += is_here && x * x + y * y < least;
     }

@@ -67,7 +67,7 @@ static void draw_header(struct pen *pen)
     else
         snprintf(age, sizeof(age), "%s", pen_word(pen, WORD_NO_VALUES));
     const struct view *view = &pen->frame->view;
-    /* false: the picture shows distances or materials, which are no readings, so the header states no age of readings */
+    /* false: the picture shows distances or materials, which are not readings, so the header states no age of readings */
     bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS);
     bool unset = pen->frame->clock_unset, simulated = has_age && shows_simulated(pen);
     snprintf(lines[0], sizeof(lines[0]), "%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "");

@@ -55,8 +55,8 @@ static void write_title(const struct pen *pen, struct legend *legend)
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
-/* Returns the priorities of all active alarms as bits (1 << priority). Alarms of hidden sensors count, because they are listed. Without a
-   snapshot of readings it returns one priority, so that the computed width of the legend suffices later. */
+/* Returns the priorities of all active alarms as bits (1 << priority). Alarms of hidden sensors count, because they are listed.
+   Without a snapshot of readings it returns one priority, so that the legend's width computed now also suffices later. */
 static unsigned priorities_shown(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;

@@ -102,8 +102,8 @@ static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
     overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_status)reading->alarm_status);
 }
 
-/* Returns true if the view shows distances from a sensor and no distance is known on the marker's asset. Of such a marker only the alarm
-   ring and its label are drawn. */
+/* Returns true if the view shows distances from a sensor and no distance is known on the marker's asset. For such a marker,
+   only the alarm ring and its label are drawn. */
 static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marker)
 {
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);

@@ -31,11 +31,11 @@ struct pen {
     int taken_count;
 };
 
-/* Selects the half of a split view on which the following calls draw. */
+/* Selects the half of a split view in which the following calls draw. */
 void pen_choose_half(struct pen *pen, int half);
 /* Returns whether a box lies inside the pen's area and overlaps no box that is occupied already. */
 bool pen_is_free(const struct pen *pen, const struct label_box *box);
-/* Marks a box as taken. */
+/* Marks a box as occupied. */
 void pen_take(struct pen *pen, const struct label_box *box);
 /* Draws a card with a thin border, as a background for text: light or dark, like the backdrop. */
 void pen_card(struct pen *pen, const struct label_box *box);
@@ -46,7 +46,7 @@ void pen_rounded_path(struct pen *pen, const struct label_box *box);
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
 void pen_dark(struct pen *pen, double alpha);
-/* Sets the font of the texts that the pen draws from now on. size: a multiple of the overlay's font size (text_px). */
+/* Sets the font for all text drawn from now on. size: a multiple of the overlay's font size (text_px). */
 void pen_font(struct pen *pen, double size, bool bold);
 /* Returns the width of a text in the current font. */
 double pen_text_width(struct pen *pen, const char *text);
@@ -92,7 +92,7 @@ bool overlay_unproven(const struct pen *pen, int tag);
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
 /* Returns whether the half of the view that the pen has selected shows arrows. */
 bool overlay_has_arrows(const struct pen *pen);
-/* overlay_arrow_px returns the length of the longest arrow in pixels, overlay_arrow_value the value that this length means. */
+/* overlay_arrow_px returns the length of the longest arrow in pixels, overlay_arrow_value the value that this length represents. */
 double overlay_arrow_px(const struct pen *pen);
 double overlay_arrow_value(const struct pen *pen);
 /* Draws an arrow centred on (x, y), or a dot if its length is 0. uncertain: dashed. */

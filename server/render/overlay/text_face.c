@@ -15,7 +15,7 @@ struct found_face {
     FcCharSet *letters; /* NULL: no search yet */
     cairo_font_face_t *face;
 };
-/* key under which a cairo drawing context stores the fonts found last: an array of two, [0] regular, [1] bold */
+/* key under which a cairo drawing context stores the most recently found fonts: an array of two, [0] regular, [1] bold */
 static const cairo_user_data_key_t found_key;
 
 static void drop(struct found_face *found)
@@ -34,7 +34,7 @@ static void free_found(void *arg)
     mem_free(found);
 }
 
-/* Returns the cached font for regular or bold text, of which the drawing context keeps one each. NULL: out of memory. */
+/* Returns the drawing context's cached font for regular or bold text. NULL: out of memory. */
 static struct found_face *found_of(cairo_t *cairo, bool bold)
 {
     struct found_face *found = cairo_get_user_data(cairo, &found_key);

@@ -40,7 +40,7 @@ static void point_of(const struct asset_view *view, const struct direction_place
     }
 }
 
-/* Divides a triangle into equal parts and adds their centres as arrow positions, each part about half an arrow spacing long. */
+/* Divides a triangle into equal parts, each about half an arrow spacing long, and adds their centres as possible arrow positions. */
 static void add_triangle(struct arrow_candidates *candidates, const uint32_t corners[3], uint32_t triangle)
 {
     double at[3][3], normal[3];

@@ -16,13 +16,13 @@ struct arrow_set {                  /* arrows of one asset; zero-initialise, fre
     uint64_t content; /* hash of the sensor directions from which the directions in `found` were computed */
 };
 
-/* Returns how many of the asset's vertices, from the first on, must have current field values, because arrows read them. Pure. */
+/* Returns how many of the asset's vertices, counted from the first, need current field values because arrows read them. Pure. */
 size_t arrows_vertex_count(const struct scene_asset *asset);
 /* Computes the directions of the asset's arrows from the sensor directions in `field`, if these have changed. */
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
-/* Returns the field's value at the position with index `place`, in the field's unit; NaN where there is no data. */
+/* Returns the field's value at the arrow position with index `place`, in the field's unit; NaN where there is no data. */
 double arrows_value(const struct arrow_set *set, size_t place, const struct asset_view *file, const struct fields_entry *field);
-/* Returns the field's value at any surface position, given as triangle and corner weights; NaN where there is no data. */
+/* Returns the field's value at any surface position, given as a triangle and corner weights; NaN where there is no data. */
 double arrows_value_at(const struct direction_place *at, const struct asset_view *file, const struct fields_entry *field);
 /* Writes the position with index `place` and the arrow's direction there, both in the plant frame. */
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The level of detail in which isoline points and arrow positions are searched. Pure. */
+/* The level of detail on which isoline points and arrow positions are found. Pure. */
 #ifndef RENDER_PICK_COARSE_LEVEL_H
 #define RENDER_PICK_COARSE_LEVEL_H
 #include "scene/scene.h"

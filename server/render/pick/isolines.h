@@ -42,8 +42,8 @@ struct isoline_points { /* isoline points of one frame; zero-initialise, free `a
 bool isolines_has_arrows(const struct scene *scene, const struct view *view);
 void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);
-/* Returns how many of the asset's vertices, from the first on, must have current field values, because isolines_collect() reads them.
-   Pure. */
+/* Returns how many of the asset's vertices, counted from the first, need current field values because isolines_collect() reads
+   them. Pure. */
 size_t isolines_vertex_count(const struct scene_asset *asset);
 /* Collects the points of all visible assets at which a label or an arrow may be drawn; their visibility is tested later. context->fields
    must hold the fields shown. */

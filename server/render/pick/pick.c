@@ -12,9 +12,9 @@
 #include "scene/raycast.h"
 #include "value/quality.h"
 
-static const double MARKER_PX = 9; /* maximum distance in pixels between a click and the marker that the click picks */
-/* distance from a sensor, in pixels and in metres (the larger counts), within which a pick shows the measured value instead of an
-   interpolated one */
+static const double MARKER_PX = 9; /* maximum distance in pixels from a click to the marker that it picks */
+/* distance from a sensor, in pixels and in metres (the larger counts), within which a pick returns the measured value instead
+   of an interpolated one */
 static const double MEASURED_PX = 3, MEASURED_M = 0.005;
 
 struct pick_spot { /* state of one pick */

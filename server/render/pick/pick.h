@@ -17,7 +17,7 @@ enum pick_state {
 enum { PICK_NEAREST = 4 };
 
 struct pick {
-    int asset; /* asset at the pixel; -1: none, and of the members below only `sensor`, `sensor_occluded` and `data_utc_ns` are set */
+    int asset; /* asset at the pixel; -1: none; only `sensor`, `sensor_occluded` and `data_utc_ns` of the members below are set then */
     double position_m[3], normal[3];
     enum pick_state state;
     bool uncertain, inside;
@@ -29,7 +29,7 @@ struct pick {
     int nearest_count;
     struct pick_sensor {
         int tag;
-        double distance_m; /* distance of the sensor in metres, of the kind that the view uses (straight or geodesic) */
+        double distance_m; /* distance to the sensor in metres, straight or geodesic as in the view */
         double value;
         uint32_t quality;
     } nearest[PICK_NEAREST]; /* sensors that contribute to the value at the pixel, nearest first */
@@ -39,8 +39,8 @@ struct pick {
     int64_t data_utc_ns;
 };
 
-/* Picks at x_px, y_px, in pixels from the top left of the whole frame, also if split. Computes the field of `snapshot` at that point from
-   the sensors' readings (field_at). */
+/* Picks at x_px, y_px, in pixels from the top left of the whole frame, even in a split view. Computes the field of `snapshot`
+   at that point from the sensors' readings (field_at). */
 void pick_at(const struct scene *scene, struct field *field, const struct view *view, const struct snapshot *snapshot, double x_px,
              double y_px, struct pick *out);
 

@@ -12,10 +12,10 @@
 #include "render/pick/coarse_level.h"
 
 #define STROKE_NONE UINT32_MAX
-enum { MAX_CROSSINGS = 64 };          /* edges crossed within one step */
+enum { MAX_CROSSINGS = 64 };          /* maximum number of edges crossed within one step */
 /* length of a step when a stroke (short streamline) is traced, as a fraction of the distance between arrows */
 static const double STEP_PART = 0.35;
-/* smallest cosine between the directions of consecutive steps of a stroke (120 degrees): a faster turn is a vortex too small to follow */
+/* smallest cosine between the directions of consecutive steps of a stroke (120 degrees): sharper turns are vortices too small to trace */
 static const double MIN_DOT = -0.5;
 
 /* --- neighbours ------------------------------------------------------------------------------------------------------------- */
@@ -85,8 +85,8 @@ static void corners_of(const struct tracing *tracing, uint32_t tri, double out[3
     vec_normal(out[0], out[1], out[2], normal);
 }
 
-/* Computes by how much a position's three barycentric weights in a triangle change per metre of movement along the unit vector v. Returns
-   false for a triangle without an area. */
+/* Computes the change of a position's three barycentric weights in a triangle per metre of movement along the unit vector v.
+   Returns false for a triangle without an area. */
 static bool rates_of(const double at[3][3], const double normal[3], const double v[3], double rates[3])
 {
     const double square = vec_dot(normal, normal);

@@ -4,7 +4,7 @@
 #define RENDER_PLAN_CONTENT_HASH_H
 #include "render/plan/frame_plan.h"
 
-/* Returns the hash of the plan's view and of the fields of its visible assets. Sequence numbers and the time of input do not count. */
+/* Returns the hash of the plan's view and of the fields of its visible assets. Sequence numbers and the time of input are left out. */
 uint64_t content_hash(const struct frame_plan *plan);
 /* Returns the hash of everything that decides which triangle each pixel shows and in what light: equal for frames that differ only in
    values and colours. */

@@ -162,7 +162,7 @@ static bool upload(struct fields *fields, struct fields_entry *entry)
     return entry->uploaded = true;
 }
 
-/* Reads the present directions of the sensors' arrows. Sensors on trial positions have no arrow, because their direction is unknown. */
+/* Reads the current directions of the sensors' arrows. Sensors on trial positions have no arrow, because their direction is unknown. */
 static void take_directions(struct fields *fields, struct fields_entry *entry, const struct fields_ask *ask)
 {
     const struct scene *scene = field_scene(fields->field);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of field values (scalars) on the GPU, per asset and field parameters. An entry is uploaded when its values differ from the GPU's
-   copy by half a colour step or more. Beyond the bound the least recently used entries are evicted, except those of the last frame. Thread:
-   the one of the GL context. */
+/* Cache of field values (scalars) on the GPU, per asset and field parameters. An entry is uploaded when its values differ from
+   the GPU's copy by half a colour step or more. Beyond the size limit, the least recently used entries are evicted, except
+   those of the last frame. Thread: the one of the GL context. */
 #ifndef RENDER_PLAN_FIELDS_H
 #define RENDER_PLAN_FIELDS_H
 #include "field/directions.h"
@@ -56,14 +56,14 @@ void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
 struct fields_ask {
     const int *assets;    /* indices, without duplicates */
-    const size_t *counts; /* by index in `assets`: number of vertices, from the first in the file on, whose values must be ready */
+    const size_t *counts; /* by index in `assets`: number of vertices, counted from the first in the file, whose values must be ready */
     size_t asset_count;
     const struct field_params *params;
     double step;
     const struct snapshot *snapshot;
 };
-/* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset shows no field. If memory does not suffice
-   for an asset, it gets an entry that shows no data; logged. The entries are valid until the next fields_trim(). */
+/* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset shows no field. An asset for
+   which memory runs out gets an entry that shows no data; logged. The entries are valid until the next fields_trim(). */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
 /* Returns how many of an asset's first `count` vertices need computed values for fields_get(): fewer if the field is evaluated at
    pixels. */

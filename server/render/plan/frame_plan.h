@@ -17,8 +17,8 @@ struct frame_plan {
     double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
     int *visible;    /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
-    /* by index in `visible`: number of the asset's vertices, from the first in the file on, whose field values drawing and labelling
-       read */
+    /* by index in `visible`: number of the asset's vertices, counted from the first in the file, whose field values drawing and
+       labelling read */
     size_t *vertex_counts;
     /* --- set by frame_plan_complete() --- */
     /* field of each asset; NULL: the asset shows no field. Valid until a plan with newer readings is completed */

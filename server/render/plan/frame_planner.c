@@ -63,8 +63,8 @@ static struct light_key choose_light(const struct frame_planner *planner, const 
     return near ? near->key : key;
 }
 
-/* Returns at how many vertices of the asset, from the first in the file on, its level of detail, isoline labels and arrows need field
-   values. */
+/* Returns how many of the asset's vertices, counted from the first in the file, need field values for its level of detail,
+   isoline labels and arrows. */
 static size_t count_vertices(const struct frame_plan *plan, int asset)
 {
     double lines[VIEW_ALL_LINES];
@@ -116,7 +116,7 @@ bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *pla
     int64_t begin_ns = clock_mono_ns();
     bool ready = true;
     if (budget_ns == INT64_MAX)
-        /* without a time limit, frame_plan_complete() computes the fields later, of many assets in parallel */
+        /* without a time limit, frame_plan_complete() later computes the fields of many assets in parallel */
         return true;
     for (size_t i = 0; i < plan->visible_count && ready && plan->view.look != LOOK_MATERIALS; i++) {
         size_t count = fields_vertices(planner->fields, plan->visible[i], &plan->view.field, plan->vertex_counts[i]);

@@ -15,8 +15,8 @@ struct frame_planner { /* inputs from which frame plans are made; they must outl
 /* Plans everything about the view except its fields. The view must be valid and not split. The caller owns the plan. */
 struct frame_plan *frame_plan_create(const struct frame_planner *planner, const struct view *view);
 void frame_plan_destroy(struct frame_plan **plan); /* frees the plan and sets *plan to NULL; accepts a pointer to NULL */
-/* Computes the plan's fields for about budget_ns. Returns true when the fields are ready: frame_plan_complete() is then fast. With
-   INT64_MAX returns true immediately, and frame_plan_complete() computes the fields. */
+/* Computes the plan's fields for about budget_ns. Returns true when the fields are ready, which makes frame_plan_complete()
+   fast. If budget_ns is INT64_MAX, returns true immediately, and frame_plan_complete() computes the fields. */
 bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot, int64_t budget_ns);
 /* Computes the plan's fields from the newest readings in the snapshot and fills in the remaining members. A field for which there is no
    memory shows no data; logged. Plans with equal content give equal frames. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses the error bound of a frame's levels of detail such that the frame stays within its triangle budget. */
+/* Chooses the error bound of a frame's levels of detail so that the frame stays within its triangle budget. */
 #include "render/plan/lod_selection.h"
 
 /* Upper limit, by tier (preview or refined), of the error bound of levels of detail, in pixels: silhouettes may be displaced by this
@@ -20,8 +20,8 @@ static bool has_room(const struct lod_params *params, double error_px)
 
 double lod_error_px(const struct lod_params *params)
 {
-    /* Fractions of MAX_ERROR_PX that are tried as error bound of levels of detail, smallest first. They are few and widely spaced, so that
-       an asset seldom changes its level of detail because of other assets while a camera moves. */
+    /* Fractions of MAX_ERROR_PX that are tried as error bounds of levels of detail, smallest first. They are few and widely
+       spaced, so that an asset seldom changes its level of detail because of other assets while a camera moves. */
     static const double parts[] = { 0, 0.125, 0.25, 0.5 };
     double max_error_px = MAX_ERROR_PX[params->tier];
     for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses levels of detail: the error bound of a frame, and each asset's level under that bound. The finest level shows the field exact to
-   one colour step. The values of a coarser level are wrong by as much as its surface is displaced, which is several colour steps at some
-   pixels. So a frame with few triangles uses finer levels than its silhouettes need. Thread: any. */
+/* Chooses levels of detail: the error bound of a frame, and each asset's level under that bound. The finest level shows the
+   field accurately to one colour step. A coarser level's values are off by as much as its surface is displaced, which is
+   several colour steps at some pixels. So a frame with few triangles uses finer levels than its silhouettes need. Thread: any.
+   */
 #ifndef RENDER_PLAN_LOD_SELECTION_H
 #define RENDER_PLAN_LOD_SELECTION_H
 #include "render/gl/gpu_scene.h"
@@ -16,7 +17,7 @@ struct lod_params {
 /* Returns the error bound of the frame's levels of detail, in pixels; 0: finest levels only. The result depends only on camera and visible
    assets, so that equal views give equal frames, and is the same for all tiles of a frame. */
 double lod_error_px(const struct lod_params *params);
-/* Returns the coarsest level of the asset with an error up to error_px; with 0 the finest level. */
+/* Returns the asset's coarsest level with an error of at most error_px; the finest level if error_px is 0. */
 const struct model_level *lod_level(const struct gpu_scene *gpu_scene, const struct view_constants *constants, int asset, double error_px);
 
 #endif

@@ -59,8 +59,8 @@ void view_constants_narrow(struct view_constants *constants, const double low[2]
 bool view_constants_sees(const struct view_constants *constants, const struct scene_asset *asset)
 {
     for (int p = 0; p < 6; p++) {
-        /* signed distance from the frustum plane to that corner of the asset's box that lies farthest on the inner side; below 0: the whole
-           box is outside */
+        /* signed distance from the frustum plane to the corner of the asset's box that is farthest on the inner side; below 0:
+           the whole box is outside */
         double far = constants->planes[p][3];
         for (int c = 0; c < 3; c++)
             far += constants->planes[p][c] * (constants->planes[p][c] > 0 ? asset->bounds_max_m[c] : asset->bounds_min_m[c]);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reference computation of the field at each fragment, over all sensors, from the distances of the finest level of detail. It is slow, and
-   shares no code with the normal computation of fields; tests compare pictures with it (`--field per-fragment`). Thread: the one of the GL
-   context. */
+/* Reference computation of the field: at each fragment, from all sensors, with the distances of the finest level of detail. It
+   is slow, and shares no code with the normal computation of fields; tests compare pictures with it (`--field per-fragment`).
+   Thread: the one of the GL context. */
 #ifndef RENDER_REFERENCE_H
 #define RENDER_REFERENCE_H
 #include "field/field.h"
@@ -27,10 +27,10 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
 /* Creates the GPU buffer from which shaders with PIXEL_FIELD evaluate this field at each pixel. The caller owns the buffer. Returns 0 when
    out of memory, logged. */
 GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field);
-/* Binds a buffer of reference_pixel_sensors() for the next draws; their program must be compiled with PIXEL_FIELD. */
+/* Binds a buffer from reference_pixel_sensors() for the next draws; their program must be compiled with PIXEL_FIELD. */
 void reference_bind_pixel_sensors(GLuint sensors);
-/* Binds the asset's distances and a buffer of reference_sensors() for the next draws of that asset. Returns false when out of GPU memory,
-   logged. */
+/* Binds the asset's distances and a buffer from reference_sensors() for the next draws of that asset. Returns false when out of
+   GPU memory, logged. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
 /* issues the draw commands with a field value computed at each fragment; the current program must be compiled with PER_FRAGMENT */
 void reference_draw(const struct draw_command *commands, size_t count);

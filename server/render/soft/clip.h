@@ -6,14 +6,14 @@
 #define RENDER_SOFT_CLIP_H
 #include "render/soft/soft_impl.h"
 
-/* NEAR_CORNERS, NEAR_TRIANGLES: largest number of corners, and of triangles, into which clipping by all planes turns one triangle. */
+/* NEAR_CORNERS, NEAR_TRIANGLES: maximum numbers of corners and of triangles that result from clipping one triangle by all planes. */
 enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_TRIANGLES = NEAR_CORNERS - 2 };
 
 /* corner of a clipped triangle. at: position in clip space, with x and y in pixels; a and b: column and row of the colour map, or light, as
    in struct soft_vertex */
 struct near_corner {
     float at[4], a, b;
-    /* 0..1 for each pattern (no data, uncertain, no limits): how far it applies at the corner; from the vertex's flags, interpolated
+    /* strength, 0..1, of each pattern (no data, uncertain, no limits) at the corner; from the vertex's flags, interpolated
        linearly between corners */
     struct near_patterns {
         float no_data, uncertain, no_limits;

@@ -6,8 +6,8 @@
 
 #include "render/soft/lanes.h"
 
-/* Smallest gap between the two sides of a depth step within a depth grid cell, as a fraction of the range of the cell's depths; with a
-   smaller gap the cell is not divided. In a single tilted plane, depths are closer together than that. */
+/* Smallest gap between the two sides of a depth step within a depth grid cell, as a fraction of the range of the cell's depths;
+   with a smaller gap the cell is not divided. On a single tilted plane, depths are closer together than that. */
 static const float LEAST_GAP = 0.25f;
 
 SOFT_INLINE float least_of_all(lanes x)
@@ -27,9 +27,9 @@ SOFT_INLINE lanes row_at(const float *depth, size_t pitch_px, int row)
     return *(const lanes *)(depth + (size_t)row * pitch_px);
 }
 
-/* Divides the pixels of a depth grid cell into those nearer than the depth `border` and those farther away. low: least depth of the farther
-   pixels; 0: they show only background. high: largest depth of the cell. Returns false if the gap between both sides is too small
-   (LEAST_GAP). */
+/* Divides the pixels of a depth grid cell into those nearer than the depth `border` and those farther away. low: least depth of
+   the farther pixels; 0: they show only background. high: largest depth of the cell. Returns false if the gap between the two
+   sides is too small (LEAST_GAP). */
 SOFT_INLINE bool divide(const float *depth, size_t pitch_px, float low, float border, float high, struct depth_cell *cell)
 {
     lanes zero = { 0 }, nearest_behind = zero, farthest_before = zero + high;

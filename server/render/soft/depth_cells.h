@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reduces a depth buffer to the cells (squares of pixels) of a depth grid, the coarse depth by which clients warp a picture. Pure. Thread:
-   any. */
+/* Reduces a depth buffer to the cells (squares of pixels) of a depth grid, the coarse depth with which clients warp a picture.
+   Pure. Thread: any. */
 #ifndef RENDER_SOFT_DEPTH_CELLS_H
 #define RENDER_SOFT_DEPTH_CELLS_H
 #include "render/depth_grid.h"
@@ -12,8 +12,8 @@ struct depth_source {
     const struct depth_lens *lens;
 };
 
-/* Finds the depth grid cells (squares of pixels) of the rows `first_row` to `end_row` - 1 and columns `first_column` to `end_column` - 1.
-   cells: all cells of the frame, row by row. */
+/* Finds the depth grid cells (squares of pixels) in rows `first_row` to `end_row` - 1 and columns `first_column` to
+   `end_column` - 1. cells: all cells of the frame, row by row. */
 void depth_cells_find(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
                       struct depth_cell *cells);
 

@@ -54,8 +54,8 @@ void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     corners->flat = most <= SOFT_LITTLE * least;
 }
 
-/* Computes a and b (struct soft_vertex) of vertices with a field: column and row of the colour map, as colormap_column() and colormap_row()
-   in shaders/field.glsl. numbers: indices of the vertices, padded to a multiple of LANES. */
+/* Computes a and b (struct soft_vertex) of vertices with a field: column and row of the colour map, like colormap_column() and
+   colormap_row() in shaders/field.glsl. numbers: indices of the vertices, padded to a multiple of LANES. */
 SOFT_INLINE void carry_field(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                              int count, struct soft_corners *corners)
 {
@@ -230,8 +230,8 @@ SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
     eight->doubtful = hidden & wide;
 }
 
-/* Returns a mask of eight triangles: set for those that may face the eye, because eye_m is on the outer side of their plane. A tolerance
-   keeps rounding errors from dropping a front face. */
+/* Returns a mask of eight triangles: set for those that may face the eye, because eye_m is on the outer side of their plane. A
+   tolerance prevents rounding errors from dropping a front face. */
 SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye_m[3])
 {
     float slack_m = 1e-5f * (1 + __builtin_fabsf(eye_m[0]) + __builtin_fabsf(eye_m[1]) + __builtin_fabsf(eye_m[2]));
@@ -239,8 +239,8 @@ SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-/* Appends the triangles marked in eight->kept to the tile's list of faces. first: index, within the part, of the first of the eight
-   triangles. back: FACE_BACK for triangles that look away from the eye, else 0. */
+/* Appends the triangles marked in eight->kept to the tile's list of faces. first: index, within the part, of the first of the
+   eight triangles. back: FACE_BACK for triangles that face away from the eye, else 0. */
 SOFT_INLINE void keep_faces(struct soft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {
     /* eight elements of struct soft_face, transposed: 32-bit word i of face l is words[i][l] */

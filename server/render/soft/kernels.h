@@ -19,8 +19,8 @@ struct soft_kernels {
     void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
     /* Draws all faces that find_faces listed: writes the depth and the mark (32-bit content, soft_impl.h) of each pixel. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
-    /* Counts the closed bodies along the view ray of each pixel, for section caps, and stores the count in place of the pixel's colour code
-       (mark): a listed face that looks away from the eye adds 1, a face towards the eye subtracts 1. */
+    /* Counts the closed bodies along the view ray of each pixel, for section caps, and stores the count in place of the pixel's
+       colour code (mark): a listed face that faces away from the eye adds 1, a face towards the eye subtracts 1. */
     void (*count_faces)(const struct soft_tile *tile);
     /* Recomputes tile->farthest, the farthest depth in each block of 8 x 8 pixels, for the given blocks of the tile. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);

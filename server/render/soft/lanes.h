@@ -89,7 +89,7 @@ SOFT_INLINE int lanes_any(lanes_int mask)
 #endif
 }
 
-/* Returns one bit for each of the eight numbers of a mask; that of number 0 is the lowest. */
+/* Returns the eight elements of a mask as bits; element 0 is the lowest bit. */
 SOFT_INLINE uint32_t lanes_bits(lanes_int mask)
 {
 #ifdef __AVX2__

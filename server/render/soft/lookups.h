@@ -39,8 +39,7 @@ struct sun_aim {
     lanes u_part, v_part, place;
     /* tile: index of the shadow map tile; at: index, in soft_light.sun_map, of the upper left of the four texels */
     lanes_int tile, at;
-    /* mask of those of the eight points whose texels must still be read; for the others `lit` is final: the visible part of the sun,
-       0..1 */
+    /* mask of the points whose texels must still be read; for the others, `lit` (visible part of the sun, 0..1) is final */
     lanes_int open;
     lanes lit;
 };
@@ -71,7 +70,7 @@ SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struc
         __builtin_prefetch(light->sun_bounds + tile[i]);
 }
 
-/* Decides whether points are lit, as far as the smallest and largest depth of the point's shadow map tile suffice for that. Undecided
+/* Decides whether points are lit where the smallest and largest depth of the point's shadow map tile suffice to tell. Undecided
    points remain in aim->open. */
 SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
 {
@@ -127,8 +126,8 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
     return sun_compare(light, &aim, aim.at);
 }
 
-/* Elevations over the horizon along a row of pixels, as columns of the backdrop table. They are interpolated linearly within a stretch of
-   raster->stretch_px pixels (choose_stretch bounds the error). */
+/* Elevations above the horizon along a row of pixels, as columns of the backdrop table. They are interpolated linearly within a
+   stretch of raster->stretch_px pixels (choose_stretch bounds the error). */
 struct heights {
     float first, step; /* elevation at the centre of the first pixel, and its change per pixel */
 };
@@ -145,7 +144,7 @@ static float height_at(const struct raster *raster, float x, float y)
     return up / sqrtf(square) * 1023.5f + 1024.0f;
 }
 
-/* Returns the elevations over the horizon of the view rays of a stretch (stretch_px pixels of a row) that begins at this pixel. */
+/* Returns the elevations above the horizon of the view rays of a stretch (stretch_px pixels of a row) that begins at this pixel. */
 static inline struct heights heights_from(const struct raster *raster, int column, int row)
 {
     float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(raster, x, y);

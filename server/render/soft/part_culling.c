@@ -17,8 +17,8 @@
 /* depth used for points in front of the near plane; larger than any real depth, so that they count as nearest */
 #define IN_FRONT_OF_NEAR 2.0f
 
-/* Computes a bounding rectangle, in pixels, of a box in the frame, and the box's nearest depth. Returns false if the box is outside the
-   frame. */
+/* Projects a box into the frame: computes its bounding rectangle, in pixels, and its nearest depth. Returns false if the box is
+   outside the frame. */
 SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *mesh, const float low[3], const float high[3],
                          struct soft_rect *rect, float *near)
 {
@@ -120,8 +120,8 @@ static const struct soft_parts *parts_of(struct raster *raster, const struct gl_
     return parts;
 }
 
-/* Computes the eye position from which front and back faces are told apart. In an orthographic view rays are parallel, so the eye is put so
-   far away that its rays are parallel within the precision of a float. */
+/* Computes the eye position used to distinguish front from back faces. In an orthographic view rays are parallel, so the eye is
+   put so far away that its rays are parallel within the precision of a float. */
 static void find_eye(const struct raster *raster, double eye_m[3])
 {
     const struct view_constants *constants = &raster->context->constants;
