@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Captions of a split view's halves: they list differences between the halves that no legend shows, such as how the field is computed. */
+/* Captions of a split view's halves: each lists how its half differs from the other in ways that the legends do not show. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Evaluates a field of straight-line distances (field/pixel_field.h) at eight places at a time. Private to soft/. */
+/* Evaluates a field of straight-line distances (field/pixel_field.h) at eight points at a time. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_LANES_H
 #define RENDER_SOFT_PIXEL_LANES_H
 #include <math.h>
@@ -29,7 +29,7 @@ SOFT_INLINE lanes pixel_square(const struct pixel_sensor *sensor, const lanes at
     return x * x + y * y + z * z;
 }
 
-/* Returns the squared distance from each of eight points to the nearest sensor of each state, among the sensors of the list. */
+/* Returns the squared distance from each of eight points to the nearest sensor of each state in the list. */
 SOFT_INLINE struct eight_nearest pixel_nearest(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3])
 {
     lanes far2 = (lanes){ 0 } + PIXEL_FAR2;
@@ -214,8 +214,8 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pi
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
     lanes_int reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
     pixel_value_of(field, &sums, out);
-    /* view of blindness: height of the smallest hot spot at this point that a sensor would notice, field->seen * e^((d/s)^2 / 2), but at
-       most field->most. d: distance of the nearest sensor; s: size of a hot spot */
+    /* view of blindness: height of the smallest hot spot at this point that a sensor would detect, field->seen * e^((d/s)^2 /
+       2), but at most field->most. d: distance of the nearest sensor; s: size of a hot spot */
     if (field->show == PIXEL_BLIND) {
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);

@@ -30,8 +30,8 @@ struct node {
 
 struct building {
     const struct pixel_field *field;
-    /* Bound for the interpolation `shepard`: if a sensor's weight is wrong by an error e (a part of the sum of all weights), a value
-       changes by at most e * (1/2 + away * |reading - middle|) * spread of the readings. For `paper`, away is 0 */
+    /* Bound for the interpolation `shepard`: if a sensor's weight has an error e (as a fraction of the sum of all weights), a
+       value changes by at most e * (1/2 + away * |reading - middle|) * spread of the readings. For `paper`, away is 0 */
     float middle, away;
     /* by index in the parent's list: largest change of a value if this sensor is replaced by a polynomial (becomes far), as a multiple of
        the readings' spread; INFINITY: the sensor must stay near; -1: the sensor has no weight */
@@ -102,8 +102,9 @@ SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_
     return field->paper ? weight : weight * of->strength;
 }
 
-/* Quadratic approximation of a sensor's weight within a box around the surface points of a square of pixels: value and derivatives by the
-   distance, at the box's centre; a bound of the error; and the smallest weight in the box. tilt: added to the slope to lower the error. */
+/* Quadratic approximation of a sensor's weight within a box around the surface points of a square of pixels: value and
+   derivatives with respect to distance, at the box's centre; a bound of the error; and the smallest weight in the box. tilt:
+   added to the slope to lower the error. */
 struct jet {
     lanes value, first, second, tilt, error, least;
 };
@@ -351,8 +352,8 @@ SOFT_INLINE float bound_errors(const struct building *building, const struct nod
     return fmaxf(sum_of(least), square ? least_by_centre(&sums) : 0);
 }
 
-/* Returns by how much field values change at most if polynomials replace all sensors whose error is at most `most`: the sum of these
-   errors. */
+/* Returns the largest possible change of field values if polynomials replace all sensors whose error is at most `most`: the sum
+   of these errors. */
 SOFT_INLINE float sum_up_to(const float *errors, int count, float most)
 {
     lanes sum = { 0 };
@@ -468,8 +469,8 @@ static void bound_cells(const struct pixel_cell *cells, size_t count, size_t fir
     out->radius = sqrtf(square) * 1.0001f + 1e-6f;
 }
 
-/* Returns the first level (squares of pixels, halved from level to level) at which two cells are in different squares. The cells must be
-   neighbours in the order of pixel_cells_order(). */
+/* Returns the first level at which two cells are in different squares (each level halves the sides of the squares). The cells
+   must be neighbours in the order of pixel_cells_order(). */
 static int level_apart(const struct pixel_cell *a, const struct pixel_cell *b)
 {
     uint32_t differ = pixel_cells_order(a->column, a->row) ^ pixel_cells_order(b->column, b->row);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists of the sensors that matter to a small square of pixels, for fields of many sensors (field/pixel_field.h). The contributions of a
-   list's sensors are summed at each pixel; polynomials of the position approximate the sums over all other sensors. Lists are made for
-   squares of 128, 64, 32 and 16 pixels, each from the list of the larger square around, until they are short. They are made again for each
-   picture, so they need no update when readings change. Private to soft/. */
+/* Lists of the sensors that matter in a small square of pixels, for fields of many sensors (field/pixel_field.h). The
+   contributions of a list's sensors are summed at each pixel; polynomials of the position approximate the sums over all other
+   sensors. Lists are made for squares of 128, 64, 32 and 16 pixels, each from the list of the larger square around it, until
+   they are short. They are rebuilt for each picture, so they need no update when readings change. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_LISTS_H
 #define RENDER_SOFT_PIXEL_LISTS_H
 #include <math.h>

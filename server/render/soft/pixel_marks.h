@@ -49,7 +49,7 @@ SOFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
     return a << 8 | s | (int32_t)mark;
 }
 
-/* Diagonal stripes: pattern for no data, as hatch() in shaders/field.glsl. Returns -1 in dark stripes, else 0. */
+/* Diagonal stripes: pattern for no data, like hatch() in shaders/field.glsl. Returns -1 in dark stripes, else 0. */
 SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
 {
     lanes at = (x + y) * (1 / (pattern_px * (float)HATCH_SLANT));
@@ -57,8 +57,8 @@ SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
     return (phase < (float)-HATCH_EDGE) | (phase > (float)HATCH_EDGE);
 }
 
-/* Dots in rows, every other row shifted by half a cell: pattern for uncertain values, as stipple() in shaders/field.glsl. Returns -1 in
-   dots, else 0. */
+/* Dots in rows, every other row shifted by half a cell: pattern for uncertain values, like stipple() in shaders/field.glsl.
+   Returns -1 in dots, else 0. */
 SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
 {
     float row = y * (1 / pattern_px);
@@ -68,8 +68,8 @@ SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
     return across * across + down * down < (float)STIPPLE_RADIUS * (float)STIPPLE_RADIUS;
 }
 
-/* Computes the marks (colour codes, soft_impl.h) of eight pixels of a field with isolines or a logarithmic scale, without patterns, as
-   field_color() in shaders/field.glsl does. value_x, value_y: change of the value per pixel. */
+/* Computes the marks (colour codes, soft_impl.h) of eight pixels of a field with isolines or a logarithmic scale, without
+   patterns, like field_color() in shaders/field.glsl. value_x, value_y: change of the value per pixel. */
 SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct mark_ink *ink)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
@@ -95,8 +95,8 @@ SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes
     return marks | lanes_whole(part * MARK_LINE_WHOLE + 0.5f) << MARK_LINE;
 }
 
-/* Horizontal lines, widely spaced: pattern of tags without alarm limits, as rule() in shaders/field.glsl. Returns whether the row y is on a
-   line. */
+/* Horizontal lines, widely spaced: pattern of tags without alarm limits, like rule() in shaders/field.glsl. Returns whether the
+   row y is on a line. */
 SOFT_INLINE bool rule(float y, float pattern_px)
 {
     float at = y * (1 / pattern_px), phase = at - (float)(int)at - 0.5f;

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-enum { WHOLE = 8 }; /* bits of a colour channel */
+enum { WHOLE = 8 }; /* number of bits per colour channel */
 
 struct ramp_search {
     const uint32_t *muted, *own;

@@ -16,8 +16,8 @@ struct ramp_material {
    muted true: greyed, for assets without a field. */
 void ramp_fill(const struct environment_light *sky, const double up[3], const struct ramp_material *material, bool muted, int steps,
                uint32_t *colors);
-/* Fills `steps` elements, `stride` elements apart, with `color` (sRGB, 0xRRGGBB) as shaded surfaces show it, from the darkest to the
-   brightest light. For the glossy style, in which light shades the colours of the field. */
+/* Fills `steps` elements, `stride` elements apart, with `color` (sRGB, 0xRRGGBB) shaded from the darkest to the brightest
+   light. For the glossy style, in which light shades the colours of the field. */
 void ramp_fill_glossy(uint32_t color, int steps, uint32_t *colors, int stride);
 
 #endif

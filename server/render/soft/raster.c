@@ -7,7 +7,7 @@
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
 
-/* Stores the triangle's id at those of eight pixels that show the triangle (mask `seen`), if ids are wanted. */
+/* Stores the triangle's id for those of eight pixels that show the triangle (mask `seen`), if ids are wanted. */
 SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face, size_t at,
                          lanes_int seen)
 {
@@ -23,7 +23,7 @@ struct setup {
     float x, y; /* position of the face's first corner in pixels; the linear functions below (struct plane) are relative to it */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
-    /* share of each pattern at a pixel, 0..1, as linear functions of the position; set only if the face has flags */
+    /* strength of each pattern at a pixel, 0..1, as a linear function of the position; set only if the face has flags */
     struct plane no_data, uncertain, no_limits;
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
@@ -213,8 +213,8 @@ SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sam
     draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
 }
 
-/* Draws up to eight faces grouped by size class, so that the CPU predicts branches well. The order must be the same on every machine,
-   because of two faces at equal depth the one drawn last is visible. */
+/* Draws up to eight faces grouped by size class, so that the CPU predicts branches well. The order must be the same on every
+   machine: of two faces at equal depth, the one drawn last is visible. */
 SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
                             const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
 {

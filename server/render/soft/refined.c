@@ -15,7 +15,7 @@
 /* number of bands (groups of pixel rows) that one step of a refined frame processes per core, which takes a few milliseconds. SHADED_BANDS:
    when shading; BANDS: in other work */
 enum { SHADED_BANDS = 1, BANDS = 8 };
-/* distance, in texels of the shadow map, by which surface points are lifted along their normal; as sun_visibility() in
+/* distance, in texels of the shadow map, by which surface points are lifted along their normal; like sun_visibility() in
    shaders/shadow.glsl */
 static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD;
 
@@ -83,8 +83,8 @@ static void aim(struct refined *refined, const struct light *light)
     raster_aim(raster, light);
     raster_aim_depth(raster, light);
     for (int c = 0; c < 4; c++)
-        /* removes the bias of previews, which move surfaces towards the sun against shadow acne; refined frames move surfaces along their
-           normals instead */
+        /* removes the bias of previews, which move surfaces towards the sun to avoid shadow acne; refined frames move surfaces
+           along their normals instead */
         for (int r = 0; r < 4; r++)
             refined->sun_from_pixel[c][r] =
                 raster->sun_from_pixel[c][r] - (r == 2 ? (float)frame_sun_slack(context) * raster->sun_from_pixel[c][3] : 0);
@@ -245,8 +245,8 @@ static void ink_some(void *arg, size_t begin, size_t end)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
-/* Chooses the range of work items (bands or rows) that this step processes: `some` items per core, of `all` items in total. Returns true if
-   the range includes the last item. */
+/* Chooses the range of work items (bands or rows) to process in this step: `some` items per core, of `all` items in total.
+   Returns true if the range includes the last item. */
 static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
 {
     some *= (size_t)workers_count(refined->raster.soft->workers);

@@ -44,10 +44,10 @@ struct refined {
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
-    /* matrix, column by column, that maps the normal of a surface to an offset on the sun's shadow map. Adding the offset lifts a point off
-       its own surface, against shadow acne */
+    /* matrix, column by column, that maps the normal of a surface to an offset on the sun's shadow map. Adding the offset lifts
+       a point off its own surface, to avoid shadow acne */
     float sun_from_normal[3][3];
-    float ground_step[3]; /* offset on the sun's shadow map that is added to points of the ground, against shadow acne */
+    float ground_step[3]; /* offset on the sun's shadow map that is added to points of the ground to avoid shadow acne */
 };
 
 struct refined_item { /* one surface within a pixel */

@@ -36,8 +36,8 @@ static uint32_t mix(uint32_t a, uint32_t b, float part)
     return out;
 }
 
-/* hatch(), stipple() and rule() return a pixel's coverage by dark stripes, by dots, and by horizontal lines, as in shaders/field.glsl; it
-   exceeds 0.5 inside the pattern. */
+/* hatch(), stipple() and rule() return a pixel's coverage by dark stripes, by dots, and by horizontal lines, like the functions
+   in shaders/field.glsl; it exceeds 0.5 inside the pattern. */
 static float hatch(float x, float y, float pattern_px)
 {
     float phase = (x + y) / (pattern_px * (float)HATCH_SLANT);
@@ -70,8 +70,8 @@ static float slope_of(const struct coloring *coloring, float by_x, float by_y, f
     return slope * (1 / COLUMNS_OF_RANGE);
 }
 
-/* Writes by how much the weights of a triangle's second and third corner change per pixel in x and y. w1, w2: these weights at the point
-   (x, y). */
+/* Writes the change, per pixel in x and y, of the weights of a triangle's second and third corner. w1, w2: these weights at the
+   point (x, y). */
 static void weight_steps(const struct visibility_slopes *slopes, float w1, float w2, float x, float y, float steps[2][2])
 {
     float over = 1 / (slopes->sum_x * x + slopes->sum_y * y + slopes->sum);
@@ -207,9 +207,9 @@ struct eight_shown {
     struct eight_places places; /* surface points of the eight pixels, at which fields are evaluated from their sensors */
 };
 
-/* Computes the field values of eight pixels: colour map columns or, on a logarithmic scale, field values. Works as field_color() in
-   shaders/field.glsl. wanted: mask of pixels; others receive arbitrary values. cells: index, in the band of pixel rows, of the square of
-   pixels that contains each pixel. */
+/* Computes the field values of eight pixels: colour map columns or, on a logarithmic scale, field values. Works like
+   field_color() in shaders/field.glsl. wanted: mask of pixels; others receive arbitrary values. cells: index, in the band of
+   pixel rows, of the square of pixels that contains each pixel. */
 SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles, lanes_int weights,
                        lanes_int wanted, lanes_int cells, struct eight_shown *out)
 {
@@ -372,8 +372,8 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
     ahead->all_known = !lanes_any(~all_known) && !(coloring->paint.line_px > 0);
 }
 
-/* Converts the colour of a field to that of a glossy surface, by the light `gloss` that falls on the pixel. gloss NULL: returns the colour
-   unchanged. */
+/* Converts the colour of a field to that of a glossy surface, using the light `gloss` that falls on the pixel. gloss NULL:
+   returns the colour unchanged. */
 SOFT_INLINE uint32_t glossed(const struct coloring *coloring, uint32_t color, const struct visibility_gloss *gloss)
 {
     struct visibility_gloss all_of[LANES];
@@ -466,8 +466,8 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
     return colors;
 }
 
-/* Colours one band (group of pixel rows), eight pixels at a time. If the frame's width is no multiple of eight, the last eight pixels of a
-   row overlap the eight before. */
+/* Colours one band (group of pixel rows), eight pixels at a time. If the frame's width is not a multiple of eight, the last
+   eight pixels of a row overlap the eight before. */
 static void color_band(const struct coloring *coloring, int number)
 {
     const struct visibility_buffer *buffer = coloring->buffer;

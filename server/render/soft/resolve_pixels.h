@@ -8,7 +8,7 @@
 struct band_lists { /* sensor lists of one band of pixel rows, for meshes whose fields have more than PIXEL_FEW sensors */
     struct pixel_lists lists;
     uint32_t *of_cells; /* by cell (square of pixels) of the band: 1 + index of the cell's first list in `lists`; 0: the cell has none */
-    int columns;        /* number of cells (squares of pixels) next to each other in a row of the band */
+    int columns;        /* number of cells (squares of pixels) in a row of the band */
 };
 
 /* eight points on triangles. at: position of the point in metres; second, third: vectors from the triangle's first corner to its second and
@@ -44,8 +44,8 @@ SOFT_INLINE const struct pixel_list *list_of(const struct band_lists *lists, con
     return &mesh->every;
 }
 
-/* Evaluates the field at the points whose mesh is not -1, with the sensor list of the point's mesh and square of pixels (cell). Results of
-   other points are 0. cells: index of each point's cell in the band. */
+/* Evaluates the field at the points whose mesh is not -1, with the sensor list of the point's mesh and square of pixels (cell).
+   Results for other points are 0. cells: index of each point's cell in the band. */
 SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
                                  const lanes at[3], lanes_int cells, struct eight_values *out)
 {
@@ -67,7 +67,7 @@ SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const s
     }
 }
 
-/* Converts field values to colour map columns, by which pixels are coloured; on a logarithmic scale the values stay unchanged. */
+/* Converts field values to colour map columns, which determine the pixels' colours; on a logarithmic scale the values stay unchanged. */
 SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
 {
     const float farthest = 1e6f;
@@ -76,8 +76,8 @@ SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
     return lanes_clamp((values - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
 }
 
-/* Returns by how much the field's values change if the points move such that the weights of their triangle's second and third corner grow
-   by w1 and w2. Values are colour map columns or, on a logarithmic scale, field values. carried: values at the points. */
+/* Returns the change of the field's values when the points move so that the weights of their triangle's second and third corner
+   grow by w1 and w2. Values are colour map columns or, on a logarithmic scale, field values. carried: values at the points. */
 SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
                                  lanes w1, lanes w2, lanes_int cells, lanes carried)
 {

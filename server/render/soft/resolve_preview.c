@@ -64,7 +64,7 @@ SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks
     return lanes_whole((float)GREY_BLUE * blue + (float)GREY_GREEN * green + (float)GREY_RED * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
 }
 
-/* Darkens the colours of those of eight pixels that an isoline covers, as field_color() in shaders/field.glsl. */
+/* Darkens the colours of those of eight pixels that an isoline covers, like field_color() in shaders/field.glsl. */
 static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
 {
     static const float grey_parts[3] = { (float)GREY_BLUE, (float)GREY_GREEN, (float)GREY_RED };
@@ -143,7 +143,7 @@ SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks
     return lanes_choose_int(is_cap, cap_color(x, y, raster->block.scale[3]), inside_color(v, n, raster->block.up)) | (int32_t)0xff000000;
 }
 
-/* Returns the colours of eight pixels. Two fast paths for the most frequent cases: all eight show the field, or all are empty. */
+/* Returns the colours of eight pixels. Has fast paths for the two most frequent cases: all eight show the field, or all are empty. */
 SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights *heights, const struct sun_aim *aim, int column, int row)
 {
     size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;

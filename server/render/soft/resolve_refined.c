@@ -23,7 +23,7 @@ struct mixed { /* a pixel that shows several surfaces, and the range of its item
     int column;
     uint8_t field_count, surface_count;
     uint16_t sky, cap; /* area of the pixel that shows sky, and area that shows section caps; 0..VISIBILITY_SHARES */
-    uint16_t over[3];  /* sum of the colours of blended triangles, each times the area that it covers: blue, green, red */
+    uint16_t over[3];  /* sum of the colours of blended triangles, each weighted by the area that it covers: blue, green, red */
     uint32_t first_field, first_surface;
 };
 
@@ -98,8 +98,8 @@ static bool share_edge(const struct soft_triangle *a, const struct soft_triangle
     return a->mesh == b->mesh && shared >= 2;
 }
 
-/* Groups the samples of a pixel by the surface that they show. under: by sample: area of the pixel that the sample represents, less where
-   blended triangles cover it. triangles: receives a triangle of each group. Returns the number of groups. */
+/* Groups the samples of a pixel by the surface that they show. under: by sample: area of the pixel that the sample represents,
+   less where blended triangles cover it. triangles: receives one triangle of each group. Returns the number of groups. */
 static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
                          struct soft_triangle triangles[SAMPLES], struct sample_group groups[SAMPLES])
 {
@@ -149,8 +149,8 @@ static int by_depth(const void *a, const void *b)
     return x->depth != y->depth ? (x->depth < y->depth ? 1 : -1) : (x->layer > y->layer) - (x->layer < y->layer);
 }
 
-/* Shades the blended triangles. Then replaces the depth of the surfaces behind by theirs, so that blended triangles also hide feature edges
-   of those surfaces. */
+/* Shades the blended triangles. Then replaces the depth of the surfaces behind them with their own depth, so that blended
+   triangles also hide feature edges of those surfaces. */
 static void shade_layers(struct recent *recent, struct layers *layers, int top, const struct soft_sample samples[SAMPLES])
 {
     const struct refined *refined = recent->refined;
