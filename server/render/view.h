@@ -80,8 +80,8 @@ struct view {
 /* Returns the unit of the shown values: the group's unit, or "m" for distances. */
 const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
-/* Sets the default scale of what the view shows: the group's range, isolines and logarithm, or those of a distance or of a difference from
-   a baseline. */
+/* Sets the default scale for the quantity that the view shows: the group's range, isolines and logarithm, or those of a
+   distance or of a difference from a baseline. */
 void view_default_scale(const struct scene *scene, struct view *view);
 /* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has its own colours, isolines and
    legend, and ignores colormap and color_scale. */

@@ -33,8 +33,8 @@ static float dot_of(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Turns the unit normal n by a texel of a normal map, as mapped_normal() in shaders/refined.frag. dx, dy: change of the surface point per
-   pixel, metres; uv: from soft_spread_coordinates(). */
+/* Turns the unit normal n by a texel of a normal map, like mapped_normal() in shaders/refined.frag. dx, dy: change of the
+   surface point per pixel, metres; uv: from soft_spread_coordinates(). */
 static void map_normal(const float dx[3], const float dy[3], float uv[3][2], const float texel[4], float scale, float n[3])
 {
     float cross_y[3], cross_x[3], t[3], b[3], m[3];

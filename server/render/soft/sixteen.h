@@ -97,8 +97,8 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
     return (sixteen_int)_mm512_min_epi32(whole, _mm512_set1_epi32(high));
 }
 
-/* Draws one stamp (block of 16 pixels drawn as a unit), in rows of `width` pixels, by the same rules as draw_stamp() draws a stamp of
-   eight. l: index of the face in `small`. */
+/* Draws one stamp (block of 16 pixels drawn as a unit), in rows of `width` pixels, by the same rules by which draw_stamp()
+   draws a stamp of eight. l: index of the face in `small`. */
 SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
                            bool thin)

@@ -16,8 +16,8 @@ SOFT_INLINE bool is_small(const struct soft_face *face)
     return face->bottom - face->top < SMALL_PX && (face->right - face->left < SMALL_PX || face->bottom - face->top < 2);
 }
 
-/* Returns whether draw_eight() can draw the face: all corners have almost the same depth, so perspective is negligible, and no corner has a
-   pattern. */
+/* Returns whether draw_eight() can draw the face: all corners have almost the same depth, so perspective is negligible, and no
+   corner has a pattern. */
 SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_face *face)
 {
     int i = face->corners[0], j = face->corners[1], k = face->corners[2];

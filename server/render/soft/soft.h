@@ -23,11 +23,11 @@ void soft_destroy(struct soft **soft); /* frees the software renderer and sets *
 /* sets the memory limit, in bytes, of the visibility buffers that a tier (preview or refined) keeps while cameras stand still */
 void soft_bound(struct soft *soft, enum tier tier, size_t bytes);
 size_t soft_kept_bytes(const struct soft *soft);  /* bytes of kept visibility buffers */
-/* returns the bytes of the software renderer's working memory, without that of refined frames that are still being drawn */
+/* returns the bytes of the software renderer's working memory, excluding that of refined frames still being drawn */
 size_t soft_room_bytes(const struct soft *soft);
 size_t soft_light_bytes(const struct soft *soft); /* returns the bytes that copies of baked light from the GPU take */
 void soft_drop_spare(struct soft *soft);          /* frees the working memory that finished refined frames left for reuse */
-/* frees working memory, copied light and kept visibility buffers, for example while no client watches */
+/* frees working memory, copied light and kept visibility buffers, for example while no clients are watching */
 void soft_rest(struct soft *soft);
 
 /* Draws a whole preview frame: pixels, visibility of markers, and points for isoline labels. Returns false when out of memory; logged. */

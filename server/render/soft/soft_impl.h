@@ -90,7 +90,7 @@ struct soft_found {
     bool both_sides;
     float eye_m[3]; /* eye position in the coordinates of the asset file, in metres */
     struct soft_rect rect;
-    /* id of the first triangle of the first item; an item is a part, and the ids of each next item begin PART_TRIANGLES higher */
+    /* id of the first triangle of the first item; an item is a part, whose ids begin PART_TRIANGLES above those of the item before */
     uint32_t first_id;
     struct soft_item *items;
     size_t count, capacity;
@@ -138,7 +138,7 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     struct soft *soft;
     const struct frame_context *context;
     const struct soft_light *light;
-    const uint32_t *ramps;    /* one of struct soft's ramps */
+    const uint32_t *ramps;    /* muted_ramps or own_ramps of struct soft */
     const uint32_t *colormap; /* from struct shaded_colormap, or soft->glossy */
     const float *lines;
     struct frame_uniforms block;
@@ -151,7 +151,7 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     size_t pixels_count, pixels_capacity;
     int row_bias; /* number added to the colour map row that a MARK_PIXELS mark stores, so that the stored number is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: number of elements from one row to the next, a multiple of LANES */
-    /* largest distance of a sample from the pixel's centre along x or y, by which bounding rectangles are enlarged. Previews: 0 */
+    /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles are enlarged by it. Previews: 0 */
     float reach_px;
     float *depth;
     uint32_t *marks;
@@ -166,8 +166,8 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
        through which view rays enter the space that is kept */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
-    float shift_px[2];  /* offset in pixels of the samples that are now drawn from the pixel centres; 0 in previews */
-    bool counts_bodies; /* true: the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
+    float shift_px[2];  /* offset, from the pixel centres, of the samples being drawn, in pixels; 0 in previews */
+    bool counts_bodies; /* true: the frame has section caps, which need a count of the closed bodies at each pixel (caps.c) */
     bool blends;        /* true: some of the parts (groups of triangles) found are blended (transparent) */
     bool has_ground;
     /* true: assets without a field are drawn grey (in views of values relative to alarm limits) */
@@ -242,19 +242,18 @@ bool raster_is_cut_off(const struct raster *raster, const float at[4], int plane
    plane cuts through the box. */
 bool raster_cuts_box(const struct raster *raster, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3],
                      bool *cut);
-/* Returns the depth at which the ray through the point (x, y) of the frame enters the space that section planes leave. 0: the ray never
-   enters it, or the eye is already inside. */
+/* Returns the depth at which the ray through the point (x, y) of the frame enters the space that section planes leave uncut. 0:
+   the ray never enters it, or the eye is already inside. */
 float raster_entry_depth(const struct raster *raster, float x, float y);
 /* Lists the meshes and parts (groups of triangles) that may be visible. bodies: also lists parts that bound closed bodies which a section
    plane cuts open. Returns false when out of memory. */
 bool raster_find(struct raster *raster, bool bodies);
-/* like raster_find(), which lists the parts (groups of triangles) that may be visible, but only those of one asset; their back faces are
-   drawn, too */
+/* like raster_find(), but lists only the parts (groups of triangles) of one asset; their back faces are drawn, too */
 bool raster_find_only(struct raster *raster, int asset);
-/* like raster_find(), which lists the parts (groups of triangles) that may be visible, but only those of ghosted assets */
+/* like raster_find(), but lists only the parts (groups of triangles) of ghosted assets */
 bool raster_find_ghosts(struct raster *raster);
-/* draws the lines of ghosted assets into `veil` (rows of width_px): by pixel, the part that a line covers, 0..255; overwrites the pixels'
-   marks (colour codes). bgr: receives the lines' colour. Returns false when out of memory */
+/* draws the lines of ghosted assets into `veil` (rows of width_px): coverage of each pixel by a line, 0..255; overwrites the
+   pixels' marks (colour codes). bgr: receives the lines' colour. Returns false when out of memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);
 void raster_paint_ghosts(const struct raster *raster, const uint8_t *veil, const uint8_t bgr[3]);
 /* output of raster_tiles() for each pixel: SOFT_CAPS: only marks (colour codes) of section caps; SOFT_DEPTH: all marks, and depth;

@@ -14,7 +14,7 @@ struct eight_points {    /* eight surface points */
     lanes material[8];
     lanes x, y, depth; /* position in the frame */
     lanes weights[3];
-    lanes_int back;     /* -1: the surface looks away */
+    lanes_int back;     /* -1: the surface faces away from the eye */
     lanes_int mirrored; /* -1: the surface belongs to a mesh whose placement mirrors it, which reverses the winding; else 0 */
     lanes_int cut;      /* -1: a section plane cuts the mesh, so back faces show the inner side; else 0. Set together with the material */
     vec normal;
@@ -32,8 +32,8 @@ struct corners {
     float z[3][LANES], g[3][LANES];
 };
 
-/* Projects the corners of the triangle of an item (surface to shade) into element i of `out`, as soft_place_part() in faces.c does. If a
-   corner cannot be projected (it may lie behind the eye), homogeneous coordinates are stored. */
+/* Projects the corners of the triangle of an item (surface to shade) into element i of `out`, like soft_place_part() in
+   faces.c. If a corner cannot be projected (it may lie behind the eye), homogeneous coordinates are stored. */
 SOFT_INLINE void see_corners(const struct refined *refined, const struct refined_item *item, int i, struct corners *out)
 {
     const struct raster *raster = &refined->raster;
@@ -88,8 +88,8 @@ SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
         e[k] = lanes_choose(outside, best[k], most_of(e[k], all(0)));
 }
 
-/* Computes the perspective-correct weights of the triangle's corners at each point, clamped to the triangle, and moves the point to the
-   position that the weights give. */
+/* Computes the perspective-correct weights of the triangle's corners at each point, clamped to the triangle, and moves the
+   point to the position given by the weights. */
 SOFT_INLINE void weigh(struct eight_points *spot, const struct corners *corners)
 {
     lanes e[3], sum, depth = all(0), over = all(0), x = all(0), y = all(0);

@@ -15,8 +15,8 @@ enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICE
 
 struct soft_corners { /* vertices of a part with the members of struct soft_vertex, followed by the vertices that clipping added */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
-    /* flags of the vertices; a vertex that clipping added has only flags of SOFT_PATTERNS; cut_patterns holds how far each pattern applies
-       there */
+    /* flags of the vertices; a vertex that clipping added has only flags of SOFT_PATTERNS; cut_patterns holds the strength of
+       each pattern there */
     uint32_t flags[MOST_CORNERS];
     struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
     int count, placed;  /* number of vertices; placed: those that clipping did not add, which come first */
@@ -34,7 +34,7 @@ struct soft_face { /* a triangle that faces the eye and covers a pixel centre of
     int16_t left, right, top, bottom; /* in pixels of the frame */
 };
 
-enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: the triangle looks away from the eye */
+enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: the triangle faces away from the eye */
 
 enum { MOST_SAMPLES = 4 };
 struct soft_sample { /* buffers with one sample for each pixel of a tile, row by row from the tile's upper left corner */
@@ -43,7 +43,7 @@ struct soft_sample { /* buffers with one sample for each pixel of a tile, row by
     uint32_t *ids;   /* id of the triangle at each sample: first_id of the part + index in the part, and the flag ID_BACK */
     float x, y;      /* offset from the pixel's centre */
 };
-#define ID_BACK 0x80000000u /* flag of a triangle id, only for meshes that a section plane cuts: the triangle looks away from the eye */
+#define ID_BACK 0x80000000u /* flag of a triangle id, only for meshes that a section plane cuts: the triangle faces away from the eye */
 
 struct soft_fragment { /* fragment: a blended (transparent) triangle at one sample of a pixel */
     uint32_t pixel;    /* index of the pixel in the sample arrays (soft_sample) of the tile */

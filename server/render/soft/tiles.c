@@ -50,7 +50,7 @@ static void fill_list(const struct soft_tile *tile, struct tile_list *list)
                 list->entries[list->count++] = (struct tile_entry){ order, (uint32_t)m, (uint32_t)i };
             }
     }
-    if (list->count > 1) /* without entries the array may be NULL, with which qsort() must not be called */
+    if (list->count > 1) /* the array of an empty list may be NULL, which must not be passed to qsort() */
         qsort(list->entries, list->count, sizeof(*list->entries), by_order);
 }
 

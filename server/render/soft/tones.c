@@ -19,8 +19,8 @@ uint32_t soft_pack_light(const float light[3])
     const float min_light = 0x1p-16f, max_light = 65408; /* range of the shared exponent */
     float brightest = fmaxf(fmaxf(light[0], light[1]), fmaxf(light[2], min_light));
     int exponent;
-    /* if the brightest channel would round up to 512, which does not fit in nine bits, the next higher exponent is needed: the factor lifts
-       such light over the power of two */
+    /* the factor selects the next higher exponent if the brightest channel would otherwise round up to 512, which does not fit
+       in nine bits */
     frexpf(fminf(brightest, max_light) * (1 + 0x1p-9f), &exponent);
     uint32_t packed = (uint32_t)(exponent + 15) << 27;
     for (int c = 0; c < 3; c++)

@@ -40,7 +40,7 @@ SOFT_INLINE vec tone_map(vec c)
     return (vec){ lanes_choose(low, c.x, rolled.x), lanes_choose(low, c.y, rolled.y), lanes_choose(low, c.z, rolled.z) };
 }
 
-/* Packs light of 0..65408 into 32 bits: nine bits for each channel and a shared exponent, as GL_RGB9_E5. */
+/* Packs light of 0..65408 into 32 bits: nine bits for each channel and a shared exponent, like GL_RGB9_E5. */
 uint32_t soft_pack_light(const float light[3]);
 
 SOFT_INLINE vec unpack_light(lanes_int packed)
@@ -50,7 +50,7 @@ SOFT_INLINE vec unpack_light(lanes_int packed)
                   __builtin_convertvector(packed >> 18 & 511, lanes) * scale };
 }
 
-/* Returns the colours of glossy surfaces with these base colours, as GLOSSY in shaders/refined.frag. gloss: eight elements. */
+/* Returns the colours of glossy surfaces with these base colours, like GLOSSY in shaders/refined.frag. gloss: eight elements. */
 SOFT_INLINE lanes_int glossy_colors(const struct soft_tones *tones, lanes_int colors, const struct visibility_gloss *gloss)
 {
     lanes_int halves[2];

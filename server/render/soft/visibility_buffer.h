@@ -35,8 +35,8 @@ struct visibility_part { /* surface with a field, in a pixel that shows several 
 enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
 struct visibility_mixed {
-    /* blue_red: sum of the colours that no reading changes, each times the area that it covers, 16 bits each for blue and red; first_part:
-       index of the pixel's first surface with a field among the `parts` of the band */
+    /* blue_red: sum of the colours that no reading changes, each weighted by the area it covers, 16 bits each for blue and red;
+       first_part: index of the pixel's first surface with a field among the `parts` of the band */
     uint32_t blue_red, first_part;
     uint16_t green;  /* the same sum for green */
     uint16_t x, row; /* position in the band */
@@ -108,7 +108,7 @@ struct visibility_buffer {
     /* true: resolve_read() must find the cells (squares of pixels that show fields of many sensors) again, because the set of meshes with
        such fields has changed */
     bool finds_cells;
-    /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) by which the values in `carried` were computed */
+    /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) with which the values in `carried` were computed */
     float scale[4];
     uint32_t *vertices; /* vertices that some pixel shows, mesh by mesh: index of each in the asset's file */
     /* value at each visible vertex, which is interpolated over triangles: column of the colour map (on a logarithmic scale the field's
@@ -127,7 +127,7 @@ bool visibility_buffer_gloss(struct visibility_buffer *buffer, const struct soft
 /* frees the buffer and sets *buffer to NULL; accepts a pointer to NULL */
 void visibility_buffer_destroy(struct visibility_buffer **buffer);
 size_t visibility_buffer_bytes(const struct visibility_buffer *buffer);
-struct resolve_paint {        /* colours, patterns and isolines by which a visibility buffer is coloured */
+struct resolve_paint {        /* colours, patterns and isolines used to colour a visibility buffer */
     const uint32_t *colormap; /* COLORMAP_ROWS x COLORMAP_COLUMNS texels */
     float pattern_px;         /* cell size of patterns */
     float line_px;            /* width of isolines in pixels; 0: the frame has no isolines */

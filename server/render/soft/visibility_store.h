@@ -30,7 +30,7 @@ void *visibility_store_find(struct visibility_store *store, uint64_t shape);
 /* Takes ownership of a visibility buffer and replaces any buffer with the same hash. Destroys the buffer immediately if it exceeds the
    memory limit and keeps_newest is false. */
 void visibility_store_give(struct visibility_store *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at));
-void visibility_store_bound(struct visibility_store *store, size_t bytes); /* sets the bound and evicts */
+void visibility_store_bound(struct visibility_store *store, size_t bytes); /* sets the memory limit and evicts buffers that exceed it */
 void visibility_store_drop(struct visibility_store *store, uint64_t shape);
 void visibility_store_finish(struct visibility_store *store);
 

@@ -24,8 +24,8 @@ struct heat {
     cholmod_common common;
 };
 
-/* Returns, by row of the heat method's matrices, what is added to the diagonal element: REGULARISATION times the area at the row's point,
-   divided by the area of the connected component to which the point belongs. The caller frees the array. */
+/* Returns the regularisation of each row of the heat method's matrices, which is added to the diagonal element: REGULARISATION
+   times the area at the row's point, divided by the area of the point's connected component. The caller frees the array. */
 static double *regularisation(const struct heat *heat, const uint32_t *component)
 {
     double *area_m2 = mem_array(heat->in->point_count, sizeof(*area_m2)), *share = mem_array(heat->laplacian.row_count, sizeof(*share));

@@ -79,7 +79,7 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
     double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
     double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
-    /* distance from p along edge pq, at which the edge rs that shall replace pq crosses it; -1: they do not cross */
+    /* distance from p, along edge pq, of the crossing with the edge rs that is to replace pq; -1: they do not cross */
     double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1;
     if (cut <= 0 || cut >= pq)
         return false;

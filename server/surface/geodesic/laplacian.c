@@ -48,7 +48,7 @@ static void measure(struct laplacian *laplacian)
     for (size_t t = 0; t < in->tri_count; t++) {
         double x, y, a = in->lengths[t][0];
         intrinsic_layout(in->lengths[t], &x, &y);
-        y = max_of(y, 1e-6 * a); /* limits the height of a triangle that rounding made flat, because slopes have it as a divisor */
+        y = max_of(y, 1e-6 * a); /* limits the height of a triangle that rounding has flattened, because slopes are divided by the height */
         laplacian->slopes[t] = (struct laplacian_slope){ .x1 = 1 / a, .y1 = -x / (a * y), .y2 = 1 / y, .area = a * y / 2 };
         for (int i = 0; i < 3; i++)
             laplacian->mass_m2[laplacian->row_of[in->points[t][i]]] += a * y / 6;

@@ -67,8 +67,8 @@ static void turn_round(struct vertex_wedge *wedge)
     wedge->ends[1] = swap;
 }
 
-/* Extends a row of adjacent triangles (wedges) around a point; the first `count` wedges form the row. Repeatedly moves a wedge that is
-   adjacent to the row's end to that end, until no wedge is. Returns the new number of wedges in the row. */
+/* Extends a row of adjacent triangles (wedges) around a point; the first `count` wedges form the row. Repeatedly moves a wedge
+   adjacent to the row's end to that end, until no adjacent one is left. Returns the new number of wedges in the row. */
 static size_t extend(struct vertex_wedge *wedges, size_t count, size_t all)
 {
     for (size_t i = count; i < all && i < count + MAX_TRIED; i++)
@@ -142,8 +142,8 @@ static void add_fans(struct propagation *propagation, uint32_t point, struct ver
     }
 }
 
-/* Returns where the triangles of each point begin in a list that is sorted by point: by point, the number of triangle corners at points of
- * lower index. One more element at the end holds the total. The caller frees the array. */
+/* Returns the index at which each point's triangles begin in a list sorted by point: the number of triangle corners at points
+ * of lower index. An extra element at the end holds the total. The caller frees the array. */
 static uint32_t *count_corners(const struct propagation *propagation, const struct intrinsic *in)
 {
     size_t points = propagation->mesh->point_count;

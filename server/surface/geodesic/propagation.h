@@ -39,7 +39,7 @@ void propagation_finish(struct propagation *propagation);
 /* State of one propagation (from one source), used by one thread. Initialise with zeros; may be reused for further sources. */
 struct propagation_front {
     float *distance_m; /* per point; INFINITY: not reached */
-    float *straight_m; /* by point: straight-line distance from the source in metres, below which no geodesic distance can be */
+    float *straight_m; /* by point: straight-line distance from the source in metres, a lower bound of the geodesic distance */
     char *settled;
     uint32_t *buckets;
     struct propagation_item {

@@ -79,7 +79,7 @@ static inline void offer(const struct propagation *propagation, struct propagati
         return;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
-    /* Converts the distance to the number of a bucket by way of int64_t, for which the processor has a single instruction. Correct, because
+    /* Converts the distance to a bucket number via int64_t, for which the processor has a single instruction. Correct, because
        the distance is not negative. */
     uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m);
     uint32_t *bucket = &front->buckets[(number > front->at ? number : front->at) & (propagation->bucket_count - 1)];
@@ -162,7 +162,7 @@ struct front_turn {
     lanes d, reached;
     uint32_t empty;                   /* number of consecutive empty buckets */
     float offered_m[PROPAGATION_FAN]; /* offers to the fan's points */
-    uint32_t takes;                   /* bit mask of lanes in which the offered distance is shorter than the neighbour's present distance */
+    uint32_t takes;                   /* bit mask of lanes in which the offered distance is shorter than the neighbour's current distance */
 };
 
 /* Takes the next point from the buckets and makes its fans (neighbours and triangles around it) the current ones. Returns false if all
@@ -275,7 +275,7 @@ static void look_through(const struct propagation *propagation, struct propagati
 
 /* a triangle unfolded into a plane in which the source is at (0, 0) */
 struct laid {
-    uint32_t tri; /* number in the intrinsic triangulation */
+    uint32_t tri; /* index in the intrinsic triangulation */
     double corners[3][2];
 };
 
@@ -331,9 +331,10 @@ static void place_above(double side, double to_r_m, double to_l_m, double out[2]
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
 }
 
-/* Unfolds the intrinsic triangle that contains the source into the plane, where edges of the mesh triangle around the source were flipped.
-   Starts at side `entered`, which this mesh triangle shares with the intrinsic triangulation. A straight line to the mesh triangle's third
-   corner checks that the intrinsic triangles cover the mesh triangle. Returns false if they do not; then another side must be tried. */
+/* Unfolds the intrinsic triangle that contains the source into the plane, where edges of the mesh triangle around the source
+   were flipped. Starts at side `entered`, which this mesh triangle shares with the intrinsic triangulation. To check that the
+   intrinsic triangles cover the mesh triangle, follows a straight line to the mesh triangle's third corner. Returns false if
+   they do not; then another side must be tried. */
 static bool lay_out_beyond(const struct propagation *propagation, uint32_t entered, uint32_t third, const double source[3],
                            struct laid *laid)
 {

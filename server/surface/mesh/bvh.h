@@ -25,8 +25,8 @@ void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, b
 
 /* Sets a number (label) for each triangle of the mesh, for bvh_nearest_unlike(). The array `label` must outlive the hierarchy. */
 void bvh_set_labels(struct bvh *bvh, const uint32_t *label);
-/* Finds the nearest point as bvh_nearest() does, on triangles whose label (bvh_set_labels) differs from `label`. Skips nodes whose
-   triangles all have this label. */
+/* Finds the nearest point, like bvh_nearest(), on triangles whose label (bvh_set_labels) differs from `label`. Skips nodes
+   whose triangles all have this label. */
 void bvh_nearest_unlike(const struct bvh *bvh, const double point[3], double limit_m, uint32_t label,
                         bool (*allowed)(const void *arg, uint32_t tri), const void *arg, struct bvh_place *place);
 

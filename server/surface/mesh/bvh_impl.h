@@ -23,8 +23,8 @@ struct bvh {
     uint32_t *order;
     double (*centres)[3];
     size_t node_count, node_capacity;
-    /* Node with eight children, used by queries. The tree of these nodes divides the triangles as the binary tree does, but down to single
-     * triangles. */
+    /* Node with eight children, used by queries. The tree of these nodes divides the triangles like the binary tree, but down
+     * to single triangles. */
     struct bvh_wide {
         float low[3][BVH_WIDE], high[3][BVH_WIDE];
         /* index of a child node, or index of a triangle with BVH_IS_TRIANGLE set; unused children have a box with low > high */

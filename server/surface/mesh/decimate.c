@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decimates a mesh (decimate.h): collapses an edge onto one of its ends where this only lowers the number of triangles and leaves the shape
-   of the surface unchanged. */
+/* Decimates a mesh (decimate.h): collapses an edge onto one of its ends where this only lowers the number of triangles and
+   leaves the shape of the surface unchanged. */
 #include "surface/mesh/decimate.h"
 
 #include <string.h>
@@ -112,8 +112,9 @@ static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
     return v[0] == point || v[1] == point || v[2] == point;
 }
 
-/* Collapsing `from` into `to` loses the triangle that has both and `point` as corners. Returns whether `point` keeps another visible
-   triangle at `from` or `to`. Checked because a lost triangle without area may be the only connection of two parts. */
+/* Collapsing `from` into `to` removes the triangle with the corners `from`, `to` and `point`. Returns whether `point` keeps
+   another visible triangle at `from` or `to`. Checked because a removed triangle without area may be the only connection
+   between two parts. */
 static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
