@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which listen addresses, host names, page origins and proxies are allowed, and reads header lists. */
+/* Access rules: which listen addresses, host names, page origins and proxies are allowed. Also parses comma-separated header lists. */
 #include "access/access.h"
 
 #include <arpa/inet.h>
@@ -55,7 +55,7 @@ bool access_host_name(const char *host, char *out, size_t size)
         out[i] = (char)tolower(c);
     }
     out[n] = 0;
-    if (n > 1 && out[n - 1] == '.') /* drops the dot at the end of a fully qualified host name, such as "host.example." */
+    if (n > 1 && out[n - 1] == '.') /* removes the trailing dot of a fully qualified host name such as "host.example." */
         out[n - 1] = 0;
     return true;
 }

@@ -10,21 +10,20 @@
 enum { ACCESS_MAX_NAMES = 16 };
 
 struct access_network {
-    uint8_t address[16]; /* address of the network; an IPv4 address has the form ::ffff:a.b.c.d */
-    int bits;            /* number of leading bits that all addresses of the network share, 1..128 */
+    uint8_t address[16]; /* network address; an IPv4 address is stored as ::ffff:a.b.c.d */
+    int bits;            /* length of the network prefix in bits, 1..128 */
 };
 
 struct access_params {
-    bool open_viewers; /* true: clients without a token may see pictures, and nothing else */
-    /* true: a proxy on this machine forwards connections of other clients. A connection from a loopback address may then come from
-       elsewhere */
+    bool open_viewers; /* true: clients without a token may view pictures, but nothing else */
+    /* true: a proxy on this machine forwards connections, so a loopback peer is not necessarily a local client */
     bool behind_proxy;
     struct access_network proxies[ACCESS_MAX_NAMES]; /* reverse proxies on other machines, whose X-Forwarded-For header is trusted */
     int proxy_count;
-    bool trust_local;                         /* true: clients on this machine need no token, although clients on others do */
-    const char *tokens_path;                  /* path of the file of tokens; NULL: tokens are not used */
-    const char *openid_path;                  /* path of the file of --openid; NULL: no sign-in with OpenID Connect */
-    const char *tls_cert_path, *tls_key_path; /* paths of certificate and private key; NULL: no TLS */
+    bool trust_local;                         /* true: clients on this machine need no token, even if remote clients do */
+    const char *tokens_path;                  /* path of the token file; NULL: tokens are not used */
+    const char *openid_path;                  /* path of the configuration file of --openid; NULL: no sign-in with OpenID Connect */
+    const char *tls_cert_path, *tls_key_path; /* paths of the certificate and its private key; NULL: no TLS */
     const char *hosts[ACCESS_MAX_NAMES];      /* host names that clients may use in the Host header, in addition to this machine's own */
     const char *origins[ACCESS_MAX_NAMES];    /* origins of web pages on other hosts that may connect, as SCHEME://HOST[:PORT] */
     int host_count, origin_count;
@@ -33,8 +32,8 @@ struct access_params {
     struct quotas quotas;
 };
 
-/* Returns true if the daemon may listen with these parameters. loopback: true if the daemon would listen on a loopback address only. On
-   false, *why (static text) names the broken rule. */
+/* Returns true if the daemon may listen with these parameters. loopback: the daemon would listen on a loopback address only. On
+   false, *why (static text) names the violated rule. */
 bool access_allowed_at(const struct access_params *params, bool loopback, const char **why);
 
 /* Writes the host name in a request's Host header ("name", "name:80", "[::1]:80") to `out`, in lower case and without port and brackets.
@@ -42,16 +41,16 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
 bool access_host_name(const char *host, char *out, size_t size);
 /* Returns true if the host name is localhost, 127.x.x.x or ::1, which mean this machine. */
 bool access_name_is_local(const char *name);
-/* Returns whether the name is a numeric IP address. */
+/* Returns true if the name is a numeric IP address. */
 bool access_name_is_address(const char *name);
-/* Returns whether a web page of that origin may connect to that host: the page is from the same host with the same scheme, or its origin
-   is in params->origins. An empty origin is allowed, because such a request does not come from a browser. secure: the connection uses
-   TLS. */
+/* Returns true if a web page of that origin may connect to that host: either it comes from the same host and scheme, or
+   params->origins lists its origin. An empty origin is allowed, because such a request does not come from a browser. secure:
+   the connection uses TLS. */
 bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure);
 /* Reads the text file of --notice: UTF-8, 4 kB at most. The caller frees the text with mem_free. NULL on failure, already logged. */
 char *access_notice_read(struct log *log, const char *path);
-/* Returns the Content-Security-Policy header of the daemon's pages: they load from this server only, and only pages of params->origins
-   may show them in a frame. The caller frees the text with mem_free. */
+/* Returns the Content-Security-Policy header of the daemon's pages: they load from this server only, and only pages of
+   params->origins may embed them in a frame. The caller frees the text with mem_free. */
 char *access_content_policy(const struct access_params *params);
 /* Returns true if a header's comma-separated list contains that word. */
 bool access_list_has(const char *list, const char *word);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Detects that a file has changed since the caller read it. */
+/* Detects whether a file has changed since the caller last read it. */
 #include "access/file_watch.h"
 
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* File watch: detects that a file has changed since the caller read it, so that it must be read again. Thread: one. */
+/* File watch: detects that a file has changed since the caller last read it and must be read again. Thread: one. */
 #ifndef ACCESS_FILE_WATCH_H
 #define ACCESS_FILE_WATCH_H
 #include <stdbool.h>
@@ -16,10 +16,10 @@ struct file_watch { /* zero-initialise */
     struct file_stamp seen, read;
 };
 
-/* Stores the state of the file that the caller has just read, as fstat() returned it; st NULL: the file does not exist. */
+/* Remembers the state of the file that the caller has just read, as fstat() returned it; st NULL: the file does not exist. */
 void file_watch_read(struct file_watch *watch, const struct stat *st);
-/* Returns true if the file differs from the one that was read and has not changed since the previous call. A file that changes between
-   two calls is still being written and may be incomplete. */
+/* Returns true if the file differs from the version last read and has not changed since the previous call. A file that still
+   changes between two calls is being written and may be incomplete. */
 bool file_watch_changed(struct file_watch *watch, const char *path);
 
 #endif

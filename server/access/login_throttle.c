@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts wrong tokens by client address, and delays further attempts of addresses with many. */
+/* Counts wrong tokens per client address, and delays further attempts from addresses that sent too many. */
 #include "access/login_throttle.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, LOG_INTERVAL_NS = 600 * NS_PER_S;
 enum { MAX_KNOWN_TOKENS = 8 };
 
-struct known_token { /* a token that was accepted from this address before */
+struct known_token { /* a token accepted earlier from this address */
     uint8_t hash[TOKEN_HASH_BYTES];
     int64_t said_ns;
 };
@@ -18,10 +18,10 @@ struct known_token { /* a token that was accepted from this address before */
 struct throttle_entry {
     uint8_t address[16];
     int64_t heard_ns;
-    int64_t failed_ns[LOGIN_FAILURES]; /* ring buffer: times of the address's last wrong tokens */
-    int64_t failures;                  /* number of all wrong tokens of the address; modulo LOGIN_FAILURES, the next index in failed_ns */
+    int64_t failed_ns[LOGIN_FAILURES]; /* ring buffer: times of the last wrong tokens from this address */
+    int64_t failures;                  /* wrong tokens of this address in total; modulo LOGIN_FAILURES, the next index in failed_ns */
     int64_t slowed_until_ns, next_try_ns;
-    struct known_token known[MAX_KNOWN_TOKENS]; /* ring buffer: the last tokens that were accepted from this address */
+    struct known_token known[MAX_KNOWN_TOKENS]; /* ring buffer: the last tokens accepted from this address */
     int known_count;
 };
 
@@ -114,7 +114,7 @@ static enum login fail(struct throttle_entry *entry, int64_t now_ns)
     return was_slowed ? LOGIN_WRONG : LOGIN_WRONG_SLOWS;
 }
 
-/* Returns true if the address is slowed and its next token may not be checked yet. */
+/* Returns true if the address is throttled and its next token must not be checked yet. */
 static bool holds(struct throttle_entry *entry, int64_t now_ns)
 {
     bool slowed = now_ns < entry->slowed_until_ns, too_soon = now_ns < entry->next_try_ns;

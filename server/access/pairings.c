@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairs devices that show a wall's display. Devices that wait for approval are in memory only: after a restart each gets new digits. */
+/* Pairs devices that show a wall's display. Waiting devices are kept in memory only, so a restart gives each new digits. */
 #include "access/pairings.h"
 
 #include <openssl/crypto.h>
@@ -24,11 +24,11 @@ struct pending_pairing {
 };
 
 struct pairings {
-    struct kept_list kept; /* content of devices.json, the paired devices: { id, hash, wall, display, from, by, time_us } each */
+    struct kept_list kept; /* content of devices.json, the list of paired devices, each { id, hash, wall, display, from, by, time_us } */
     struct pending_pairing waiting[PAIRINGS];
     size_t count;
     uint64_t number;  /* increases with each change of the list of waiting devices */
-    int64_t wrong_ns; /* monotonic start of the minute in which wrong digits are counted */
+    int64_t wrong_ns; /* monotonic start of the current minute, in which wrong digits are counted */
     int wrong;
 };
 
@@ -84,8 +84,8 @@ enum refusal_code pairings_refusal(const struct pairings *pairings)
 
 /* --- paired devices ------------------------------------------------------------------------------------------------------------- */
 
-/* Finds a device in a list of paired devices by the hash of its secret. Takes the same time for every hash, so that timing reveals
-   nothing about the stored hashes. */
+/* Finds a device in a list of paired devices by the hash of its secret. Takes the same time for every hash, so that the timing
+   reveals nothing about the stored hashes. */
 static const json_t *find_device(const json_t *list, const uint8_t hash[TOKEN_HASH_BYTES])
 {
     char text[HASH_CHARS + 1];
@@ -159,7 +159,7 @@ static struct pending_pairing *find_digits(struct pairings *pairings, const char
     return NULL;
 }
 
-/* Returns the index of the waiting device with that hash of its secret that shows that display; pairings->count if there is none. */
+/* Returns the index of the waiting device that has that hash of its secret and shows that display; pairings->count if there is none. */
 static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     size_t i = 0;
@@ -172,7 +172,7 @@ static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[T
     return i;
 }
 
-/* Draws six random digits that no other waiting device shows. Returns false if the system's random number generator failed. */
+/* Draws six random digits that no other waiting device is showing. Returns false if the system's random number generator failed. */
 static bool draw_digits(struct pairings *pairings, char digits[PAIRING_DIGITS + 1])
 {
     do {
@@ -192,9 +192,9 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
     return from;
 }
 
-/* Frees an entry of the full table of waiting devices, so that a few addresses cannot keep others out. Drops the newest waiting device
-   of the address that has the most, if that is at least two more than `from`, the number of waiting devices of the requesting address.
-   Returns false if no address has that many. */
+/* Frees an entry in the full table of waiting devices, so that a few addresses cannot lock out the others. The address with the
+   most waiting devices loses its newest one, if it has at least two more than the requesting address, which has `from`. Returns
+   false if no address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {
     size_t most = from + 1, victim = pairings->count;
@@ -215,7 +215,7 @@ static bool make_room(struct pairings *pairings, size_t from)
     return true;
 }
 
-/* Adds a device to those that wait for approval. Returns NULL if too many wait, or the system's random number generator failed. */
+/* Adds a device that waits for approval. Returns NULL if too many are waiting or the system's random number generator failed. */
 static struct pending_pairing *begin(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                                      int64_t now_ns)
 {
@@ -234,8 +234,8 @@ static struct pending_pairing *begin(struct pairings *pairings, const uint8_t ha
     return &pairings->waiting[pairings->count++];
 }
 
-/* Returns PAIRING_DONE for a device paired with the requested display, PAIRING_OTHER for one paired with another display, PAIRING_WAITS
-   for a device that is not paired. */
+/* Returns PAIRING_DONE for a device paired with the requested display, PAIRING_OTHER for one paired with another display, and
+   PAIRING_WAITS for an unpaired device. */
 static enum pairing find_paired(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     struct token_holder paired;
@@ -250,8 +250,8 @@ static void tell_digits(const struct pending_pairing *waiting, int64_t now_ns, c
     *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
 }
 
-/* Returns the state of a device that asks for its digits or its approval, and adds it to the waiting devices if it is new. Identifies
-   the device by `hash`, because a request that a renderer forwards does not contain the secret. */
+/* Returns the state of a device that requests its digits or asks whether it is approved; adds the device to the waiting list if
+   it is new. Identifies the device by `hash`, because a request forwarded by a renderer does not contain the secret. */
 static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                         int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
 {
@@ -260,7 +260,7 @@ static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH
         return paired;
     digits[0] = 0;
     *left_s = 0;
-    /* the device was approved, but devices.json with it is not on disk yet: its digits are no longer valid */
+    /* the device was approved, but the devices.json that lists it is not on disk yet; its digits are no longer valid */
     if (find_device(kept_list_newest(&pairings->kept), hash))
         return PAIRING_WAITS;
     forget_old(pairings, now_ns);
@@ -295,8 +295,8 @@ static enum refusal_code keep(struct pairings *pairings, const struct pending_pa
     return kept_list_put(&pairings->kept, list);
 }
 
-/* Returns false if an engineer has entered wrong digits ten times in this minute. With a million possible digits, guessing then takes
-   weeks. */
+/* Returns false if engineers have entered ten wrong sets of digits in this minute. With a million possible sets, guessing then
+   takes weeks. */
 static bool may_try(struct pairings *pairings, int64_t now_ns)
 {
     if (now_ns - pairings->wrong_ns >= WRONG_NS)
@@ -365,7 +365,7 @@ json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
         int left_s;
         hex_print(one->hash, TOKEN_HASH_BYTES, hash);
         tell_digits(one, now_ns, digits, &left_s);
-        if (left_s <= 0) /* skips a waiting device whose digits have expired; the next request for pairing removes its entry */
+        if (left_s <= 0) /* skips a waiting device whose digits have expired; the next pairing request removes its entry */
             continue;
         json_array_append_new(waiting, json_pack("{s:s,s:s,s:s,s:i,s:i}", "hash", hash, "digits", digits, "wall", one->place.wall,
                                                  "display", one->place.display, "left_s", left_s));

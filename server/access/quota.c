@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of limits on clients and on programs that read models: names, defaults and ranges. */
+/* The table of limits on clients and on model-reading programs: names, defaults and ranges. */
 #include "access/quota.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quotas: limits on what clients and programs that read models may use (option --limit NAME=N). No input or output except
+/* Quotas: limits on the resources of clients and of model-reading programs (option --limit NAME=N). No input or output except
    quotas_print(). Thread: any. */
 #ifndef ACCESS_QUOTA_H
 #define ACCESS_QUOTA_H
@@ -36,7 +36,7 @@ enum quota {
 
 struct quotas {
     int64_t at[QUOTA_COUNT];
-    /* true: the limit was set on the command line. A limit per address that is set there also applies to clients on this machine */
+    /* true: the limit was set on the command line. A per-address limit set there also applies to clients on this machine */
     bool given[QUOTA_COUNT];
 };
 

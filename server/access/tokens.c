@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the file of tokens, and finds the holder of a token. */
+/* Reads the token file, and finds the holder of a token. */
 #include "access/tokens.h"
 
 #include <ctype.h>
@@ -26,11 +26,11 @@ enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
 
 struct tokens {
     struct log *log;
-    char *path, *plant; /* path of the file of tokens; name of this plant, NULL: not known */
+    char *path, *plant; /* path of the token file; name of this plant, NULL: not known */
     struct token_holder *holders;
     size_t count, capacity;
     struct file_watch watch;
-    tokens_find_device *find_device; /* finds paired devices of walls by their secrets; NULL: there are none */
+    tokens_find_device *find_device; /* looks up paired wall devices by their secrets; NULL: there are none */
     const void *pairings;
 };
 
@@ -42,7 +42,7 @@ void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES])
         memset(hash, 0, TOKEN_HASH_BYTES);
 }
 
-/* Makes a random token. Its prefix distinguishes it from its hash, for users and for tools that search files for secrets. */
+/* Generates a random token. Its prefix distinguishes it from its hash, for users and for tools that scan files for secrets. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1])
 {
     uint8_t bytes[RANDOM_BYTES];
@@ -99,7 +99,7 @@ bool tokens_may_see(const struct token_holder *holder, const char *view)
     size_t length = strlen(view);
     for (const char *at = holder->views; *at; at += at[strcspn(at, ",")] ? strcspn(at, ",") + 1 : strlen(at))
         if (!strncmp(at, view, length) && (at[length] == ',' || !at[length]))
-            return named_view_id_valid(view); /* the id must be a single one: a comma-separated list could match a part of holder->views */
+            return named_view_id_valid(view); /* accepts only one id: a comma-separated list could match part of holder->views */
     return !holder->views[0];
 }
 
@@ -112,10 +112,10 @@ bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
         return false;
     int64_t begin_s = timegm(&day);
     *until_utc_ns = (begin_s + 24 * 3600) * NS_PER_S;
-    return day.tm_mday == said; /* refuses dates such as 30 February, which strptime accepts but timegm turns into another day */
+    return day.tm_mday == said; /* refuses dates such as 30 February, which strptime accepts but timegm turns into another date */
 }
 
-/* Cuts the last part of a line, `plant NAME`, off and writes NAME to `plant`; NAME may contain blanks. Returns false if NAME is invalid. */
+/* Cuts the final `plant NAME` off a line and copies NAME to `plant`; NAME may contain blanks. Returns false if NAME is invalid. */
 static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
 {
     static const char key[] = " plant ";
@@ -124,7 +124,7 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
     while (n > 0 && strchr(" \t", line[n - 1]))
         line[--n] = 0;
     for (char *next = line; (next = strstr(next, key)); next++)
-        /* looks for the keyword only after the hash, because the holder's name, before the hash, may contain it */
+        /* searches for the keyword only after the hash, because the holder's name in front of it may contain the keyword */
         at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at;
     if (!at)
         return true;
@@ -217,7 +217,7 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
 
 /* --- the file --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the reason why the file of tokens may not be used, judged by its type, owner, mode and size; NULL: it may be used. */
+/* Returns why the token file must not be used, judging by its type, owner, mode and size; NULL: it may be used. */
 static const char *fault_of(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))
@@ -249,8 +249,8 @@ static void take_lines(struct tokens *tokens, char *text)
         take_line(tokens, line, ++number);
 }
 
-/* Reads the file of tokens. Checks owner and mode of the descriptor from which it reads, so that nobody can exchange the file in
-   between. Returns false on failure, logged. */
+/* Reads the token file. Checks owner and mode of the open descriptor, so that nobody can swap the file between check and read.
+   Returns false on failure, logged. */
 static bool read_file(struct tokens *tokens)
 {
     struct stat st = { 0 };
@@ -328,8 +328,8 @@ static bool is_for_us(const struct tokens *tokens, const struct token_holder *ho
     return !holder->plant[0] || !tokens->plant || !strcmp(holder->plant, tokens->plant);
 }
 
-/* Finds the holder of a token by the token's hash; if the file has the hash twice, the holder whose token has not expired. Takes the
-   same time for every hash, so that timing reveals nothing about the stored hashes. */
+/* Finds the holder of a token by the token's hash. If the file lists the hash twice, returns the holder whose token has not
+   expired. Takes the same time for every hash, so that the timing reveals nothing about the stored hashes. */
 static const struct token_holder *find(const struct tokens *tokens, const uint8_t hash[TOKEN_HASH_BYTES], int64_t now_utc_ns)
 {
     const struct token_holder *found = NULL;

@@ -32,19 +32,19 @@ struct alarm_service {
     struct alarm_event_queue taken;
     struct snapshot *snapshot;
     int64_t counted_ns;
-    int raised[RATE_SLOTS]; /* ring buffer: number of alarms raised in each time slot of RATE_NS / RATE_SLOTS */
+    int raised[RATE_SLOTS]; /* ring buffer: number of alarms raised in each time slot of RATE_NS / RATE_SLOTS nanoseconds */
     int64_t slot;
-    pthread_mutex_t queue_lock; /* lock of the queue of samples; a thread that holds the store's lock may take it */
+    pthread_mutex_t queue_lock; /* lock of the sample queue; may be taken while holding the store's lock */
     /* --- below: protected by queue_lock */
     struct alarm_event_queue queue;
-    struct thread thread; /* contains the lock of the alarms; a thread that holds this lock may take the store's lock */
+    struct thread thread; /* contains the lock of the alarms; the store's lock may be taken while holding it */
     /* --- below: protected by thread.lock */
     struct alarms *alarms;
     int raised_now;
     struct journal_entry *rows; /* ring buffer of the newest journal rows; NULL: there is no journal */
-    uint64_t row_count;         /* number of journal rows since the start, including those no longer in the ring buffer */
-    bool ending, lost;          /* ending: the journal is being closed; lost: it was closed although some rows are not on disk */
-    void (*changed)(void *arg); /* callback after alarms have changed; NULL: nobody listens */
+    uint64_t row_count;         /* number of journal rows since the start, including those overwritten in the ring buffer */
+    bool ending, lost;          /* ending: the journal is being closed; lost: it was closed before all rows were on disk */
+    void (*changed)(void *arg); /* callback after alarms have changed; NULL: no listener */
     void *changed_arg;
 };
 
@@ -132,7 +132,7 @@ static void keep_all(struct alarm_service *service)
     }
 }
 
-/* Writes to the journal the present state of every alarm that has changed since alarms_number() was `number`. */
+/* Writes the current state of every alarm to the journal that has changed since alarms_number() was `number`. */
 static void keep_since(struct alarm_service *service, uint64_t number)
 {
     for (int i = service->journal ? alarms_newest(service->alarms) : -1; i >= 0; i = alarms_at(service->alarms, i)->older) {
@@ -143,7 +143,7 @@ static void keep_since(struct alarm_service *service, uint64_t number)
     }
 }
 
-/* Calls the listeners if any alarm has changed since the last call. number: present change number of the alarms. */
+/* Calls the listeners if any alarm has changed since the last call. number: current change number of the alarms. */
 static void tell(struct alarm_service *service, uint64_t number)
 {
     if (atomic_exchange(&service->number, number) == number)
@@ -410,7 +410,7 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    /* keeps the row in memory: when the former leader returns as a standby, it may lack the row */
+    /* keeps the row in memory: the former leader may lack it when it returns as a standby */
     service->rows[++service->row_count % MAX_ROWS] = *row;
     pthread_mutex_unlock(&service->thread.lock);
 }

@@ -12,7 +12,7 @@ const char *alarm_event_name(enum alarm_event event)
     return event_names[event];
 }
 
-/* Makes an alarm demand attention: it must be acknowledged, and it is latched if its rule says so. */
+/* Makes an alarm require acknowledgement, and latches it if its rule says so. */
 static void call(struct alarm_state *state, const struct alarm_rule *rule)
 {
     state->unacknowledged = rule->acknowledges;
@@ -70,8 +70,8 @@ static enum alarm_outcome set_aside(struct alarm_state *state, int how)
     return ALARM_CHANGED;
 }
 
-/* Ends one reason for which the alarm is not shown: suppressed, shelved or out of service. An alarm that is active and has no such
-   reason left is shown as if it were new. */
+/* Ends one reason for hiding the alarm: suppressed, shelved or out of service. If the alarm is active and no reason remains, it
+   is shown as if it were new. */
 static enum alarm_outcome bring_back(struct alarm_state *state, const struct alarm_rule *rule, int how)
 {
     if (!(state->aside & how))

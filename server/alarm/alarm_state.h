@@ -12,8 +12,8 @@ enum alarm_event {
     ALARM_CLEAR,
     ALARM_ACKNOWLEDGE,
     ALARM_RESET,    /* resets a latched alarm */
-    ALARM_SHELVE,   /* silences the alarm for a time; also allowed for a shelved alarm, to change when shelving ends */
-    ALARM_UNSHELVE, /* ends shelving, by hand or because the shelving time is over */
+    ALARM_SHELVE,   /* silences the alarm for a time; also valid for a shelved alarm, to change when its shelving ends */
+    ALARM_UNSHELVE, /* ends shelving, either on an operator's request or because its time is over */
     ALARM_SUPPRESS,
     ALARM_UNSUPPRESS,
     ALARM_TAKE_OUT, /* an operator takes the alarm out of service */
@@ -29,20 +29,20 @@ struct alarm_state {     /* state of one alarm; all zero: normal */
     bool active;         /* true: the alarm's cause is present */
     bool unacknowledged; /* true: an operator must still acknowledge the alarm */
     bool latched;
-    uint8_t aside; /* bit mask of ALARM_ASIDE_...: reasons why the alarm is not shown to operators as active; 0: it is */
+    uint8_t aside; /* bit mask of ALARM_ASIDE_...: reasons why operators are not shown the alarm as active; 0: they are */
 };
 
 struct alarm_rule {
     bool acknowledges; /* true: operators must acknowledge the alarm; false: the alarm is either active or normal */
     bool latches;
     bool forgets; /* true: the alarm becomes normal when its cause ends, even if nobody has acknowledged it */
-    /* true: if the alarm is raised now, it is suppressed, because the alarm of the tag's device already reports the failure */
+    /* true: if the alarm is raised now, it is suppressed, because the device's alarm already reports the failure */
     bool carried;
 };
 
 enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* the present state does not allow the event */ };
 
-/* Applies an event to an alarm's state. Returns whether the state changed, remained the same, or does not allow the event. */
+/* Applies an event to an alarm's state. Returns whether the state changed, stayed the same, or does not allow the event. */
 enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alarm_rule *rule, enum alarm_event event);
 /* Returns the alarm's state as one of the states of ISA-18.2. */
 enum alarm_status alarm_state_status(const struct alarm_state *state, const struct alarm_rule *rule);

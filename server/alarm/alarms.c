@@ -95,9 +95,9 @@ static bool never_stale(const struct alarms *alarms, size_t tag)
     return alarms->plant->tags[tag].validity.stale_s >= PLANT_NEVER_STALE_S;
 }
 
-/* Creates the LINK alarm of every device (raised when the device does not answer). Its delay comes from those tags of the device that
-   have a BAD alarm (raised when the value is Bad), or from all its tags if none has one. A source that replays a file ends normally, so
-   it gets a LINK alarm only if one of its tags has a BAD alarm. */
+/* Creates the LINK alarm of every device (raised when the device does not answer). Its delay comes from those tags of the
+   device that have a BAD alarm (raised when the value is Bad), or from all its tags if none has one. A replayed file ends
+   normally, so its source gets a LINK alarm only if one of its tags has a BAD alarm. */
 static void add_links(struct alarms *alarms)
 {
     const struct plant *plant = alarms->plant;
@@ -115,8 +115,8 @@ static void add_links(struct alarms *alarms)
         if (device && (device->alarm < 0 || device->alarm >= (int)with_bad) && !(kind && !strcmp(kind, "replay")))
             add_link(alarms, device, (int)i, LINK_DELAY_NS);
     }
-    /* a device with a tag that never becomes stale gets a delay of at least LINK_DELAY_NS, so that short losses of the connection raise
-       no alarm */
+    /* the device has a tag that never becomes stale: LINK_DELAY_NS as the minimum delay keeps short connection losses from
+       raising the alarm */
     for (size_t i = 0; i < tag_count; i++) {
         struct alarm *link = of_tag[i] < 0 || list[of_tag[i]].alarm < 0 ? NULL : &alarms->list[list[of_tag[i]].alarm];
         if (link && never_stale(alarms, i) && link->delays.on_ns < LINK_DELAY_NS)
@@ -145,8 +145,8 @@ static enum alarm_kind kind_of(const struct plant_mirror *mirror)
     return mirror->limit == LIMIT_COUNT ? ALARM_ON : (enum alarm_kind)(1 + mirror->limit);
 }
 
-/* Creates alarms for the bit tags that report alarms of another alarm system. `mirrors` has the indices of these tags; each bit's alarm
-   belongs to the tag that the bit is about. A bit whose own quality is Bad raises the alarm as well. */
+/* Creates alarms for the bit tags that report alarms of another alarm system. `mirrors` has the indices of these tags; a bit's
+   alarm belongs to the tag that the bit is about. A bit of Bad quality raises the alarm as well. */
 static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count)
 {
     const struct plant *plant = alarms->plant;
@@ -208,8 +208,8 @@ static int by_tag_and_kind(const void *pa, const void *pb, void *list_ptr)
     return a->tag != b->tag ? a->tag - b->tag : (int)a->kind - (int)b->kind;
 }
 
-/* Builds the index by tag of alarms and feeds (a feed says which tag's samples an alarm depends on). The entries of tag t have the
-   positions from first_alarm[t] to first_alarm[t + 1] - 1, or from first_feed[t] to first_feed[t + 1] - 1. */
+/* Builds the index by tag of alarms and feeds (a feed says which tag's samples an alarm depends on). Tag t owns the positions
+   first_alarm[t] to first_alarm[t + 1] - 1 of by_tag, and first_feed[t] to first_feed[t + 1] - 1 of feeds. */
 static void index_all(struct alarms *alarms)
 {
     size_t tags = alarms->plant->tag_count;
@@ -365,8 +365,8 @@ static enum alarm_outcome step(struct alarms *alarms, int index, const struct al
     return outcome;
 }
 
-/* Copies an acknowledgement in the other alarm system, from which this alarm is mirrored: the alarm is acknowledged while the other
-   system's bit says so. If the bit is cleared while the alarm is active, the alarm is unacknowledged again. */
+/* Mirrors the acknowledgement of the other alarm system: the alarm is acknowledged while the other system's bit says so. If the
+   bit is cleared while the alarm is active, the alarm becomes unacknowledged again. */
 static void follow_acknowledgement(struct alarms *alarms, int index, struct instant at)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -381,8 +381,7 @@ static void follow_acknowledgement(struct alarms *alarms, int index, struct inst
     step(alarms, index, &change, at.mono_ns);
 }
 
-/* Returns the device that is lost as a whole and whose LINK alarm (the device does not answer) therefore replaces this BAD alarm of one
-   of its tags. NULL: none. */
+/* Returns the lost device whose LINK alarm (the device does not answer) replaces this BAD alarm of one of its tags; NULL: none. */
 static const struct alarm_device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
 {
     int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;
@@ -405,7 +404,7 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     follow_acknowledgement(alarms, index, at);
 }
 
-/* If a delay of the alarm is over by now, ends it, with the time at which it was over. */
+/* If a delay of the alarm is over, ends it as of the time when it was over. */
 static void advance(struct alarms *alarms, int index, struct instant now)
 {
     struct alarm *alarm = &alarms->list[index];
@@ -481,8 +480,8 @@ static void put_sample(struct alarms *alarms, const struct feed *feed, const str
 
 /* --- devices ---------------------------------------------------------------------------------------------------------------- */
 
-/* Suppresses unacknowledged BAD alarms of a device's tags that were raised before the device was known to be lost as a whole, because
-   the device's LINK alarm now reports the failure. */
+/* The device is now known to be lost as a whole, and its LINK alarm reports the failure: suppresses the unacknowledged BAD
+   alarms that its tags raised before. */
 static void carry_all(struct alarms *alarms, const struct alarm_device *device, struct instant now)
 {
     for (size_t i = 0; i < alarms->count; i++) {
@@ -508,8 +507,8 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
     }
 }
 
-/* Returns true if a tag whose BAD alarm was suppressed for its device's LINK alarm needs its own alarm again: the device sends readings
-   of other tags, but this tag has had none for its stale time. */
+/* Returns true if a tag whose BAD alarm was suppressed in favour of its device's LINK alarm needs its own alarm again: the
+   device sends readings of other tags, but none of this tag for its stale time. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
@@ -527,8 +526,8 @@ static void call_those_left(struct alarms *alarms, struct instant now)
     }
 }
 
-/* Returns what a tag's quality says about the tag's device. A tag that never becomes stale keeps its last value as usable while the
-   device is lost, so for that tag the quality "no communication, last usable value" counts as lost. */
+/* Returns what a tag's quality says about the tag's device. A tag that never becomes stale stays usable with its last value
+   while the device is lost; for such a tag the quality "no communication, last usable value" counts as lost. */
 static enum device_status status_of(const struct alarms *alarms, size_t tag, uint32_t quality)
 {
     bool lost = quality == QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE && never_stale(alarms, tag);
@@ -565,7 +564,7 @@ static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
     return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;
 }
 
-/* Returns true if no sample event is needed for a tag's present quality: no alarm depends on the tag, or the quality is unchanged. */
+/* Returns true if a tag's current quality needs no sample event: no alarm depends on the tag, or the quality is unchanged. */
 static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
 {
     const struct last_sample *seen = &alarms->seen[tag];
@@ -578,7 +577,7 @@ static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32
     return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == status_of(alarms, tag, quality));
 }
 
-/* Creates and evaluates sample events for tags that became stale since their last sample, or that have waited too long for a first one. */
+/* Creates and evaluates sample events for tags that became stale after their last sample, or lack a first one for too long. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
 {
     size_t count = 0;

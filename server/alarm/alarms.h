@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All alarms of a plant, driven by samples, time and operators' actions. No input or output: time is an argument, and changes are
-   reported to a listener. Thread: one at a time. */
+/* All alarms of a plant, driven by samples, time and operators' actions. No input or output: the caller passes the time, and a
+   listener receives the changes. Thread: one at a time. */
 #ifndef ALARM_ALARMS_H
 #define ALARM_ALARMS_H
 #include <stddef.h>
@@ -27,7 +27,7 @@ struct alarm {
     double limit; /* limit beyond which the tag's value raises the alarm; NaN: the alarm has no limit */
     struct alarm_rule rule;
     struct alarm_state state;
-    /* true: the other alarm system, from which this alarm is mirrored, reports the alarm as acknowledged */
+    /* true: the other alarm system, which this alarm mirrors, reports the alarm as acknowledged */
     bool acknowledged_there;
     bool held;                                              /* true: the tag's value is Bad, so the alarm keeps its last state */
     double value;                                           /* the tag's value when the alarm was raised; NaN: no value */
@@ -35,15 +35,15 @@ struct alarm {
     int64_t changed_utc_ns;                                 /* UTC time when the alarm's state last changed */
     struct instant until;                                   /* when shelving of the alarm ends; 0: the alarm is not shelved */
     char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES]; /* operator who last acted on the alarm, and the reason given; empty: none */
-    uint64_t number; /* number that the alarm's last change has among the changes of all alarms of the plant; 0: the alarm never changed */
+    uint64_t number; /* change number (among all alarms of the plant) of this alarm's last change; 0: the alarm never changed */
     /* --- below: private to alarms*.c */
     struct condition condition;
     struct condition_delays delays;
-    /* raised_mono_ns: monotonic time when the alarm was last raised; recent_ns: ring buffer with the times when it was last raised */
+    /* raised_mono_ns: monotonic time when the alarm was last raised; recent_ns: ring buffer of the last such times */
     int64_t raised_mono_ns, recent_ns[ALARM_RECENT];
     unsigned raised_count;
     int older, newer; /* indices of the neighbours in the list of alarms sorted by last change; -1: none */
-    bool timed;       /* true: the passing of time alone may change the alarm, so its index is in alarms->timed */
+    bool timed;       /* true: the alarm can change by the passing of time alone, so its index is in alarms->timed */
 };
 
 /* One change of one alarm, as alarms_listener receives it. */
@@ -58,20 +58,20 @@ struct alarm_change {
 
 struct alarms_listener {
     void (*changed)(void *arg, const struct alarm_change *change);
-    /* called when a tag's most urgent alarm is a different one now, or has a new state */
+    /* called when another alarm becomes a tag's most urgent one, or that alarm's state changes */
     void (*of_tag)(void *arg, int tag, enum alarm_kind kind, enum alarm_status status);
     void *arg;
 };
 
 struct alarms;
-/* Creates the alarms of a plant, all normal. `plant` must outlive them; the listener is copied. Never returns NULL. */
+/* Creates the alarms of a plant, all normal. `plant` must outlive the alarms; the listener is copied. Never returns NULL. */
 struct alarms *alarms_create(const struct plant *plant, const struct alarms_listener *listener);
 void alarms_destroy(struct alarms **alarms); /* frees the alarms and sets *alarms to NULL; accepts a pointer to NULL */
 
 /* Evaluates sample events of the store, in the order of the array. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count);
-/* Applies the passing of time: ends delays and shelving. Readings in `now` that have become stale count as Bad samples, because no event
-   reports that. */
+/* Applies the passing of time: ends delays and shelving. Readings in `now` that have become stale count as Bad samples, because
+   no event reports them. */
 void alarms_tick(struct alarms *alarms, const struct snapshot *now);
 
 struct alarm_act {
@@ -91,17 +91,17 @@ int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_
 const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm);
 enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the alarm's state as one of the words of ISA-18.2 */
 uint64_t alarms_number(const struct alarms *alarms);          /* returns the number of alarm changes so far */
-/* Returns the index of the alarm that changed last, or -1 if none has changed; its member `older` is the index of the alarm that changed
-   before. */
+/* Returns the index of the alarm that changed last, or -1 if none has changed; the alarm's member `older` is the index of the
+   one that changed before it. */
 int alarms_newest(const struct alarms *alarms);
 
 struct alarm_counts {
     int statuses[ALARM_STATUSES];
-    int active;     /* number of alarms that are shown to operators while their cause is present */
-    int standing;   /* number of alarms that have been active for longer than a day; these are also counted in `active` */
+    int active;     /* number of alarms whose cause is present and that are shown to operators */
+    int standing;   /* number of alarms in `active` that have been active for longer than a day */
     int chattering; /* number of alarms raised three times or more within the last minute */
     int held;
-    int priorities[ALARM_PRIORITIES]; /* numbers of alarms shown to operators by priority; index 0 is priority 1 */
+    int priorities[ALARM_PRIORITIES]; /* number of alarms shown to operators, by priority; index 0 is priority 1 */
 };
 #define ALARM_STANDING_NS (86400 * INT64_C(1000000000))
 #define ALARM_CHATTERING_NS (60 * INT64_C(1000000000))
@@ -109,18 +109,18 @@ struct alarm_counts {
 void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alarm_counts *out);
 
 /* --- restoring --- */
-/* Converts an alarm's value or limit from the unit `was` to the unit `is`; NaN if the units cannot be converted. A blank unit fits every
-   unit. */
+/* Converts an alarm's value or limit from the unit `was` to the unit `is`; NaN if the units cannot be converted. A blank unit
+   matches every unit. */
 double alarm_value_in_unit(double value, const char *was, const char *is);
-/* Sets an alarm to a state that was saved in the journal. Calls the listener's of_tag() (the most urgent alarm of the tag), but not
-   changed(). Drops parts of the state that the plant's present alarm settings do not have. */
+/* Sets an alarm to a state that was saved in the journal. Calls the listener's of_tag() (the tag's most urgent alarm), but not
+   changed(). Drops parts of the state for which the plant's alarm settings no longer provide. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);
 /* Sets alarms, found by name and kind, to the states of another daemon, in the order of `list`. whole: all alarms that are not in `list`
    become normal. Returns false if an alarm does not exist; then nothing changed. */
 bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
 /* Ends mirroring of another daemon's alarms. Each alarm keeps its mirrored state until its tag's next sample. */
 void alarms_lead(struct alarms *alarms, struct instant now);
-/* After a reload: takes over states and running delays of the old plant's alarms, for alarms with the same name and kind. */
+/* After a reload: copies states and running delays from the old plant's alarms to alarms of the same name and kind. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Derives the alarms at a past time from the alarm journal, and sets them in a snapshot of history. */
+/* Derives the alarms at a past time from the alarm journal, and sets them in a historical snapshot. */
 #include "alarm/alarms_at_instant.h"
 
 #include "alarm/journal.h"

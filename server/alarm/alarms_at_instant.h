@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms at a past time: from the alarm journal or, for times before the journal begins, from the present limits. */
+/* Alarms at a past time: from the alarm journal or, for times before the journal begins, from the current limits. */
 #ifndef ALARM_ALARMS_AT_INSTANT_H
 #define ALARM_ALARMS_AT_INSTANT_H
 #include "base/log/log.h"
@@ -7,9 +7,9 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-/* Sets the alarms in a snapshot of history to those of the time snapshot->taken_utc_ns; sets none for a time when nothing was recorded.
-   folder: folder of the alarm journal; reader: reader of the history in that folder. Returns 0 or -errno (logged). Thread: that of the
-   reader. */
+/* Sets the alarms in a historical snapshot to those at the time snapshot->taken_utc_ns; sets none if nothing was recorded at
+   that time. folder: folder of the alarm journal; reader: reader of the history in that folder. Returns 0 or -errno (logged).
+   Thread: that of the reader. */
 int alarms_at_instant(struct log *log, struct history_reader *reader, const char *folder, const struct plant *plant,
                       struct snapshot *snapshot);
 

@@ -6,7 +6,7 @@
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* a feed: says that an alarm depends on the samples of a tag, and in which role */
+struct feed { /* says in which role an alarm depends on a tag's samples */
     int tag, alarm;
     enum feed_role role;
 };
@@ -28,11 +28,11 @@ struct alarms {
     struct feed *feeds; /* which alarms depend on the samples of which tag; sorted by tag */
     size_t feed_count, feed_capacity;
     int *by_tag; /* indices in `list` of all alarms, sorted by tag */
-    /* by index of the tag, with one extra element at the end: position of the tag's first entry in `feeds`, and in by_tag */
+    /* [tag], with one extra element at the end: position of the tag's first entry in `feeds` and in by_tag */
     int *first_feed, *first_alarm;
     struct last_sample *seen;
     struct devices *devices;
-    struct sample_event *noticed; /* scratch memory of alarms_tick(): sample events that it creates, at most one for each tag */
+    struct sample_event *noticed; /* scratch buffer of alarms_tick(): the sample events that it creates, at most one per tag */
     struct gravest *gravest;
     int *timed; /* indices of the alarms that time alone can change: those with a running delay and shelved ones */
     size_t timed_count, timed_capacity;
@@ -43,6 +43,6 @@ struct alarms {
 };
 
 void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the next change number, because its state has changed */
-void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if the passing of time alone can change it */
+void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if it can change by the passing of time alone */
 
 #endif

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Restores alarm states of an earlier run, of the plant before a reload, or of another daemon. Also counts alarms by state. */
+/* Restores alarm states from an earlier run, from the plant before a reload, or from another daemon. Also counts alarms by state. */
 #include <math.h>
 #include <string.h>
 
 #include "alarm/alarms_impl.h"
 #include "base/mem.h"
 
-/* Adapts a restored alarm state to the plant's alarm settings. If operators cannot act on alarms (by_hand false), shelving and
-   out-of-service are dropped, because no operator could end them. */
+/* Adapts a restored alarm state to the plant's alarm settings. If operators cannot act on alarms (by_hand false), drops the
+   states shelved and out of service, because no operator could end them. */
 static void fit_to_rule(struct alarm *alarm, bool by_hand)
 {
     if (!alarm->rule.acknowledges)
@@ -45,7 +45,7 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
 {
     struct alarm from = *saved;
-    if (from.until.utc_ns) /* if the shelving time is over already, shelving ends 1 ns from now, so that the next alarms_tick() ends it */
+    if (from.until.utc_ns) /* if the shelving time is already over, ends shelving in 1 ns, that is in the next alarms_tick() */
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
     /* the alarm keeps its restored state until its tag's next sample, except BAD and LINK alarms */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
@@ -58,7 +58,7 @@ static bool same_limit(const struct alarm *a, const struct alarm *b)
     return !memcmp(&a->limit, &b->limit, sizeof(a->limit)) && !memcmp(&a->delays, &b->delays, sizeof(a->delays));
 }
 
-/* Takes over the newest sample of each tag, and the states of devices, from the alarms of the old plant. */
+/* Copies the newest sample of each tag, and the states of devices, from the alarms of the old plant. */
 static void adopt_seen(struct alarms *alarms, const struct alarms *before)
 {
     for (size_t i = 0; i < before->plant->tag_count; i++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The condition of an alarm: a limit with a deadband, and with delays before it becomes active (on delay) and inactive (off delay). When
-   the condition changes depends only on the samples and their times, not on how often it is evaluated. No input or output; times are
-   monotonic. Thread: any. */
+/* The condition of an alarm: a limit with a deadband, and with delays before it becomes active (on delay) and inactive (off
+   delay). Changes depend only on the samples and their times, not on how often the condition is evaluated. No input or output;
+   times are monotonic. Thread: any. */
 #ifndef ALARM_CONDITION_H
 #define ALARM_CONDITION_H
 #include <stdbool.h>
@@ -11,9 +11,9 @@
 
 struct condition { /* zero-initialised: an inactive condition without a running delay */
     bool active;
-    /* which delay is running: none, the on delay (before the condition becomes active), the off delay */
+    /* which delay is running: none, the on delay (before the condition becomes active), or the off delay */
     enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending;
-    int64_t since_ns; /* monotonic time when the delay of the condition began */
+    int64_t since_ns; /* monotonic time when the running delay began */
 };
 
 struct condition_delays {
@@ -22,14 +22,14 @@ struct condition_delays {
 
 enum condition_side { CONDITION_CLEAR, CONDITION_BETWEEN /* within the deadband of the limit */, CONDITION_BEYOND };
 
-/* Returns on which side of the limit a value is. */
+/* Returns the side of the limit on which a value lies. */
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value);
-/* Ends a running delay that is over at now_ns. Returns true if one ended, so that the condition changed; *at_ns receives the time at
-   which the delay was over. */
+/* Ends a delay that is over at now_ns. Returns true if one ended, so that the condition changed; *at_ns receives the time when
+   it was over. */
 bool condition_advance(struct condition *condition, const struct condition_delays *delays, int64_t now_ns, int64_t *at_ns);
-/* Applies a sample to the condition. side: of the sample's value. Call condition_advance() with the sample's time first. Returns true if
-   the condition changed. */
+/* Applies a sample to the condition. side: side of the limit on which the sample's value lies. Call condition_advance() with
+   the sample's time first. Returns true if the condition changed. */
 bool condition_put(struct condition *condition, const struct condition_delays *delays, enum condition_side side, int64_t now_ns);
-void condition_hold(struct condition *condition); /* stops a running delay, because the tag's value is unknown from now on */
+void condition_hold(struct condition *condition); /* cancels a running delay, because the tag's value is unknown from now on */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds out which device each tag is read from, and keeps the status of each device. */
+/* Determines the device from which each tag is read, and tracks the status of each device. */
 #include "alarm/devices.h"
 
 #include <string.h>
@@ -7,8 +7,8 @@
 #include "base/mem.h"
 #include "value/quality.h"
 
-/* Returns the index of the device with that source and unit, or -1. Searches from the newest device back, because tags of one device
-   mostly follow each other. */
+/* Returns the index of the device with that source and unit, or -1. Searches backwards from the newest device, because tags of
+   one device are usually adjacent. */
 static int find(const struct devices *devices, int source, int unit)
 {
     int i = (int)devices->count - 1;

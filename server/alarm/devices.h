@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The devices from which tags are read: each unit of each source. A device that does not answer raises one alarm, instead of one for
-   each of its tags. No input or output. Thread: one at a time. */
+/* The devices from which tags are read: each unit of each source. A device that does not answer raises one alarm instead of one
+   per tag. No input or output. Thread: one at a time. */
 #ifndef ALARM_DEVICES_H
 #define ALARM_DEVICES_H
 #include "plant/plant.h"
@@ -14,14 +14,14 @@ struct alarm_device {
     int usable, gone; /* number of the device's tags with status DEVICE_USABLE, and with DEVICE_GONE */
     int64_t back_ns;  /* monotonic time since which a tag of the device has been usable; 0: none is */
     int alarm;        /* index of the device's LINK alarm, which is raised when the device does not answer; -1: none */
-    bool changed;     /* true: the status of one of its tags changed since alarms.c last evaluated the device */
+    bool changed;     /* true: the status of a tag of the device changed since alarms.c last evaluated the device */
 };
 
 struct devices {
     struct alarm_device *list;
     size_t count, capacity;
-    int *of_tag;       /* by index of the tag: index of its device in `list`; -1: none */
-    uint8_t *statuses; /* by index of the tag: its enum device_status */
+    int *of_tag;       /* [tag]: index of the tag's device in `list`; -1: none */
+    uint8_t *statuses; /* [tag]: enum device_status that the tag gives its device */
 };
 
 /* Lists the devices of the plant; `plant` must outlive the result. Never returns NULL. */
@@ -32,9 +32,9 @@ int devices_find(const struct devices *devices, const char *name); /* returns th
 
 /* Returns what a tag's quality says about the tag's device. */
 enum device_status device_status_of(uint32_t quality);
-/* Records the status that a tag gives its device from mono_ns on. */
+/* Records the status that a tag reports for its device from mono_ns on. */
 void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns);
-/* Returns true if the device does not answer as a whole: no tag is usable, and the status of at least one is DEVICE_GONE. */
+/* Returns true if the device as a whole does not answer: none of its tags is usable, and at least one has the status DEVICE_GONE. */
 bool device_is_lost(const struct alarm_device *device);
 
 #endif

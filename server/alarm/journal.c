@@ -62,7 +62,7 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
         journal->forgot_ns = mono_ns;
         error = journal_file_forget(journal->file, clock_utc_ns() / 1000 - (int64_t)(journal->keep_days * (double)US_PER_DAY));
     }
-    if (error) /* closes the file after an error: opening it again before the next write detects damage */
+    if (error) /* closes the file after an error, so that reopening it before the next write detects damage */
         journal_file_close(&journal->file);
     return error;
 }
@@ -75,7 +75,7 @@ static void count_written(struct journal *journal, size_t count, int error)
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
-/* Writes the journal rows that were taken from the queue. now: write even if the retry delay after a failure is not over. */
+/* Writes the journal rows taken from the queue. now: write even if the retry delay after a failure is not over. */
 static void try_to_write(struct journal *journal, bool now)
 {
     int64_t mono_ns = clock_mono_ns();
@@ -116,8 +116,8 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits until there are journal rows to write, and at least GATHER_NS, so that one transaction writes the rows of that time. Returns
-   earlier if journal_end() was called; *urgent tells whether it was. Returns false once the thread must end. */
+/* Waits until there are journal rows to write, and for at least GATHER_NS, so that one transaction writes all rows of that
+   period. Returns earlier if journal_end() was called, and tells so in *urgent. Returns false once the thread must end. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;
@@ -263,7 +263,7 @@ static void restore(void *arg, const char *tag, const char *unit, const struct a
     alarms_restore(restoring->alarms, index, &saved, restoring->now);
 }
 
-/* Restores the alarm states from the journal's file. Restores none from a damaged file, which the thread renames before it writes. */
+/* Restores the alarm states from the journal's file. Skips a damaged file, which the thread renames before it writes. */
 static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
 {
     struct restoring restoring = { alarms, now };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The alarm journal, alarms.sqlite in the history folder: one row for each change of an alarm, and the present state of each alarm. A
-   thread of its own writes rows within 0.25 s. Rows that cannot be written stay in memory up to a limit and are retried. ALARMS.md
-   describes the tables. */
+/* The alarm journal, alarms.sqlite in the history folder: one row for each change of an alarm, and the current state of each
+   alarm. A thread of its own writes rows within 0.25 s. Rows that cannot be written stay in memory, up to a limit, and are
+   retried. ALARMS.md describes the tables. */
 #ifndef ALARM_JOURNAL_H
 #define ALARM_JOURNAL_H
 #include "alarm/journal_file.h"
@@ -16,16 +16,16 @@ struct journal_params {
     double keep_days;
 };
 
-/* Opens the journal, restores the states of `alarms` from it, and starts the thread that writes it. A damaged file is renamed. Returns
-   NULL if the thread cannot start (logged). */
+/* Opens the journal, restores the states of `alarms` from it, and starts the thread that writes the journal. A damaged file is
+   renamed. Returns NULL if the thread cannot start (logged). */
 struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now);
 /* Writes pending rows and ends the thread. Accepts a pointer to NULL; sets *journal to NULL. Returns true if all rows are on disk. */
 bool journal_stop(struct journal **journal);
-/* Queues a change of an alarm to be written. unit: unit of the change's value and limit. Does not wait; texts are copied. */
+/* Queues a change of an alarm to be written. unit: unit of the change's value and limit. Does not block; texts are copied. */
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag, const char *unit);
-/* This function and the next two tell whether journal rows are on disk (base/files/settling.h): those queued between journal_begin() and
-   journal_end(). journal_end() makes the thread write them immediately, even after a failed attempt. None of the three functions waits
-   for the disk. */
+/* This function and the next two tell whether the journal rows queued between journal_begin() and journal_end() are on disk
+   (base/files/settling.h). journal_end() makes the thread write them immediately, even after a failed attempt. None of the
+   three functions waits for the disk. */
 struct settling_ticket journal_begin(struct journal *journal);
 void journal_end(struct journal *journal, struct settling_ticket *ticket);
 int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
@@ -33,10 +33,10 @@ int journal_settled(struct journal *journal, const struct settling_ticket *ticke
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag, const char *unit);
 /* queues a row of the journal to be written; never waits */
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry);
-/* Returns true once after a new journal file was created. It lacks the present alarm states, so the caller must pass each alarm that is
-   not normal to journal_keep(). */
+/* Returns true once after a new journal file was created. The file lacks the current alarm states, so the caller must pass each
+   alarm that is not normal to journal_keep(). */
 bool journal_asks(struct journal *journal);
-/* Queues the present state of an alarm to be written to the journal's table of states. */
+/* Queues the current state of an alarm to be written to the journal's table of states. */
 void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag, const char *unit);
 
 /* --- functions that read the journal; thread: one per reader --- */

@@ -22,7 +22,7 @@ static const char schema_1[] =
     " until INTEGER NOT NULL, who TEXT NOT NULL, reason TEXT NOT NULL, PRIMARY KEY(tag, kind)) WITHOUT ROWID;"
     "CREATE VIEW journal AS SELECT strftime('%Y-%m-%dT%H:%M:%fZ', t / 1e6, 'unixepoch') AS utc, tag, kind, event, after AS state,"
     " priority, lim AS \"limit\", value, who, reason FROM event;";
-/* Version 2 adds units. Older rows have no unit (NULL), because it is not known. */
+/* Version 2 adds units. Older rows have no unit (NULL), because theirs is not known. */
 static const char schema_2[] =
     "ALTER TABLE event ADD COLUMN unit TEXT;"
     "ALTER TABLE state ADD COLUMN unit TEXT;"
@@ -32,10 +32,10 @@ static const char schema_2[] =
 static const char *const schemas[JOURNAL_VERSION] = { schema_1, schema_2 };
 
 #define ROW(unit) "id, t, tag, kind, event, before, after, priority, lim, value, who, reason, " unit
-/* Reads rows in the order of the index on time, so that reading a page of old rows takes no longer than one of new rows. */
+/* Reads rows in the order of the time index, so that a page of old rows takes no longer to read than a page of new ones. */
 #define IN_TIME(unit) "SELECT " ROW(unit) " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
 #define NEWEST " ORDER BY t DESC, id DESC LIMIT ?5"
-/* Walks through the index on tag and kind from one alarm to the next, and takes each alarm's newest row up to a time. This takes a few
+/* Steps through the index on tag and kind from alarm to alarm, and takes each alarm's newest row up to a time. This takes a few
    steps per alarm, however long the journal is. */
 #define AT(unit)                                                                                                                           \
     "WITH RECURSIVE known(tag, kind) AS ("                                                                                                 \
@@ -47,13 +47,13 @@ static const char *const schemas[JOURNAL_VERSION] = { schema_1, schema_2 };
     " ORDER BY t DESC, id DESC LIMIT 1) FROM known) AND after <> 'normal' ORDER BY id"
 #define STATES(unit)                                                                                                                       \
     "SELECT tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who, reason, " unit " FROM state"
-/* SQL_..._1 are the same queries for a file of version 1, which has no column for units. */
+/* SQL_..._1 are the same queries for a file of version 1, which has no unit column. */
 enum {
     SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_TIME_OF, SQL_HAS_UNIT,
     SQL_STATES, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_STATES_1, SQL_ROWS_1, SQL_ROWS_OF_1, SQL_AT_1, SQL_COUNT
 };
 static const char *const sql[SQL_COUNT] = {
-    /* skips a row that the journal already has, because a leader sends rows again whenever a standby connects */
+    /* skips a row that the journal already has: a leader resends rows whenever a standby connects */
     [SQL_EVENT] = "INSERT INTO event(t, tag, kind, event, before, after, priority, lim, value, who, reason, unit)"
                   " SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2"
                   " AND kind = ?3 AND t = ?1 AND event = ?4 AND before = ?5 AND after = ?6 AND value IS ?9)",
@@ -76,7 +76,7 @@ static const struct database_format format = { APPLICATION_ID, JOURNAL_VERSION, 
 
 struct journal_file {
     struct database db;
-    bool has_unit; /* false: a file of version 1, which has no column for units, opened for reading */
+    bool has_unit; /* false: a version 1 file, which has no unit column, opened for reading */
 };
 
 /* --- opening ---------------------------------------------------------------------------------------------------------------- */
@@ -202,13 +202,13 @@ int journal_file_forget(struct journal_file *file, int64_t before_us)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the query SQL_STATES, SQL_ROWS, SQL_ROWS_OF or SQL_AT in the form that the file's version needs. */
+/* Returns the statement SQL_STATES, SQL_ROWS, SQL_ROWS_OF or SQL_AT in the form for the file's version. */
 static sqlite3_stmt *reading(struct journal_file *file, int which)
 {
     return database_statement(&file->db, file->has_unit ? which : which - SQL_STATES + SQL_STATES_1);
 }
 
-/* Returns the text of a column; NULL: the column is NULL. */
+/* Returns the text in a column; NULL: the column is NULL. */
 static const char *text_or_null(sqlite3_stmt *s, int column)
 {
     return (const char *)sqlite3_column_text(s, column);
@@ -257,7 +257,7 @@ static void tell(sqlite3_stmt *s, void (*each)(void *arg, const struct journal_r
     each(arg, &row);
 }
 
-/* Returns the time of the journal row with that id; INT64_MIN: there is no such row, for example because it was deleted. */
+/* Returns the time of the journal row with that id; INT64_MIN: there is none, for example because it was deleted. */
 static int64_t time_of(struct journal_file *file, int64_t id)
 {
     sqlite3_stmt *s = database_statement(&file->db, SQL_TIME_OF);

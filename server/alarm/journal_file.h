@@ -10,12 +10,12 @@ enum { JOURNAL_VERSION = 2, JOURNAL_UNIT_BYTES = 64 };
 
 struct journal_entry {
     struct alarm alarm; /* the alarm, in its state at utc_ns */
-    bool changed;       /* true: the entry is a change of the alarm; false: it is only the alarm's present state */
+    bool changed;       /* true: the entry is a change of the alarm; false: only its current state */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
     double value;
-    bool has_unit; /* false: the unit of value and limit is not known */
+    bool has_unit; /* false: the unit of value and limit is unknown */
     char tag[256], unit[JOURNAL_UNIT_BYTES], who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
 };
 
@@ -24,23 +24,23 @@ struct journal_row {
     const char *tag, *kind, *event, *before, *after, *who, *reason; /* texts of the row, valid until the next row is read */
     int priority;
     double limit, value; /* the alarm's limit and the value of the change; NaN: none */
-    const char *unit;    /* unit of limit and value when the row was written; NULL: not known, because version 1 wrote the row */
+    const char *unit;    /* unit of limit and value when the row was written; NULL: unknown, because version 1 wrote the row */
 };
 struct journal_query {
     int64_t from_us, to_us;
-    int64_t before_id; /* only rows with a smaller id than this (the page of rows before); INT64_MAX: all rows */
-    const char *tag;   /* name of the tag whose rows are wanted; NULL: all tags */
+    int64_t before_id; /* returns only rows with a smaller id, that is, the preceding page; INT64_MAX: all rows */
+    const char *tag;   /* name of the tag whose rows to return; NULL: all tags */
     int limit;         /* maximum number of rows to return, newest first */
 };
 
 struct journal_file;
-/* Opens the journal's file for writing; creates folder and file if missing. *renewed true: a damaged file was renamed, and the opened
-   one is empty. Returns NULL with *error on failure. */
+/* Opens the journal's file for writing; creates folder and file if missing. *renewed true: a damaged file was renamed and
+   replaced by an empty one. Returns NULL with *error on failure. */
 struct journal_file *journal_file_open(struct log *log, const char *folder, bool *renewed, int *error);
 /* Opens the journal's file for reading. Returns NULL with *error on failure; *error 0: the file does not exist. */
 struct journal_file *journal_file_read(struct log *log, const char *folder, int *error);
 void journal_file_close(struct journal_file **file); /* closes the file and sets *file to NULL; accepts a pointer to NULL */
-/* Writes all entries in one transaction, except changes that the file already has. Returns -EBADMSG if the file is damaged. */
+/* Writes all entries in one transaction, except changes already in the file. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows of changes before before_us */
 /* Calls each() for the stored state of every alarm that was not normal at the last write to the journal. unit: of the alarm's value;

@@ -17,9 +17,9 @@ enum { MAX_QUEUED = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
 struct queued_entry {
-    struct audit_entry entry; /* the texts of the entry are in the same allocation, directly after the struct */
+    struct audit_entry entry; /* the entry's texts are in the same allocation, directly after the struct */
     int64_t utc_us;
-    bool said; /* true: the log already has this entry, because the audit file could not be written */
+    bool said; /* true: the entry is already in the log, because the audit file could not be written */
     struct queued_entry *next;
 };
 
@@ -34,7 +34,7 @@ struct audit {
     /* --- below: protected by thread.lock */
     struct queued_entry *first, **last;
     size_t count;
-    int64_t lost_count; /* number of entries lost since the audit file was last written successfully */
+    int64_t lost_count; /* number of entries lost since the last successful write to the audit file */
     struct settling settling;
     pthread_cond_t settled;
 };
@@ -185,8 +185,7 @@ static void free_first(struct audit *audit)
     mem_free(first);
 }
 
-/* Writes to the log the queued entries that cannot be written to the audit file now. The caller holds the lock; only this thread removes
-   entries. */
+/* Logs the queued entries that cannot be written to the audit file now. The caller holds the lock; only this thread removes entries. */
 static void log_waiting(struct audit *audit)
 {
     for (struct queued_entry *waiting = audit->first; waiting; waiting = waiting->next) {
@@ -196,7 +195,7 @@ static void log_waiting(struct audit *audit)
     }
 }
 
-/* If entries were lost, queues an entry that says how many. The caller holds the lock, which is released during the call. */
+/* If entries were lost, queues an entry with their number. The caller holds the lock, which is released during the call. */
 static void say_lost(struct audit *audit)
 {
     int64_t lost = audit->lost_count;

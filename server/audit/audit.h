@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The audit trail: a thread writes entries to the trail's file, the log and a syslog server. Only audit_wait() blocks on the file. While
-   the file cannot be written, entries wait in memory, and the log and the metrics report that. */
+/* The audit trail: a thread writes entries to the trail's file, the log and a syslog server. Only audit_wait() blocks on the
+   file. While the file cannot be written, entries wait in memory, and the log and the metrics report the failure. */
 #ifndef AUDIT_AUDIT_H
 #define AUDIT_AUDIT_H
 #include "audit/audit_chain.h"
@@ -12,13 +12,13 @@ struct audit;
 struct audit *audit_start(const struct audit_params *params);
 /* Writes the queued entries, if possible, and ends the thread. Accepts a pointer to NULL; sets *audit to NULL. */
 void audit_stop(struct audit **audit);
-/* This function and the next two tell whether audit entries are on disk (base/files/settling.h): those queued between audit_begin() and
-   audit_end(). None of the three functions blocks. audit NULL: the entries count as on disk. */
+/* This function and the next two tell whether the audit entries queued between audit_begin() and audit_end() are on disk
+   (base/files/settling.h). None of the three functions blocks. audit NULL: the entries count as on disk. */
 struct settling_ticket audit_begin(struct audit *audit);
 void audit_end(struct audit *audit, struct settling_ticket *ticket);
 int audit_settled(struct audit *audit, const struct settling_ticket *ticket);
-/* Waits for at most a second until audit_settled() knows the result, and returns that result. Thread: any except the event loop, which
-   must not block. */
+/* Waits up to a second until audit_settled() knows the result, and returns that result. Thread: any except the event loop,
+   which must not block. */
 int audit_wait(struct audit *audit, const struct settling_ticket *ticket);
 /* Queues a copy of an entry for the audit trail. audit NULL: no-op. Thread: any. */
 void audit_say(struct audit *audit, const struct audit_entry *entry);

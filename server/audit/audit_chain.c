@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds and checks the lines of the audit trail, each of which has a hash of the line before. */
+/* Builds and checks the lines of the audit trail, each of which contains the hash of the previous line. */
 #include "audit/audit_chain.h"
 
 #include <jansson.h>
@@ -29,7 +29,7 @@ static void hash_of(const char *bytes, size_t count, char out[AUDIT_HASH_CHARS +
     hex_print(hash, sizeof(hash), out);
 }
 
-/* Adds a text to the audit line. Clients may have chosen the text, so control characters and invalid UTF-8 become '?'. */
+/* Adds a text to the audit line. Clients may have chosen the text, so control characters and invalid UTF-8 are replaced by '?'. */
 static void set_field(json_t *object, const char *key, const char *text)
 {
     char copy[FIELD_BYTES + 1];
@@ -67,7 +67,7 @@ void audit_chain_add(struct audit_chain *chain, const struct audit_entry *entry,
     set_field(object, "why", entry->why);
     json_object_set_new(object, "prev", json_string(chain->hash));
     char *text = json_text(object, 0);
-    text_add_bytes(out, text, strlen(text) - 1); /* without the closing brace: the line's own hash follows */
+    text_add_bytes(out, text, strlen(text) - 1); /* omits the closing brace, because the line's own hash follows */
     mem_free(text);
     hash_of(out->at + begin, out->length - begin, hash);
     text_add(out, "%s%s%s\n", HASH_KEY, hash, END);

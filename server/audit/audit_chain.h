@@ -10,7 +10,7 @@
 
 enum { AUDIT_HASH_CHARS = 64, AUDIT_LINE_BYTES = 32768 };
 
-struct audit_chain {                 /* the last line of an audit trail, to which the next line refers */
+struct audit_chain {                 /* the last line of an audit trail, which the next line refers to */
     uint64_t seq;                    /* sequence number of the trail's last line; 0: the trail is empty */
     char hash[AUDIT_HASH_CHARS + 1]; /* hash of the trail's last line; 64 zeros: the trail is empty */
 };
@@ -21,8 +21,8 @@ struct audit_entry {
     const char *result; /* result of the action: done, refused or failed */
     const char *who, *role;
     const char *from; /* address of the client */
-    const char *how;  /* way in which the client acted, such as HTTP or OpenID Connect */
-    /* name of the renderer (a daemon that draws pictures) that forwarded the client's action, as its token names it; NULL: none */
+    const char *how;  /* channel through which the client acted, such as HTTP or OpenID Connect */
+    /* name, from its token, of the renderer (a daemon that draws pictures) that forwarded the client's action; NULL: none */
     const char *through;
     const char *what; /* object that the client changed or requested */
     const char *why;  /* why the action was refused or failed */
@@ -32,8 +32,8 @@ struct audit_entry {
 void audit_chain_init(struct audit_chain *chain);
 /* Appends the audit line of an entry, with its newline, to `out`, and advances the chain to that line. */
 void audit_chain_add(struct audit_chain *chain, const struct audit_entry *entry, int64_t utc_us, struct text *out);
-/* Checks an audit line (without its newline) against the chain. first: the line is the oldest one that still exists, so the hash of its
-   predecessor is not checked. Returns true and advances the chain; or false with the reason in *why (static text). */
+/* Checks an audit line (without its newline) against the chain. first: the line is the oldest that still exists, so the hash of
+   its predecessor is not checked. Returns true and advances the chain, or false with the reason in *why (static text). */
 bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count, bool first, const char **why);
 
 #endif

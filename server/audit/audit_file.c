@@ -56,8 +56,8 @@ static int find_chain(struct audit_file *file, char **finding)
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
-/* Returns true if the audit file is empty and the line that PATH.head names is the last one of a full file that was renamed, so that no
-   line is missing. */
+/* Returns true if the audit file is empty because its predecessor was just rotated: the line that PATH.head names is the last
+   one of a full file, so no line is missing. */
 static bool is_rotated(const struct audit_file *file, const struct audit_chain *head)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, head->seq);
@@ -66,8 +66,8 @@ static bool is_rotated(const struct audit_file *file, const struct audit_chain *
     return rotated;
 }
 
-/* Compares the end of the audit file with PATH.head, which names the line written last. If PATH.head names a later line than the file
-   has, lines were removed: numbering continues after that line, so that the gap stays visible. */
+/* Compares the end of the audit file with PATH.head, which names the line written last. If PATH.head names a later line than
+   the file contains, lines were removed. Numbering then continues after that line, so that the gap stays visible. */
 static void compare_head(struct audit_file *file, char **finding)
 {
     struct audit_chain head;
@@ -108,8 +108,8 @@ void audit_file_close(struct audit_file *file)
     *file = (struct audit_file){ .fd = -1 };
 }
 
-/* Opens the audit file again if another program has renamed it (which is allowed) or removed it. If another program changed the file's
-   content or removed it, *finding receives a message that says so. Returns 0 or -errno. */
+/* Reopens the audit file if another program has renamed it (which is allowed) or removed it. If another program removed the
+   file or changed its content, *finding receives a message about it. Returns 0 or -errno. */
 static int look_at_path(struct audit_file *file, char **finding)
 {
     struct stat ours, there;
@@ -130,7 +130,7 @@ static int look_at_path(struct audit_file *file, char **finding)
     return error;
 }
 
-/* Renames the full audit file to PATH.NUMBER. An existing file of that name is never overwritten. */
+/* Renames the full audit file to PATH.NUMBER. Never overwrites an existing file. */
 static int rotate(struct audit_file *file)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, file->chain.seq);
@@ -166,8 +166,7 @@ int audit_file_append(struct audit_file *file, const struct audit_entry *entry, 
     }
     file->chain = chain;
     file->bytes += count;
-    /* An error is ignored, because the next append writes PATH.head again. Until then PATH.head names an earlier line, which loses
-       nothing. */
+    /* ignores an error, because the next append writes PATH.head again; until then PATH.head merely names an earlier line */
     audit_head_write(file->head_path, &chain);
     return 0;
 }

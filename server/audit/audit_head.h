@@ -5,7 +5,7 @@
 #define AUDIT_AUDIT_HEAD_H
 #include "audit/audit_chain.h"
 
-/* Parses a line's number and hash, `NUMBER HASH` or `NUMBER:HASH`. Returns false if the text is neither. */
+/* Parses a line's sequence number and hash, `NUMBER HASH` or `NUMBER:HASH`. Returns false if the text has neither form. */
 bool audit_head_parse(const char *text, struct audit_chain *head);
 /* Reads PATH.head. Returns false if the file does not exist or cannot be parsed. */
 bool audit_head_read(const char *path, struct audit_chain *head);

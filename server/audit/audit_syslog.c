@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends audit lines to a syslog server over TLS; libcurl makes the connection. */
+/* Sends audit lines to a syslog server over TLS, through libcurl. */
 #include "audit/audit_syslog.h"
 
 #include <curl/curl.h>
@@ -18,14 +18,14 @@
 
 enum { MAX_QUEUED = 10000, TIMEOUT_S = 10, UNANSWERED_MS = 30000, AUDIT_FACILITY = 13, NOTICE = 5, WARNING = 4 };
 static const int64_t RETRY_NS = 2 * NS_PER_S, LAST_NS = 3 * NS_PER_S;
-/* A line counts as delivered if the connection is still open this long after the line was sent. Syslog has no acknowledgements, and a
-   server may refuse our certificate after the handshake: with TLS 1.3, the handshake succeeds on our side before the server checks it. */
+/* A line counts as delivered if the connection is still open this long after sending it. Syslog has no acknowledgements, and
+   with TLS 1.3 a server may refuse our certificate after our side has completed the handshake. */
 static const int64_t PROOF_NS = 5 * NS_PER_S;
-static const int64_t CHECK_NS = NS_PER_S / 4; /* interval at which the connection is checked while sent lines are not yet delivered */
+static const int64_t CHECK_NS = NS_PER_S / 4; /* how often the connection is checked while sent lines are not yet delivered */
 
 struct framed {
     struct text text;
-    int64_t sent_ns; /* monotonic time at which the line was sent */
+    int64_t sent_ns; /* monotonic time when the line was sent */
     struct framed *next;
 };
 
@@ -40,17 +40,17 @@ struct audit_syslog {
     counter *good, *lost;
     /* --- below: used only by the thread */
     CURL *connection;          /* libcurl's handle of the connection; NULL: not connected */
-    char why[CURL_ERROR_SIZE]; /* libcurl's last error of the connection */
-    struct lines sent;         /* lines sent over the connection and not yet delivered; queued again if the connection breaks */
+    char why[CURL_ERROR_SIZE]; /* libcurl's last error on the connection */
+    struct lines sent;         /* lines sent over the connection but not yet delivered; requeued if the connection breaks */
     bool proven;               /* true: a line was delivered over this connection */
-    int refusals;              /* number of connections in a row that the server closed before a line was delivered */
+    int refusals;              /* number of consecutive connections that the server closed before a line was delivered */
     bool failing;              /* true: the server cannot be reached, or accepts no lines */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
     struct lines queue; /* lines to be sent; only the thread removes lines */
     size_t waiting;     /* number of lines in `queue` and `sent` */
-    int64_t stop_ns;    /* monotonic time at which the thread must end; 0: it need not end */
+    int64_t stop_ns;    /* monotonic deadline by which the thread must end; 0: none */
 };
 
 /* --- lists of lines ------------------------------------------------------------------------------------------------------- */
@@ -71,7 +71,7 @@ static struct framed *lines_take(struct lines *lines)
     return first;
 }
 
-/* Moves all lines of `from` in front of those of `lines`. */
+/* Moves all lines of `from` to the front of `lines`. */
 static void lines_put_back(struct lines *lines, struct lines *from)
 {
     if (!from->first)
@@ -103,7 +103,7 @@ void audit_syslog_frame(struct text *out, const struct syslog_message *message)
 
 /* --- the connection ------------------------------------------------------------------------------------------------------- */
 
-/* Closes the connection. Lines that were sent and not delivered are queued again. */
+/* Closes the connection. Lines that were sent but not delivered are queued again. */
 static void disconnect(struct audit_syslog *syslog)
 {
     curl_easy_cleanup(syslog->connection);
@@ -169,7 +169,7 @@ static bool connect_now(struct audit_syslog *syslog)
     }
     CURLcode code = curl_easy_perform(handle);
     if (code == CURLE_OK) {
-        /* breaks the connection if the server's machine does not acknowledge our bytes; the system's default is many minutes */
+        /* breaks the connection if the server's machine does not acknowledge our bytes; by default the system would wait many minutes */
         setsockopt(socket_of(syslog), IPPROTO_TCP, TCP_USER_TIMEOUT, &unanswered_ms, sizeof(unanswered_ms));
         return true;
     }
@@ -190,7 +190,7 @@ static const char *why_closed(struct audit_syslog *syslog)
     return code == CURLE_OK || code == CURLE_AGAIN ? NULL : error_of(syslog, code);
 }
 
-/* Removes the lines that count as delivered: older than PROOF_NS, while all bytes are acknowledged by the server's machine. */
+/* Removes the lines that count as delivered: those sent more than PROOF_NS ago, if the server's machine has acknowledged all bytes. */
 static void drop_delivered(struct audit_syslog *syslog, int64_t now_ns)
 {
     int unacknowledged = 0;
@@ -207,8 +207,9 @@ static void drop_delivered(struct audit_syslog *syslog, int64_t now_ns)
     }
 }
 
-/* Closes a connection that has ended, and removes delivered lines. Returns false if the server closed this connection and the one before,
-   each before any line was delivered: the caller must then wait before it connects again. A server that ends closes only one. */
+/* Closes a connection that has ended, and removes delivered lines. Returns false if the server closed this connection and the
+   previous one before any line was delivered: the caller must then wait before it reconnects. A server that shuts down closes
+   only one. */
 static bool check_connection(struct audit_syslog *syslog)
 {
     const char *why = syslog->connection ? why_closed(syslog) : NULL;
@@ -240,7 +241,7 @@ static bool send_all(struct audit_syslog *syslog, const struct text *text)
     return true;
 }
 
-/* Sends the first line of the queue, if there is one. */
+/* Sends the first line of the queue, if any. */
 static bool send_next(struct audit_syslog *syslog)
 {
     pthread_mutex_lock(&syslog->lock);
@@ -264,7 +265,7 @@ static bool send_next(struct audit_syslog *syslog)
 
 /* --- the thread ----------------------------------------------------------------------------------------------------------- */
 
-/* Returns true if the thread must end: all lines are sent, over a connection that has delivered lines, or the time is up. */
+/* Returns true if the thread must end: all lines are sent and their connection has proven to deliver, or the time is up. */
 static bool must_end(const struct audit_syslog *syslog)
 {
     bool open = syslog->queue.first || (syslog->sent.first && !syslog->proven);
@@ -306,7 +307,7 @@ void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good
         struct framed *framed = mem_new(sizeof(*framed));
         const struct syslog_message message = { syslog->host, (int)getpid(), event, good, utc_us, line, count };
         audit_syslog_frame(&framed->text, &message);
-        /* while older lines wait, the thread sends without a signal, or waits before it connects again */
+        /* while older lines wait, the thread needs no signal: it is sending, or waiting to reconnect */
         if (!syslog->queue.first)
             pthread_cond_signal(&syslog->wake);
         lines_add(&syslog->queue, framed);

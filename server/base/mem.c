@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Zeroed allocation with checks for overflow; aborts when out of memory, where callers could do nothing sensible. */
+/* Zeroed allocation with overflow checks; aborts when out of memory, because callers could do nothing sensible. */
 #include "base/mem.h"
 
 #include <stdarg.h>

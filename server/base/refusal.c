@@ -27,7 +27,7 @@ const char *refusal_words(enum refusal_code code)
     return rows[code].text;
 }
 
-/* Returns the value of an argument of a refusal; "" if the refusal has no such argument. */
+/* Returns the value of a refusal's argument; "" if the refusal has no such argument. */
 static const char *value_of(const struct refusal *refusal, const char *name, size_t name_bytes, size_t *bytes)
 {
     for (const char *line = refusal->args; *line; line += strcspn(line, "\n"), line += *line == '\n')

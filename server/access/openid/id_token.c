@@ -35,8 +35,8 @@ static bool is_for(const json_t *key, const char *alg, const char *kid)
            (!kid || (its_kid && !strcmp(its_kid, kid)));
 }
 
-/* Imports one public key of the provider. Leaves out its private members and those of other standards, because libcjose would require
-   such members to be complete. */
+/* Imports one of the provider's public keys. Omits private members and members of other standards, because libcjose would
+   require them to be complete. */
 static cjose_jwk_t *import_key(const json_t *key)
 {
     static const char *const members[] = { "kty", "kid", "n", "e", "crv", "x", "y" };
@@ -143,7 +143,7 @@ enum id_token_fault id_token_verify(const char *token, const struct id_token_exp
 
 static const json_t *at_path(const json_t *claims, const char *path)
 {
-    /* first tries the whole path as the name of one claim, because such a name may be a URL, which contains dots */
+    /* first tries the whole path as the name of one claim: the name may be a URL, which contains dots */
     const json_t *whole = json_object_get(claims, path);
     char *copy = mem_strdup(path), *rest = copy;
     const json_t *found = claims;
@@ -171,7 +171,7 @@ enum role id_token_role(const struct openid_config *config, const json_t *claims
     return best;
 }
 
-/* Copies a user's name. Returns false if it is invalid UTF-8 or has control characters, which could break or falsify a log line. */
+/* Copies a user's name. Returns false if it is invalid UTF-8 or contains control characters, which could break or forge a log line. */
 static bool copy_name(const char *text, char *out, size_t size)
 {
     size_t at = 0;

@@ -16,7 +16,7 @@ struct id_token_expected {
     const char *nonce;  /* nonce that the token must contain; NULL: not checked, because a token from a refresh need not contain one */
     const char *sub;    /* subject (user id at the provider) that the token must contain; NULL: not known yet */
     int64_t now_s;      /* present time, seconds UTC */
-    int64_t patience_s; /* seconds for which a token is still accepted after its expiry (claim `exp`) */
+    int64_t patience_s; /* seconds for which a token is still accepted after it expires (claim `exp`) */
 };
 
 enum id_token_fault {
@@ -25,16 +25,16 @@ enum id_token_fault {
     ID_TOKEN_NO_KEY, /* the token is signed with a key that is not in `jwks`: the provider may have a new key */
 };
 
-/* Verifies an ID token. If it is good, *claims receives its claims (free with json_decref()); otherwise *why (static text) says what is
-   wrong. */
+/* Verifies an ID token. If it is valid, *claims receives its claims (free with json_decref()); otherwise *why (static text)
+   says what is wrong. */
 enum id_token_fault id_token_verify(const char *token, const struct id_token_expected *expected, json_t **claims, const char **why);
-/* Returns the highest role that the user's groups give. config->groups_claim, which names the claim with the groups, may be a path with
-   dots. */
+/* Returns the highest role that the user's groups grant. config->groups_claim names the claim that lists the groups; it may be
+   a dotted path. */
 enum role id_token_role(const struct openid_config *config, const json_t *claims);
 /* Returns true if the claims contain the user's groups. */
 bool id_token_has_groups(const struct openid_config *config, const json_t *claims);
-/* Writes the user's name for lists and journals: the name claim, else the e-mail address, else the claim `sub`. Returns false if no such
-   claim can be displayed. */
+/* Writes the user's name for lists and journals: the name claim, else the e-mail address, else the claim `sub`. Returns false
+   if none of them can be displayed. */
 bool id_token_name(const struct openid_config *config, const json_t *claims, char *out, size_t size);
 
 #endif

@@ -58,7 +58,7 @@ char *openid_begin(struct openid *openid, const uint8_t address[16], const char 
     return url;
 }
 
-/* Returns true if the browser's return from a log-in names another identity provider than the configured one (RFC 9207). */
+/* Returns true if the response to a log-in names an issuer other than the configured identity provider (RFC 9207). */
 static bool is_other_issuer(const struct openid *openid, const char *iss)
 {
     if (iss)
@@ -66,8 +66,8 @@ static bool is_other_issuer(const struct openid *openid, const char *iss)
     return json_is_true(json_object_get(openid->metadata, "authorization_response_iss_parameter_supported"));
 }
 
-/* Returns true if one more authorization code may be queued, to be exchanged for tokens. Queued codes are limited in total and per
-   address, so that one address cannot fill the queue. The caller holds the lock. */
+/* Returns true if another authorization code may be queued for exchange. The queue is limited in total and per address, so that
+   one address cannot fill it. The caller holds the lock. */
 static bool has_room(const struct openid *openid, const uint8_t address[16])
 {
     int of_address = 0;
@@ -76,8 +76,8 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
     return openid->codes.count < OPENID_CODES && of_address < OPENID_CODES_OF_ADDRESS;
 }
 
-/* Returns the result of a log-in that the provider ended with an error: the user was refused, or the provider failed. Such an error does
-   not count as a wrong token. Anyone can send such errors, so only one per ERROR_EVERY_NS is recorded in the audit trail
+/* Classifies a log-in that the provider ended with an error: the user was refused, or the provider failed. The error does not
+   count as a wrong token. Anyone can send such errors, so at most one per ERROR_EVERY_NS is recorded in the audit trail
    (OPENID_REFUSED); the others give OPENID_AWAY. The caller holds the lock. */
 static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
 {
@@ -196,7 +196,7 @@ const char *openid_vouch(struct openid *openid, const char *id_token, struct tok
     };
     enum id_token_fault fault = keys ? id_token_verify(id_token, &expected, &claims, &why) : ID_TOKEN_NO_KEY;
     json_decref(keys);
-    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new signing key: makes the thread fetch the provider's keys now */
+    if (fault == ID_TOKEN_NO_KEY) { /* the provider may have a new signing key: tells the thread to fetch the provider's keys now */
         pthread_mutex_lock(&openid->lock);
         openid->discover_ns = clock_mono_ns();
         pthread_cond_broadcast(&openid->wake);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sign-in with OpenID Connect: authorization code flow with PKCE. Threads talk to the identity provider. The event loop begins log-ins,
-   passes on the codes that browsers bring back, and finds the user of a session cookie. Users' rights are checked again at intervals at
-   the provider; while it does not answer, they do not change. Thread: the event loop, unless said otherwise. */
+/* Sign-in with OpenID Connect: authorization code flow with PKCE. Background threads talk to the identity provider. The event
+   loop begins log-ins, passes on the codes that browsers bring back, and finds the user of a session cookie. Users' rights are
+   rechecked at the provider at intervals; while the provider does not answer, they stay unchanged. Thread: the event loop,
+   unless said otherwise. */
 #ifndef OPENID_OPENID_H
 #define OPENID_OPENID_H
 #include "access/openid/openid_config.h"
@@ -14,8 +15,8 @@ struct openid_params {
     struct counters *counters;
     struct audit *audit;     /* audit trail; NULL: nothing is recorded */
     const char *path;        /* path of the configuration file */
-    int64_t lock_ns;         /* duration in nanoseconds without activity after which a user is signed out; 0: never */
-    void (*wake)(void *arg); /* called by any thread when openid_collect() has an answer, or a user's rights changed */
+    int64_t lock_ns;         /* nanoseconds of inactivity after which a user is signed out; 0: never */
+    void (*wake)(void *arg); /* called on any thread when openid_collect() has an answer or a user's rights changed */
     void *wake_arg;
 };
 
@@ -37,54 +38,54 @@ struct openid_return { /* parameters of the request with which a browser returns
     const char *state, *code, *iss, *error, *binding, *from;
 };
 enum openid_finish {
-    OPENID_WAITS, /* the log-in is being verified at the provider; openid_collect() returns the result later */
-    /* this browser has no log-in in progress with this state, so the request is a replay or a forgery; only counted, not recorded in the
+    OPENID_WAITS, /* the log-in is being verified with the provider; openid_collect() returns the result later */
+    /* this browser has no log-in in progress with this state: a replay or a forgery, which is only counted, not recorded in the
        audit trail */
     OPENID_FOREIGN,
-    OPENID_FULL, /* too many log-ins wait to be verified; the user must try again */
+    OPENID_FULL, /* too many log-ins are waiting for verification; the user must try again */
 };
 /* Handles the request with which a browser returned from the provider. */
 enum openid_finish openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns);
 
 enum openid_result {
     OPENID_LET_IN,
-    OPENID_REFUSED, /* recorded in the audit trail: the user logged in at the provider but may not use this server */
-    OPENID_GUESSED, /* recorded in the audit trail and counted like a wrong token: the authorization code was invalid */
-    /* the log-in failed without an invalid code, for example because the provider does not answer or refuses this server; recorded only
-       at intervals */
+    OPENID_REFUSED, /* the user logged in at the provider but may not use this server; recorded in the audit trail */
+    OPENID_GUESSED, /* the authorization code was invalid; recorded in the audit trail and counted as a wrong token */
+    /* the log-in failed for another reason, for example because the provider does not answer or refuses this server; recorded
+       only at intervals */
     OPENID_AWAY,
 };
 
 struct openid_answer {
     uint64_t request;
-    uint8_t address[16]; /* address from which the log-in was begun */
+    uint8_t address[16]; /* address of the client that began the log-in */
     enum openid_result result;
     char cookie[SIGN_IN_SECRET_CHARS + 1]; /* value of the cookie that identifies the new session */
     char path[SIGN_IN_PATH_BYTES];         /* path of the page to which the browser is redirected */
-    char *why;                             /* reason of the refusal; NULL: the user is signed in */
+    char *why;                             /* reason for the refusal; NULL: the user is signed in */
     struct openid_answer *next;
 };
-/* Returns a list of the results of log-ins since the last call; the caller frees each with openid_answer_free(). */
+/* Returns the list of log-in results since the last call; the caller frees each with openid_answer_free(). */
 struct openid_answer *openid_collect(struct openid *openid);
 void openid_answer_free(struct openid_answer *answer);
 
-/* Returns true if the rights of any user changed or ended since the last call. */
+/* Returns true if any user's rights changed or ended since the last call. */
 bool openid_take_changed(struct openid *openid);
 /* Finds the user of a session cookie. Returns false if there is none. */
 bool openid_find(struct openid *openid, const char *cookie, struct token_holder *out);
-/* Returns the present role of a user; ROLE_NOBODY: the user is not signed in. */
+/* Returns the current role of a user; ROLE_NOBODY: the user is not signed in. */
 enum role openid_role(struct openid *openid, const struct token_holder *holder);
 /* Returns the newest ID token of a user who signed in at this daemon (free with mem_free()). The daemon sends it to a core, which
    verifies it. NULL: there is none. */
 char *openid_id_token(struct openid *openid, const struct token_holder *holder);
-/* Verifies the ID token of a user who signed in at another daemon with the same provider and client id. Uses the keys that are known
-   here, without a request to the provider. A token is accepted for config->hours after its time of issue, as long as a log-in lasts.
-   Returns NULL, with the user in *out, or the reason of the refusal (static text). */
+/* Verifies the ID token of a user who signed in at another daemon with the same provider and client id. Uses only the keys
+   known here and sends no request to the provider. A token is accepted for config->hours after it was issued, which is also how
+   long a log-in lasts. Returns NULL and the user in *out, or the reason for the refusal (static text). */
 const char *openid_vouch(struct openid *openid, const char *id_token, struct token_holder *out);
-/* Records that a user is active at the page, which postpones the automatic sign-out. */
+/* Records user activity on the page, which postpones the automatic sign-out. */
 void openid_touch(struct openid *openid, const struct token_holder *holder, int64_t now_ns);
-/* Signs out the user of a session cookie. Returns the URL at which the provider ends its own session as well (free with mem_free());
-   NULL: there is none. */
+/* Signs out the user of a session cookie. Returns the URL that also ends the user's session at the provider (free with
+   mem_free()); NULL: there is none. */
 char *openid_end(struct openid *openid, const char *cookie, const char *from);
 
 #endif

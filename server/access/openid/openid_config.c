@@ -14,7 +14,7 @@
 static const double CHECK_S = 30, HOURS = 12;
 enum { MAX_GROUPS = 200 };
 
-/* Returns true if the URL is neither https nor on this machine, so that secrets sent there could be read on the way. */
+/* Returns true if secrets sent to the URL could be intercepted: it is neither https nor on this machine. */
 static bool is_unsafe(const char *url)
 {
     char host[256], name[256];

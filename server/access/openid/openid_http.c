@@ -71,7 +71,7 @@ static void set_client(struct http_request *request, const struct openid_config 
         openid_add_argument(form, "client_secret", secret);
     if (!secret || in_form)
         return;
-    struct text user = { 0 }, password = { 0 }; /* form-encodes client id and secret before Basic encoding, as RFC 6749, 2.3.1 demands */
+    struct text user = { 0 }, password = { 0 }; /* form-encodes client id and secret before Base64-encoding them (RFC 6749, 2.3.1) */
     openid_add_argument(&user, "", config->client_id);
     openid_add_argument(&password, "", secret);
     curl_easy_setopt(request->handle, CURLOPT_HTTPAUTH, (long)CURLAUTH_BASIC);

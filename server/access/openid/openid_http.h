@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to the identity provider. Each call blocks for 7 s at most. Thread: any. */
+/* HTTP requests to the identity provider. Each call blocks for at most 7 s. Thread: any. */
 #ifndef OPENID_OPENID_HTTP_H
 #define OPENID_OPENID_HTTP_H
 #include <jansson.h>
@@ -10,7 +10,7 @@
 struct openid_reply {
     int status;    /* HTTP status of the provider's answer; 0: no answer */
     json_t *json;  /* parsed body of the answer; NULL: none */
-    char why[256]; /* reason why the provider gave no answer */
+    char why[256]; /* why the provider gave no answer */
 };
 
 /* openid_get() and openid_post() return true if the provider answered, even with an error status; free the answer with
@@ -23,7 +23,7 @@ bool openid_post(const struct openid_config *config, const char *url, const char
                  struct openid_reply *reply);
 void openid_reply_finish(struct openid_reply *reply);
 
-/* Appends `&name=value` to a form or query, percent-encoded; without `&` if `out` is empty. */
+/* Appends `&name=value`, percent-encoded, to a form or query; omits the `&` if `out` is empty. */
 void openid_add_argument(struct text *out, const char *name, const char *value);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The state behind openid.h, and functions that the files openid*.c share. Private to them. */
+/* State behind openid.h, and functions that the files openid*.c share. Private to them. */
 #ifndef OPENID_OPENID_IMPL_H
 #define OPENID_OPENID_IMPL_H
 #include <jansson.h>
@@ -9,7 +9,7 @@
 #include "access/openid/id_token.h"
 #include "access/openid/openid.h"
 
-/* maximum number of authorization codes that wait to be exchanged for tokens: in total, and from one address */
+/* maximum number of authorization codes waiting to be exchanged for tokens: in total, and per client address */
 enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 };
 
 struct openid_job { /* a queued request to the provider: exchange the authorization code that a browser brought back, or revoke a token */
@@ -35,9 +35,9 @@ struct openid {
     pthread_t thread; /* thread that starts the requests to the identity provider when they are due */
     bool started;
     counter *good, *people, *refused, *foreign;
-    /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already says that the provider fails */
+    /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already reports that the provider fails */
     _Atomic bool stopping, changed, failing;
-    /* held while the provider's metadata and keys are requested; must not be locked by a thread that holds `lock` */
+    /* held while the provider's metadata and keys are requested; a thread that holds `lock` must not lock it */
     pthread_mutex_t asking;
     /* --- below: protected by `asking` */
     /* monotonic times when the provider's keys (jwks) and metadata (discovered) were last requested; 0: never */
@@ -51,13 +51,13 @@ struct openid {
     int running[OPENID_TASKS];
     int64_t discover_ns; /* monotonic time when the provider's metadata and keys must be requested again */
     struct openid_answer *answers;
-    int64_t error_ns; /* monotonic time when an error of the provider was last recorded in the audit trail; 0: never */
+    int64_t error_ns; /* monotonic time of the provider's last error recorded in the audit trail; 0: none yet */
 };
 
 /* --- openid_work.c --- */
 
-/* Main function of the thread that starts due requests to the identity provider; its argument is the struct openid. Returns once
-   openid->stopping is set and no request runs. */
+/* Main function of the thread that starts due requests to the identity provider; its argument is the struct openid. Returns
+   once openid->stopping is set and no request is running. */
 void *openid_run(void *arg);
 /* Queues the result of a log-in for openid_collect(); takes ownership of the text `why`. The caller holds the lock. */
 void openid_add_answer(struct openid *openid, const struct openid_job *job, enum openid_result result, const char *cookie, char *why);
@@ -71,7 +71,7 @@ void openid_say_refused(struct openid *openid, const char *from, const char *why
 /* Queues a request to the provider; takes ownership of its texts. */
 void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
 void openid_free_jobs(struct openid_jobs *jobs);
-/* Queues the revocation of a refresh token, which is copied, if the provider supports revocation. NULL is a no-op. */
+/* Queues the revocation of a refresh token, which is copied, if the provider supports revocation. A NULL token is a no-op. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token);
 /* Removes the oldest job from the queue and returns it; the caller frees it with openid_free_job(). The queue must not be empty. */
 struct openid_job *openid_take_job(struct openid_jobs *jobs);
@@ -88,11 +88,13 @@ void openid_say(struct openid *openid, const char *why);
 /* Returns the URL of one of the provider's endpoints, from its metadata; name: metadata key, such as "token_endpoint". Free with
    mem_free(). NULL: the provider has no such endpoint. */
 char *openid_endpoint(struct openid *openid, const char *name);
-/* Verifies an ID token; fetches the provider's keys if the token's key is unknown. Returns the token's claims (free with json_decref());
-   NULL with *why (static text). *unsure true: the token may be good, but its key is unknown and the keys could not be fetched. */
+/* Verifies an ID token; fetches the provider's keys if the token's key is unknown. Returns the token's claims (free with
+   json_decref()), or NULL with the reason in *why (static text). *unsure true: the token may be valid, but its key is unknown
+   and the keys could not be fetched. */
 json_t *openid_verify(struct openid *openid, const char *token, const char *nonce, const char *sub, bool *unsure, const char **why);
-/* Adds claims from the provider's UserInfo endpoint if the user's groups or name are missing. Returns false if the provider refuses.
-   *told true: the claims are complete now. *told false: groups may be missing only because the provider was not asked or did not answer. */
+/* Adds claims from the provider's UserInfo endpoint if the user's groups or name are missing. Returns false if the provider
+ * refuses. *told receives true if the claims are complete now; false if groups may be missing only because the provider was not
+ * asked or did not answer. */
 bool openid_complete(struct openid *openid, json_t *claims, const char *access_token, bool *told);
 
 /* --- functions of openid_tokens.c; called by any thread, without the lock --- */

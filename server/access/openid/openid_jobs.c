@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queues of requests to the identity provider that wait for a thread to send them. */
+/* Queues of requests to the identity provider that wait to be sent by a thread. */
 #include <string.h>
 
 #include "access/openid/openid_impl.h"
@@ -43,7 +43,7 @@ struct openid_job *openid_take_job(struct openid_jobs *jobs)
     return job;
 }
 
-/* If too many revocations are queued because the provider accepts none, drops the oldest one; its token stays valid until it expires. */
+/* If the provider accepts no revocations and too many are queued, drops the oldest; its token stays valid until it expires. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token)
 {
     if (!refresh_token || !json_object_get(openid->metadata, "revocation_endpoint"))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests and keeps data of the identity provider: its endpoints, its keys, and its claims about a user. */
+/* Requests and caches the identity provider's data: its endpoints, its keys, and its claims about a user. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,8 +9,8 @@
 #include "base/mem.h"
 
 static const int64_t MAX_AGE_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
-/* Minimum time between two requests for the provider's keys. Without it, anyone could cause any number of requests with tokens that name
-   unknown keys. */
+/* Minimum time between two requests for the provider's keys. Without this limit, tokens that name unknown keys could trigger
+   any number of requests. */
 static const int64_t KEYS_INTERVAL_NS = 10 * NS_PER_S;
 
 void openid_say(struct openid *openid, const char *why)
@@ -155,8 +155,8 @@ bool openid_complete(struct openid *openid, json_t *claims, const char *access_t
     bool lacks = !id_token_has_groups(openid->config, claims) || !json_object_get(claims, openid->config->name_claim) ||
                  !id_token_name(openid->config, claims, name, sizeof(name));
     bool asks = url && access_token && lacks;
-    /* the provider was not asked: the claims count as complete only if they come from an ID token (those have `iss`), not from a refresh
-       without one */
+    /* the provider was not asked: the claims are complete only if they come from an ID token (which has `iss`); a refresh may
+       not return one */
     *told = !asks && json_object_get(claims, "iss");
     if (asks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
         const char *sub = json_string_value(json_object_get(claims, "sub")), *its = json_string_value(json_object_get(reply.json, "sub"));

@@ -20,8 +20,8 @@ static void replace(char **text, const char *by)
     *text = mem_strdup(by);
 }
 
-/* Returns true if the client secret must be sent as a field of the form, because the authentication methods that the provider lists do
-   not include HTTP Basic. */
+/* Returns true if the client secret must be sent as a form field, because the provider's authentication methods do not include
+   HTTP Basic. */
 static bool secret_in_form(struct openid *openid)
 {
     pthread_mutex_lock(&openid->lock);
@@ -55,8 +55,8 @@ static void keep_tokens(struct person *person, const json_t *json)
 
 /* --- redeeming a code --------------------------------------------------------------------------------------------------------- */
 
-/* Makes the record of a signed-in user from valid claims. Returns NULL with *why (mem_free) if the claims give no role or no usable
-   name. */
+/* Creates the record of a signed-in user from valid claims. Returns NULL with *why (mem_free) if the claims grant no role or
+   contain no usable name. */
 static struct person *make_person(struct openid *openid, json_t *claims, const json_t *tokens, char **why)
 {
     struct token_holder holder = { .signed_in = true, .until_utc_ns = clock_utc_ns() + (int64_t)(openid->config->hours * 3600e9) };
@@ -90,9 +90,9 @@ static struct person *take_tokens(struct openid *openid, const struct openid_job
     return person;
 }
 
-/* Returns the result of a failed exchange of an authorization code. Only invalid_grant means that the code is wrong (RFC 6749, 5.2):
-   OPENID_GUESSED. Every other error concerns the provider and this server, not the user: the client secret has expired, or the provider
-   is busy. */
+/* Classifies a failed exchange of an authorization code. Only invalid_grant means that the code is wrong (RFC 6749, 5.2):
+   OPENID_GUESSED. Every other error is between the provider and this server, not the user's fault: the client secret has
+   expired, or the provider is busy. */
 static enum openid_result judge_code(const struct openid_reply *reply, const char *error)
 {
     if (reply->status == 200)
@@ -119,7 +119,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
                           error ? error : "no reason given", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
-    if (!person && reply.status == 200) { /* the log-in failed, so the refresh token that the provider has issued for it is revoked */
+    if (!person && reply.status == 200) { /* the log-in failed, so its refresh token, which the provider has already issued, is revoked */
         pthread_mutex_lock(&openid->lock);
         openid_revoke_later(openid, json_member_text(reply.json, "refresh_token"));
         pthread_mutex_unlock(&openid->lock);
@@ -163,7 +163,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     const char *error = json_member_text(reply.json, "error");
     *why = "the provider does not answer";
     if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
-        /* the provider refuses this server, not the user: the client secret may have expired */
+        /* the provider rejects this server, not the user: the client secret may have expired */
         *why = "the provider refuses the request to renew the sign-in";
     } else if (answered && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
@@ -182,7 +182,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     return rights;
 }
 
-/* For a user without a refresh token: checks the rights with the access token, until that expires. */
+/* For a user without a refresh token: checks the rights with the access token until it expires. */
 static enum openid_rights ask_again(struct openid *openid, struct person *person, const char **why)
 {
     char *url = openid_endpoint(openid, "userinfo_endpoint");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends the requests to the identity provider. One thread starts the tasks that are due; each request runs in a thread of its own. So
-   neither a slow answer nor many log-ins delay the check that ends expired rights. */
+/* Sends the requests to the identity provider. One thread starts the tasks that are due, and each request runs in a thread of
+   its own. Neither a slow answer nor many log-ins can therefore delay the check that ends expired rights. */
 #include <string.h>
 
 #include "access/openid/openid_impl.h"
@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "message/names.h"
 
-/* intervals at which the provider's metadata and keys are requested: while they are unknown, and once they are known */
+/* how often the provider's metadata and keys are requested: while they are unknown, and once they are known */
 static const int64_t RETRY_DELAY_NS = 5 * NS_PER_S, CHECK_INTERVAL_NS = 3600 * NS_PER_S;
 static const int at_once[OPENID_TASKS] = {
     [OPENID_TASK_CODE] = 4, [OPENID_TASK_CHECK] = 16, [OPENID_TASK_REVOKE] = 1, [OPENID_TASK_DISCOVER] = 1
@@ -18,8 +18,8 @@ static const int at_once[OPENID_TASKS] = {
 struct task {
     struct openid *openid;
     enum openid_task kind;
-    struct openid_job *job; /* for tasks that exchange an authorization code or revoke a token: the queued job; NULL for other tasks */
-    struct person person;   /* for a check of a user's rights: a copy of the user's record, with its own texts */
+    struct openid_job *job; /* queued job of a task that exchanges an authorization code or revokes a token; NULL for other tasks */
+    struct person person;   /* for a rights check: a copy of the user's record that owns its texts */
     int64_t began_ns;
 };
 
@@ -147,8 +147,8 @@ static void end_person(struct openid *openid, struct person *person, const char 
     tell_loop(openid);
 }
 
-/* Applies the result of a rights check to the table of signed-in users. A newly received refresh token is revoked if the user has signed
-   out since the check began, or the rights ended. The caller holds the lock. */
+/* Applies the result of a rights check to the table of signed-in users. A newly received refresh token is revoked if the rights
+   ended or the user signed out during the check. The caller holds the lock. */
 static void settle(struct openid *openid, struct task *task, enum openid_rights rights, const char *why)
 {
     struct person *person = sign_ins_numbered(openid->table, task->person.number), *copy = &task->person;
@@ -234,8 +234,8 @@ static bool may_start(const struct openid *openid, enum openid_task kind)
     return openid->running[kind] < at_once[kind];
 }
 
-/* Returns the request to the provider that must be sent now, or NULL if none is due; *next_ns receives the monotonic time when the next
-   one is due. The caller holds the lock. */
+/* Returns the next request to the provider that is due, or NULL; *next_ns receives the monotonic time when the next one will be
+   due. The caller holds the lock. */
 static struct task *take_task(struct openid *openid, int64_t *next_ns)
 {
     struct person *person = may_start(openid, OPENID_TASK_CHECK) ? sign_ins_next_check(openid->table) : NULL;
@@ -267,7 +267,7 @@ static struct task *take_task(struct openid *openid, int64_t *next_ns)
     return copy;
 }
 
-/* Runs a task in a new thread, or in this thread if none can be created. The caller holds the lock, which is released during the call. */
+/* Runs a task in a new thread, or in this one if none can be created. The caller holds the lock, which is released during the call. */
 static void start_task(struct openid *openid, struct task *task)
 {
     pthread_t thread;

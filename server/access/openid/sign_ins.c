@@ -10,12 +10,12 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S; /* maximum time that a user may take to log in at the provider */
+static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S; /* maximum time for a user to log in at the provider */
 
 struct sign_ins {
     struct sign_in *begun;
     size_t begun_count, begun_capacity;
-    struct person *people; /* signed-in users in the order in which they signed in */
+    struct person *people; /* signed-in users in the order of their sign-in */
     size_t count, capacity;
     uint64_t next_number;
 };
@@ -87,8 +87,8 @@ void sign_ins_destroy(struct sign_ins **pointer)
     *pointer = NULL;
 }
 
-/* Returns the entry for a new log-in from that address: an unused one or, if the address has too many or all are used, the oldest entry
-   that may be replaced. */
+/* Returns the entry to use for a new log-in from that address: a free one, or the oldest replaceable one if the address has too
+   many or none is free. */
 static struct sign_in *find_place(struct sign_ins *table, const uint8_t address[16], int64_t now_ns)
 {
     struct sign_in *oldest = NULL, *own = NULL, *unused = NULL;
@@ -155,8 +155,8 @@ void sign_ins_remove(struct sign_ins *table, struct person *person)
     memmove(person, person + 1, (table->count - i) * sizeof(*person));
 }
 
-/* Makes room for one more session: if the user has too many sessions, removes the user's oldest one; if all users together have too
-   many, the oldest of all. *left receives the removed session's refresh token, to be revoked. */
+/* Makes room for one more session: removes the user's oldest session if the user has too many, or the oldest of all if there
+   are too many in total. *left receives the removed session's refresh token, which must be revoked. */
 static void make_room(struct sign_ins *table, const char *sub, char **left)
 {
     struct person *same = NULL;

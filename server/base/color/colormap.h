@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour maps: 256 sRGB colours each. deploy/colormaps makes the table of built-in maps from shaders/maps/NAME.csv. A plant's own maps are
-   in plant/colormaps.h. Pure. Thread: any. */
+/* Colour maps of 256 sRGB colours each. deploy/colormaps generates the table of built-in maps from shaders/maps/NAME.csv. A
+   plant's own maps are in plant/colormaps.h. Pure. Thread: any. */
 #ifndef BASE_COLOR_COLORMAP_H
 #define BASE_COLOR_COLORMAP_H
 #include <stdbool.h>
@@ -11,8 +11,8 @@ struct colormap {
     /* name of the map: "relief" (the default) and "calm": low contrast, for shaded 3D; "viridis", "cividis", "diverging", "turbo" */
     char name[128];
     uint8_t rgb[256][3]; /* colours of values from MIN (index 0) to MAX (index 255) */
-    /* largest change of lightness L* that shading may cause, up or down: at most COLORMAP_SHADING, less for maps in which lightness shows
-       much of the value */
+    /* largest change of lightness L* that shading may cause, up or down: at most COLORMAP_SHADING, less for maps that encode
+       much of the value in lightness */
     double shading;
     /* true if 95 of 100 shaded pixels are read correctly to within 3 % of the range, also after JPEG compression and by deuteranopes */
     bool safe;
@@ -21,10 +21,10 @@ struct colormap {
 
 enum { COLORMAPS_BUILT_IN = 6 };
 extern const struct colormap colormaps_built_in[COLORMAPS_BUILT_IN]; /* the built-in maps; the first one is the default */
-/* The map of the operator's view, which shows where a reading is between its alarm limits: -3 to 3 (field/limits.h). */
+/* The colour map of the operator's view: shows where a reading lies between its alarm limits, from -3 to 3 (field/limits.h). */
 extern const struct colormap colormap_operator;
 
-/* Computes `shading` and `safe`, and chooses the out-of-range colours, from the map's colours; takes a few milliseconds. */
+/* Computes `shading` and `safe` from the map's colours, and chooses the out-of-range colours. Takes a few milliseconds. */
 void colormap_complete(struct colormap *map);
 /* The part of colormap_complete() that computes `shading` and `safe`. */
 void colormap_rate_shading(struct colormap *map);

@@ -6,13 +6,13 @@
 #include "base/color/colormap.h"
 #include "base/color/lab.h"
 
-/* largest accepted error of a value that is read off a colour: 3 % of the map's 256 colours */
+/* largest accepted error of a value read from a colour: 3 % of the map's 256 colours */
 static const double MAX_MISREAD = 0.03 * 256;
-/* fraction of samples that must be read correctly; stricter than the 0.95 promised for frames (struct colormap: safe), because frames
-   contain extreme light more often than these samples */
+/* fraction of samples that must be read correctly; stricter than the 0.95 promised for frames (struct colormap: safe), because
+   extreme light is more common in frames than in these samples */
 static const double MIN_RIGHT_PART = 0.974;
 static const double MIN_SHADING = 2, UNSAFE_SHADING = 4, STEP = 0.5;
-/* amplitude of the noise added to luma and chroma in turn, of 255: about that of JPEG at quality 80 */
+/* amplitude, of 255, of the noise added to luma and chroma in turn: about that of JPEG at quality 80 */
 static const double NOISE_AMPLITUDE = 2.0;
 enum { SAMPLED = 5, STEPS = 4, NOISES = 6 };
 

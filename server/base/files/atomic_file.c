@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-/* maximum number of attempts to find an unused name for the temporary file: killed programs with the same process id may have left files */
+/* maximum number of names tried for the temporary file: killed programs with the same process id may have left files behind */
 enum { MAX_TRIES = 1000 };
 
 int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode)
@@ -53,8 +53,8 @@ static void end(struct atomic_file *file)
     *file = (struct atomic_file){ .fd = -1 };
 }
 
-/* Syncs the folder, so that the new name is on disk. Ignores errors: some file systems cannot sync a folder, and their files are safe
-   anyway. */
+/* Syncs the folder, so that the new name is on disk. Ignores errors: some file systems cannot sync a folder, but keep its files
+   safe anyway. */
 static void sync_folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replaces a file atomically: the new content is written to a temporary file in the same folder, which is renamed once its whole content is
-   on disk. Readers see the old file or the new one. Functions that return int return 0 or -errno. Thread: one at a time per file. */
+/* Replaces a file atomically: writes the new content to a temporary file in the same folder, and renames that once its whole
+   content is on disk. Readers see either the old file or the new one. Functions that return int return 0 or -errno. Thread: one
+   at a time per file. */
 #ifndef BASE_FILES_ATOMIC_FILE_H
 #define BASE_FILES_ATOMIC_FILE_H
 #include <stdbool.h>
@@ -18,23 +19,23 @@ struct atomic_file {
    the umask. Returns 0 or -errno; after an error there is nothing to clean up. */
 int atomic_file_begin(struct atomic_file *file, const char *path, mode_t mode);
 int atomic_file_write(struct atomic_file *file, const void *bytes, size_t count);
-/* Syncs the temporary file to disk and renames it to its final name; on failure removes it. Ends the write in both cases; memory
-   mappings of the file stay valid. durable: also waits until the new name is on disk, which doubles the time and is not needed for data
-   that can be recomputed. Returns 0 or -errno. */
+/* Syncs the temporary file to disk and renames it to its final name, or removes it on failure. Ends the write in either case;
+   memory mappings of the file stay valid. durable: also waits until the new name is on disk, which takes twice as long and is
+   not needed for data that can be recomputed. Returns 0 or -errno. */
 int atomic_file_commit(struct atomic_file *file, bool durable);
 void atomic_file_abandon(struct atomic_file *file); /* Removes the temporary file; no-op if no write is in progress. */
 
-/* Writes a whole file (mode 0666 less the umask) without waiting until its name is on disk. Returns 0 or -errno. */
+/* Writes a whole file (mode 0666 less the umask) but does not wait until its name is on disk. Returns 0 or -errno. */
 int atomic_file_put(const char *path, const void *bytes, size_t count);
-/* Like atomic_file_put(), but returns only when the file is safely on disk, for data that the daemon confirms as saved. */
+/* Like atomic_file_put(), but returns only once the file is safely on disk: for data that the daemon confirms as saved. */
 int atomic_file_keep(const char *path, const void *bytes, size_t count);
-/* Converts the result of a write (0 or -errno) into the refusal that is sent to the user whose change was not saved. */
+/* Converts the result of a write (0 or -errno) to the refusal for the user whose change was not saved. */
 enum refusal_code atomic_file_not_kept(int error);
 struct atomic_file_part {
     const void *bytes;
     size_t count;
 };
-/* Like atomic_file_put(), with the content given in several parts that are written one after the other. */
+/* Like atomic_file_put(), but concatenates the content from several parts. */
 int atomic_file_put_parts(const char *path, const struct atomic_file_part *parts, size_t part_count);
 
 #endif

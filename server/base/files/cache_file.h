@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache files: results that take long to compute, stored under a key. A file that is missing, damaged, of another kind or of another key
-   cannot be used. Thread: any. */
+/* Cache files: results of long computations, stored under a key. A file that is missing, damaged, of another kind or under
+   another key is not used. Thread: any. */
 #ifndef BASE_FILES_CACHE_FILE_H
 #define BASE_FILES_CACHE_FILE_H
 #include <stdbool.h>
@@ -23,11 +23,11 @@ struct cache_file { /* a mapped cache file */
 /* Maps the file into memory. `magic`: 8 bytes that identify the kind of file. Returns false with the reason in `why` if there is no valid
    file; then cache_file_close() is not needed. */
 bool cache_file_open(struct cache_file *file, const char *path, const char *magic, uint64_t key, char why[CACHE_FILE_WHY_BYTES]);
-/* As cache_file_open(), for files that the caller makes again if necessary. Logs a damaged or unreadable file, with its path and what is
-   wrong; does not log a missing one, or one of another kind or key. */
+/* Like cache_file_open(), for files that the caller can generate again. Logs a damaged or unreadable file, with its path and
+   what is wrong; does not log a missing file, or one of another kind or key. */
 bool cache_file_open_if_good(struct cache_file *file, struct log *log, const char *path, const char *magic, uint64_t key);
 void cache_file_close(struct cache_file *file); /* Unmaps the file; a zeroed struct is fine. */
-/* Writes a file from parts, one after the other. Returns 0 or -errno. */
+/* Writes a file by concatenating the parts. Returns 0 or -errno. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count);
 
 #endif

@@ -61,7 +61,7 @@ static bool is_on_read_only_disk(const struct database *database)
     return access(database->path, W_OK) != 0 && errno == EROFS;
 }
 
-/* Returns the errno behind a general SQLite error such as "unable to open". */
+/* Returns the errno behind a generic SQLite error such as "unable to open". */
 static int cause_of(const struct database *database)
 {
     return is_on_read_only_disk(database) ? EROFS : sqlite3_system_errno(database->handle);
@@ -187,7 +187,7 @@ static int open_to_write(struct database *database, int *version)
     /* synchronous = FULL: a committed transaction survives a loss of power */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-    if (code == SQLITE_OK) /* must run the format's pragmas first: some apply only to a file without pages */
+    if (code == SQLITE_OK) /* the format's pragmas must run first: some have an effect only on a file without pages */
         code = sqlite3_exec(database->handle, database->format->set_up, NULL, NULL, NULL);
     if (code == SQLITE_OK)
         code = sqlite3_exec(database->handle, set_up, NULL, NULL, NULL);
@@ -206,8 +206,8 @@ int database_open(struct database *database, bool *renewed)
     return error || !is_newer(database, version) ? error : -EACCES;
 }
 
-/* Opens a database on a read-only disk as immutable, since SQLite cannot create its -wal and -shm files there. Correct only if no -wal
-   file exists, whose rows would be ignored. */
+/* Opens a database on a read-only disk as immutable, because SQLite cannot create its -wal and -shm files there. Correct only
+   if no -wal file exists: its rows would be ignored. */
 static int open_unchanging(struct database *database)
 {
     struct text uri = { 0 };
@@ -237,7 +237,7 @@ int database_open_to_read(struct database *database)
     int code = open_handle(database, database->path, SQLITE_OPEN_READONLY);
     if (code == SQLITE_OK)
         code = read_version(database, &version);
-    /* opens as immutable only on a read-only disk: on a writable one, another process may change the file meanwhile */
+    /* opens as immutable only on a read-only disk: on a writable one, another process may change the file in the meantime */
     if ((code & 0xff) == SQLITE_CANTOPEN && !has_log(database) && is_on_read_only_disk(database)) {
         code = open_unchanging(database);
         if (code == SQLITE_OK)

@@ -7,8 +7,8 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-/* MAX_QUEUED: maximum number of queued jobs, reached only if the disk hangs. RESULTS: number of newest jobs whose results are remembered;
-   enough, because a ticket (settling_ticket) is settled after a second */
+/* MAX_QUEUED: maximum number of queued jobs, reached only if the disk hangs. RESULTS: number of newest jobs whose results are
+   kept; enough, because a ticket (settling_ticket) is settled within a second */
 enum { MAX_QUEUED = 64, RESULTS = 1024 };
 
 struct file_writer {
@@ -20,7 +20,7 @@ struct file_writer {
     int queued_count;
     /* --- below: members that only the event loop uses */
     uint64_t count; /* number of the newest job */
-    /* results of the newest jobs, each at its number modulo RESULTS: 0, -errno, or -EINPROGRESS while the job is not finished */
+    /* results of the newest jobs, indexed by job number modulo RESULTS: 0, -errno, or -EINPROGRESS while the job is unfinished */
     int results[RESULTS];
 };
 
@@ -32,8 +32,8 @@ static void append(struct file_job **list, struct file_job *job)
     *list = job;
 }
 
-/* Moves a job that was written to the list `done`. If it failed, queued jobs of the same owner fail with the same error. The caller holds
-   the lock. */
+/* Moves a written job to the list `done`. If it failed, queued jobs of the same owner fail with the same error. The caller
+   holds the lock. */
 static void put_done(struct file_writer *writer, struct file_job *job, int error)
 {
     job->error = error;
@@ -108,7 +108,7 @@ void file_writer_destroy(struct file_writer **pointer)
     *pointer = NULL;
 }
 
-/* Returns the error of a job of that owner that has failed and that the event loop has not collected yet; 0: there is none. */
+/* Returns the error of a failed job of that owner that the event loop has not collected yet; 0: there is none. */
 static int failed_before(const struct file_writer *writer, const void *owner)
 {
     int error = 0;
@@ -128,7 +128,7 @@ int file_writer_queue(struct file_writer *writer, struct file_job *job)
     pthread_mutex_lock(&writer->thread.lock);
     error = failed_before(writer, job->owner);
     if (!error && writer->queued_count == MAX_QUEUED)
-        error = -ETIMEDOUT; /* the disk hangs, so that the queue is full */
+        error = -ETIMEDOUT; /* the queue is full because the disk hangs */
     if (!error) {
         job->number = ++writer->count;
         writer->results[job->number % RESULTS] = -EINPROGRESS;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a user and a password from a file. */
+/* Reads a user name and a password from a file. */
 #include "base/files/login_file.h"
 
 #include <errno.h>

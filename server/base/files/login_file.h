@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a file with a user on its first line and a password on its second. Thread: any. */
+/* Reads a file with a user name on its first line and a password on its second. Thread: any. */
 #ifndef BASE_FILES_LOGIN_FILE_H
 #define BASE_FILES_LOGIN_FILE_H
 #include <stdbool.h>
@@ -11,9 +11,9 @@ struct login_file {
     size_t bytes;
 };
 
-/* Reads the file. Returns false with the reason in `why` if the file cannot be read or names no user; login_file_forget() is then not
-   needed. */
+/* Reads the file. Returns false with the reason in `why` if the file cannot be read or has no user name; login_file_forget() is
+   then not needed. */
 bool login_file_read(const char *path, struct login_file *login, char why[200]);
-void login_file_forget(struct login_file *login); /* Overwrites and frees the login; a zeroed struct is fine. */
+void login_file_forget(struct login_file *login); /* Overwrites the user name and password and frees them; a zeroed struct is fine. */
 
 #endif

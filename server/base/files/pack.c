@@ -28,8 +28,8 @@ void pack_array(struct text *to, const void *array, size_t count, size_t bytes_e
     text_add_bytes(to, zeros, padding_of(count * bytes_each));
 }
 
-/* Returns the bytes of the next array; *count receives its number of elements. NULL: the array is empty, has elements of another size,
-   or the data ends. */
+/* Returns the bytes of the next array; *count receives its number of elements. NULL: the array is empty, its elements have
+   another size, or the data is truncated. */
 static const char *take(struct unpack *from, size_t *count, size_t bytes_each)
 {
     struct array_head head = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serialises arrays into bytes, for files that only this program reads, on the same kind of machine. Thread: any. */
+/* Serialises arrays into bytes, for files that only this program reads, on machines of the same kind. Thread: any. */
 #ifndef BASE_FILES_PACK_H
 #define BASE_FILES_PACK_H
 #include <stdbool.h>
@@ -9,15 +9,15 @@
 /* Appends an array with its length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
-struct unpack { /* bytes of packed arrays that are not read yet; the caller owns them */
+struct unpack { /* bytes of packed arrays that are still to be read; the caller owns them */
     const char *at;
     size_t left;
     bool bad; /* true: a read has failed, so all further reads fail too */
 };
-/* Reads the next array; free with mem_free(). Returns NULL if it is empty, if its elements have another size, or if memory is exhausted;
-   from->bad is false only for an empty array. */
+/* Reads the next array; free with mem_free(). Returns NULL if the array is empty, has elements of another size, or does not fit
+   into memory; from->bad stays false only for an empty array. */
 void *unpack_array(struct unpack *from, size_t *count, size_t bytes_each);
-/* Reads the next array, which must have exactly `count` elements, into memory of the caller. */
+/* Reads the next array, which must have exactly `count` elements, into the caller's memory. */
 void unpack_into(struct unpack *from, void *to, size_t count, size_t bytes_each);
 
 #endif

@@ -3,8 +3,8 @@
 #ifndef BASE_FILES_SECRET_H
 #define BASE_FILES_SECRET_H
 
-/* Reads the file at each call and returns its first line; free with secret_forget(). Returns NULL with the reason in *why (mem_free) if
-   it cannot be read. */
+/* Reads the file, without caching, and returns its first line; free with secret_forget(). Returns NULL with the reason in *why
+   (mem_free) if the file cannot be read. */
 char *secret_read(const char *path, char **why);
 void secret_forget(char *secret); /* Overwrites and frees a secret; NULL is fine. */
 

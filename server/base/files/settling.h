@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers without waiting whether rows that another thread writes are on disk yet. The owner of the rows keeps the counts under its own
-   lock. */
+/* Tells without blocking whether rows that another thread writes are on disk yet. The owner of the rows keeps the counts under
+   its own lock. */
 #ifndef BASE_SETTLING_H
 #define BASE_SETTLING_H
 #include <errno.h>
@@ -12,8 +12,8 @@ struct settling {
     uint64_t queued, done; /* number of rows queued since the start; number of rows written or dropped since the start */
     uint64_t lost;         /* sequence number of the newest dropped row; 0: none was dropped */
     uint64_t failures;     /* number of failed write attempts */
-    int error;             /* -errno of the newest failed attempt. A later success does not clear it, because tickets (settling_ticket)
-                              from before that success need it */
+    int error;             /* -errno of the newest failed attempt. A later success does not clear it, because tickets
+                              (settling_ticket) from before the success need it */
 };
 
 /* The rows queued between settling_begin() and settling_end(). All zero: no rows. */
@@ -40,7 +40,7 @@ static inline void settling_drop(struct settling *settling)
     settling->done++;
 }
 
-/* Counts a write attempt that brought `rows` more rows to disk. error: 0, or -errno if the attempt failed. */
+/* Counts a write attempt that put `rows` more rows on disk. error: 0, or -errno if the attempt failed. */
 static inline void settling_wrote(struct settling *settling, uint64_t rows, int error)
 {
     settling->done += rows;
@@ -48,8 +48,8 @@ static inline void settling_wrote(struct settling *settling, uint64_t rows, int 
     settling->error = error ? error : settling->error;
 }
 
-/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS while that is not decided, or the -errno because of which they count as
-   not saved. */
+/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS while the result is open, or the -errno due to which they count
+   as not saved. */
 static inline int settling_state(const struct settling *settling, const struct settling_ticket *ticket, int64_t now_ns)
 {
     if (ticket->last > ticket->first && settling->lost > ticket->first)

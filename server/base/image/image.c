@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes images: PNG and JPEG here, all other formats by OpenImageIO in plantcast-images.so. That module brings some 170 packages and is
-   a package of its own, which most plants do not need. */
+/* Decodes images: PNG and JPEG here, all other formats in plantcast-images.so, with OpenImageIO. That module depends on some
+   170 packages and is packaged separately, because most plants do not need it. */
 #include "base/image/image.h"
 
 #include <errno.h>
@@ -20,7 +20,7 @@ enum image_format { PNG, JPEG, WEBP, OTHER };
 
 static struct module images = MODULE("plantcast-images.so"); /* implemented by image_shim.cc */
 
-/* Returns the format that the first bytes show, whatever the file is called. */
+/* Returns the format according to the first bytes, regardless of the file name. */
 static enum image_format format_of(const unsigned char *bytes, size_t size)
 {
     if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0)
@@ -30,8 +30,8 @@ static enum image_format format_of(const unsigned char *bytes, size_t size)
     return size >= 12 && memcmp(bytes, "RIFF", 4) == 0 && memcmp(bytes + 8, "WEBP", 4) == 0 ? WEBP : OTHER;
 }
 
-/* Scales one row or column of RGBA pixels down. Each new pixel is the mean of the old pixels that it covers. steps: distances in pixels
-   between neighbours. */
+/* Scales down one row or column of RGBA pixels. Each new pixel is the mean of the old pixels that it covers. steps: distances
+   in pixels between neighbours. */
 static void shrink_line(const uint8_t *from, uint32_t count, size_t step, uint8_t *to, uint32_t to_count, size_t to_step)
 {
     double ratio = (double)count / to_count;
@@ -73,7 +73,7 @@ static bool shrink(struct image *image, uint32_t max_px, char *why)
     return good;
 }
 
-/* Decodes an image by plantcast-images.so. If the module cannot be loaded, `why` begins with the image's format. */
+/* Decodes an image in plantcast-images.so. If the module cannot be loaded, `why` begins with the image's format. */
 static bool decode_by_module(struct image *image, const void *bytes, size_t size, uint32_t max_px, const char *format, char *why)
 {
     bool (*decode)(struct image *, const void *, size_t, uint32_t, char[IMAGE_WHY_BYTES]);
@@ -104,7 +104,7 @@ bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t 
     return cmyk && decode_by_module(image, bytes, size, max_px, "jpeg in CMYK", why);
 }
 
-/* Reads a PNG or JPEG file. Returns false with an empty `why` for other formats, which plantcast-images.so must read. */
+/* Reads a PNG or JPEG file. Returns false with an empty `why` for other formats, which only plantcast-images.so can read. */
 static bool load_here(struct image *image, const char *path, uint32_t max_px, char *why)
 {
     unsigned char head[12];
@@ -126,7 +126,7 @@ static bool load_here(struct image *image, const char *path, uint32_t max_px, ch
     return good;
 }
 
-/* Finds the module's function that loads a file of another format than PNG and JPEG. */
+/* Finds the module's function that loads files in formats other than PNG and JPEG. */
 static bool find_loader(const char *name, void *function, char *why)
 {
     char reason[IMAGE_WHY_BYTES - 24];

@@ -21,11 +21,11 @@ struct image_float {
     uint32_t width_px, height_px;
 };
 
-/* Decodes a PNG, JPEG or WebP file in memory, from an untrusted source. Scales images down until no side exceeds max_px. Returns false
-   on failure, with the reason in `why`. */
+/* Decodes a PNG, JPEG or WebP file in memory, from an untrusted source. Scales the image down until no side exceeds max_px.
+   Returns false on failure, with the reason in `why`. */
 bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
-/* Like image_decode(), but for any file that OpenImageIO reads, and only from a trusted source: the plant file or the command line names
-   the file. */
+/* Like image_decode(), but for any format that OpenImageIO reads, and only for trusted files: those named in the plant file or
+   on the command line. */
 bool image_load(struct image *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
 bool image_load_float(struct image_float *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
 

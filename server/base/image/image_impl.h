@@ -10,15 +10,15 @@ extern "C" {
 
 #define IMAGE_MAX_SIDE_PX (1u << 15)
 #define IMAGE_MAX_PIXELS (1u << 26) /* largest number of pixels of an image: 8192 x 8192, because larger textures are never drawn */
-/* Limits against files that decode to far more than their size. VALUES_PER_BYTE: most decoded values per byte of file; zlib shrinks data
-   to a thousandth at best, JPEG to less. FREE_VALUES: number of values that a file of any size may have. */
+/* Limits against decompression bombs. VALUES_PER_BYTE: maximum number of decoded values per byte of file; zlib compresses at
+   most 1000:1, JPEG less. FREE_VALUES: number of values that a file of any size may decode to. */
 #define IMAGE_VALUES_PER_BYTE 2000u
 #define IMAGE_FREE_VALUES (1u << 20)
 
-/* Allocates the pixels of an image, after checking that `bytes` bytes can hold that many of `channels` channels. Returns false with the
-   reason in `why`. */
+/* Allocates the pixels of an image, after checking that `bytes` bytes of file can contain that many pixels of `channels`
+   channels. Returns false with the reason in `why`. */
 bool image_allocate(struct image *image, uint32_t width_px, uint32_t height_px, int channels, size_t bytes, char why[IMAGE_WHY_BYTES]);
-/* Decode PNG and JPEG by libpng and libjpeg. On failure, the caller frees the pixels. */
+/* Decode PNG and JPEG with libpng and libjpeg. On failure, the caller frees the pixels. */
 bool image_read_png(struct image *image, const void *bytes, size_t size, char why[IMAGE_WHY_BYTES]);
 bool image_read_jpeg(struct image *image, const void *bytes, size_t size, bool *cmyk, char why[IMAGE_WHY_BYTES]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes JPEG by libjpeg. Its errors end the call by longjmp. */
+/* Decodes JPEG with libjpeg. Its errors end the call with longjmp. */
 #include <setjmp.h>
 #include <stdio.h>
 
@@ -23,7 +23,7 @@ static void fail(j_common_ptr codec)
     longjmp(reader->failed, 1);
 }
 
-/* Fails for a truncated file, of which libjpeg only warns: it fills the missing rows with grey. Other warnings are ignored. */
+/* Turns libjpeg's warning of a truncated file into a failure: libjpeg would fill the missing rows with grey. Other warnings are ignored. */
 static void warn(j_common_ptr codec, int level)
 {
     if (level < 0 && codec->err->msg_code == JWRN_JPEG_EOF)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes PNG by libpng. Its errors end the call by longjmp. Colour profiles and gamma are ignored, as glTF requires. */
+/* Decodes PNG with libpng. Its errors end the call with longjmp. Colour profiles and gamma are ignored, as glTF requires. */
 #include <png.h>
 #include <stdio.h>
 #include <string.h>

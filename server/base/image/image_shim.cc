@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-images.so: decodes, by OpenImageIO, the image formats that image.c does not decode itself. */
+/* plantcast-images.so: decodes, with OpenImageIO, the image formats that image.c does not decode itself. */
 #include "base/image/image_impl.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -24,11 +24,10 @@ extern "C" {
 namespace
 {
 
-constexpr int MAX_FILE_CHANNELS = 64;    /* maximum number of channels in a file; rendering programs append further channels after the
-                                            colours */
+constexpr int MAX_FILE_CHANNELS = 64;    /* maximum number of channels in a file; rendering programs add channels beyond the colours */
 
-/* Returns OpenImageIO's name of the reader for the format that the first bytes show; otherwise OpenImageIO would choose the reader by
-   the file name. */
+/* Returns OpenImageIO's name of the reader for the format, according to the first bytes; otherwise OpenImageIO would choose the
+   reader by file name. */
 const char *format_of(const unsigned char *bytes, size_t size)
 {
     if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
@@ -89,8 +88,7 @@ void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSpec &spec, uint32_t max
         throw std::bad_alloc();
     bool read = in->read_image(0, 0, 0, channels, kind<T>::type, raw.data());
     std::string error = in->geterror();
-    /* a truncated JPEG file counts as broken, although the JPEG reader only says so in its error text, and fills the missing rows with
-       grey */
+    /* a truncated JPEG file counts as broken; the JPEG reader only mentions it in its error text and fills the missing rows with grey */
     if (!read || error.find("Premature end") != std::string::npos)
         throw std::runtime_error(error.empty() ? "broken" : error);
     spread(raw.data(), channels, pixels, kind<T>::opaque, *rgba);
@@ -123,7 +121,7 @@ bool size_good(const OIIO::ImageSpec &spec, int max_channels, char *why)
 bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
 {
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
-    /* WebP files are not checked, because WebP stores images of one colour in a few bytes */
+    /* WebP files are exempt, because WebP stores single-colour images in a few bytes */
     if (strcmp(format, "webp") != 0 && values > IMAGE_FREE_VALUES + uint64_t{ IMAGE_VALUES_PER_BYTE } * size)
         return refuse(why, "%zu bytes cannot hold %d x %d pixels", size, spec.width, spec.height);
     return true;
@@ -150,7 +148,7 @@ bool decode(struct image *image, const void *bytes, size_t size, uint32_t max_px
     return true;
 }
 
-/* Opens an image by its content, whatever its file name says. Returns NULL with the reason in `why` on failure. */
+/* Opens an image by its content, regardless of the file name. Returns NULL with the reason in `why` on failure. */
 std::unique_ptr<OIIO::ImageInput> open_file(const char *path, OIIO::ImageSpec *spec, char *why)
 {
     OIIO::ImageSpec hints;

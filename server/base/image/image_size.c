@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Limits the sizes of images. */
+/* Limits on the size of images. */
 #include <stdio.h>
 
 #include "base/image/image_impl.h"

@@ -20,7 +20,7 @@ static const int64_t REPEAT_NS = 1000000000;
 struct log {
     enum log_level level;
     enum log_format format;
-    char *plant, *journal_socket; /* plant: name of the plant, NULL if none; journal_socket: path of the journal's socket, NULL for the
+    char *plant, *journal_socket; /* plant: name of the plant, NULL: none; journal_socket: path of the journal's socket, NULL: the
                                      system's */
     pthread_mutex_t lock;
     /* --- below: under `lock` */
@@ -78,7 +78,7 @@ static void emit_text(enum log_level level, const char *text)
     fprintf(stderr, "%s %-5s %s\n", stamp, names[level], text);
 }
 
-/* Makes a JSON string of a text that may be invalid UTF-8: paths and names come from outside. */
+/* Converts a text to a JSON string. The text may be invalid UTF-8, because paths and names come from outside. */
 static json_t *json_of(const char *text)
 {
     json_t *string = json_string(text);

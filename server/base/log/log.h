@@ -39,14 +39,14 @@ struct log;
 
 /* Creates a log in text format that drops lines above `level`. Never returns NULL. */
 struct log *log_create(enum log_level level);
-/* Writes the counts of repeated lines that are still held back, and frees the log. &NULL is fine; sets *log to NULL. */
+/* Writes the pending counts of repeated lines, and frees the log. Accepts a pointer to NULL; sets *log to NULL. */
 void log_destroy(struct log **log);
 /* Sets the format. Call it before other threads use the log. journal_socket: socket for LOG_JOURNAL, copied; NULL: the system journal's
    socket. */
 void log_set_format(struct log *log, enum log_format format, const char *journal_socket);
 /* Sets the plant's name that LOG_JSON and LOG_JOURNAL write with each line. Call it before other threads use the log. */
 void log_set_plant(struct log *log, const char *plant);
-/* Returns whether the format is LOG_TEXT, which a person reads directly. */
+/* Returns true if the format is LOG_TEXT, which is meant for people. */
 bool log_is_text(const struct log *log);
 
 void log_event(struct log *log, enum log_level level, enum log_event event, const char *fmt, ...) __attribute__((format(printf, 4, 5)));

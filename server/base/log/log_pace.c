@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts the log lines that a rate limit leaves out. */
+/* Counts the log lines that a rate limit suppresses. */
 #include "base/log/log_pace.h"
 
 #include <stdio.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rate limit for log lines about one repeating state. The first line is due immediately, later ones after pauses that double from
-   `first_ns` to `longest_ns`; each gives the number of occurrences left out. Pure; the caller passes now_ns. Thread: one. */
+/* Rate limit for log lines about one repeating state. The first line is due immediately, later ones after pauses that double
+   from `first_ns` to `longest_ns`; each states how many occurrences were suppressed. Pure; the caller passes now_ns. Thread:
+   one. */
 #ifndef BASE_LOG_LOG_PACE_H
 #define BASE_LOG_LOG_PACE_H
 #include <stdbool.h>
@@ -17,8 +18,8 @@ struct log_pace { /* zero-initialise the members other than first_ns and longest
 /* Counts one occurrence of the state. Returns true if a log line is due now; `more` then receives the text to append: "" or " (and 5
    more in the last 60 s)". */
 bool log_pace_take(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
-/* Returns true if a pause has ended in which occurrences were left out, and starts the next pause. `more` then receives a text with
-   their number. */
+/* Returns true if a pause has ended in which occurrences were suppressed, and starts the next pause. `more` then receives a
+   text with their number. */
 bool log_pace_flush(struct log_pace *pace, int64_t now_ns, char more[LOG_PACE_BYTES]);
 
 #endif

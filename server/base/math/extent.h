@@ -8,7 +8,7 @@ struct extent {
     double low[3], high[3];
 };
 
-/* Returns a box without any point; extent_add() makes it grow. */
+/* Returns an empty box, to be enlarged with extent_add(). */
 static inline struct extent extent_empty(void)
 {
     return (struct extent){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };

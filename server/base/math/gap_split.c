@@ -11,10 +11,10 @@
 enum { BINS = 256, MAX_SPLITS = 64 };
 static const double SMALL_SHARE = 0.02; /* stray pieces are small if together they have at most this fraction of the area of all
                                            triangles */
-/* lengths of a gap in sizes of the main part: small pieces beyond a gap of SMALL_GAP are stray, and pieces of any area beyond a gap of
-   LARGE_GAP */
+/* lengths of a gap in sizes of the main part: beyond a gap of SMALL_GAP, small pieces are stray; beyond a gap of LARGE_GAP,
+   pieces of any area */
 static const double SMALL_GAP = 1, LARGE_GAP = 100;
-/* distance, as a fraction of the main part's size, beyond which corners of triangles count as being at different places */
+/* distance, as a fraction of the main part's size, beyond which corners of triangles count as different places */
 static const double ONE_PLACE = 1e-3;
 
 struct tri_range {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Separates the main part of a model or plant from stray pieces, such as a vertex left at the origin of survey coordinates.
-   Rule: a gap is an interval along one axis without any corner of a triangle. Pieces beyond a gap are stray if all stray pieces together
-   have at most 2 % of the area and the gap is at least as long as the main part, or if the gap is at least 100 times as long, whatever
-   their area. A triangle that crosses such a gap is stray too, unless crossing triangles have more than 2 % of the area and end at several
-   places on the far side: such a long pipe belongs to what it connects. The main part is the side with the larger area.
-   A simpler rule, the box of 98 % of the area, would crop flare stacks, pipe racks and tanks at the edge of a plant, which have less than 2
-   % of the area but stand next to the rest. It would also keep a stray box that has a third of the area of a small model 7,000 km away.
-   Thread: any. */
+   Rule: a gap is an interval along one axis that contains no corner of a triangle. Pieces beyond a gap are stray if the gap is
+   at least as long as the main part and all stray pieces together have at most 2 % of the area. Beyond a gap at least 100 times
+   as long they are stray whatever their area. A triangle that crosses such a gap is stray too, unless crossing triangles have
+   more than 2 % of the area and end at several places on the far side: such a long pipe belongs to the pieces that it connects.
+   The main part is the side with the larger area. A simpler rule, the box of 98 % of the area, would crop flare stacks, pipe
+   racks and tanks at the edge of a plant, which have less than 2 % of the area but stand next to the rest. It would also keep a
+   stray box 7,000 km away that has a third of the area of a small model. Thread: any. */
 #ifndef BASE_MATH_GAP_SPLIT_H
 #define BASE_MATH_GAP_SPLIT_H
 #include <stddef.h>
@@ -22,8 +22,8 @@ struct gap_tri {
 /* Moves the triangles of the main part to the front of the array. Returns their number; *main receives their extent. */
 size_t gap_split(struct gap_tri *tris, size_t count, struct extent *main);
 
-/* Converts an indexed mesh (3 indices a triangle) to an array of triangles, in which `owner` is the triangle's index in the mesh. The
-   caller frees the array (mem_free). */
+/* Converts an indexed mesh (3 indices per triangle) to an array of triangles; their `owner` is the triangle's index in the
+   mesh. The caller frees the array (mem_free). */
 struct gap_tri *gap_tris(const float (*positions_m)[3], const uint32_t *indices, size_t triangle_count);
 /* Returns the diagonal of the main part of an indexed mesh. Tolerances and spacings are fractions of this diagonal, so that a stray vertex
    does not change them. */

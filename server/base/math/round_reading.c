@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rounds a reading for messages. */
+/* Rounds readings for messages to clients. */
 #include "base/math/round_reading.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 double round_reading(double value)
 {
     double size = fabs(value);
-    /* below 1e-300, `scale` would overflow; from 1e12 on, three decimals would not change the number */
+    /* below 1e-300, `scale` would overflow; from 1e12 on, rounding to three decimals would not change the number */
     if (!(size >= 1e-300 && size < 1e12))
         return value + 0.0; /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
     double scale = size >= 1e4 ? 1000 : pow(10, 6 - floor(log10(size)));

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The digits with which messages to people and programs state a reading. Thread: any. */
+/* The precision of readings in messages to people and programs. Thread: any. */
 #ifndef BASE_MATH_ROUND_READING_H
 #define BASE_MATH_ROUND_READING_H
 
-enum { READING_DIGITS = 15 }; /* significant digits with which the numbers of round_reading() are printed */
-/* Returns a finite reading with seven significant digits and at least three decimals, so that large numbers such as counters keep all
-   digits that pages show. Never -0.0. */
+enum { READING_DIGITS = 15 }; /* number of significant digits with which to print a value returned by round_reading() */
+/* Rounds a finite reading to seven significant digits, but to no fewer than three decimals, so that large numbers such as
+   counters keep all digits that pages show. Never returns -0.0. */
 double round_reading(double value);
 
 #endif

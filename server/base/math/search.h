@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Comparison of numbers for qsort(), and a binary search by any condition, for elements that bsearch() cannot search. */
+/* Comparison of numbers for qsort(), and a binary search with an arbitrary condition, where bsearch() does not fit. */
 #ifndef BASE_SEARCH_H
 #define BASE_SEARCH_H
 #include <stddef.h>
@@ -19,8 +19,8 @@ static inline int compare_int64(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Sets `at` to the first index for which `precedes`, an expression in `at`, is false; to `count` if there is none. `precedes` must not
-   become true again once it was false. */
+/* Sets `at` to the first index for which `precedes`, an expression in `at`, is false; to `count` if there is none. `precedes`
+   must be true for all indices below some bound and false from there on. */
 #define search_sorted(at, count, precedes)                                                                                                 \
     do {                                                                                                                                   \
         size_t low_ = 0, high_ = (size_t)(count);                                                                                          \

@@ -4,8 +4,8 @@
 #define BASE_MATH_VEC_H
 #include <math.h>
 
-/* Returns the smaller of two numbers that are not NaN. The C library's fmin() and fmax() also handle NaN, and calling them would take half
-   of the time of a ray query. */
+/* Returns the smaller of two numbers that are not NaN. The C library's fmin() and fmax() also handle NaN; calling them would
+   take half the time of a ray query. */
 static inline double min_of(double a, double b)
 {
     return a < b ? a : b;
@@ -72,8 +72,8 @@ static inline void vec_frame(const double normal[3], double x[3], double y[3])
     y[2] = -normal[1];
 }
 
-/* Rotates v, which is tangent to the plane with unit normal `from`, into the plane with normal `to` by the smallest rotation. The signs
-   of the normals do not matter. */
+/* Rotates v, a tangent vector of the plane with unit normal `from`, into the plane with normal `to` by the smallest rotation.
+   The signs of the normals do not matter. */
 static inline void vec_turn(double v[3], const double from[3], const double to[3])
 {
     double sign = copysign(1, vec_dot(from, to)), part = sign * vec_dot(to, v) / (1 + sign * vec_dot(from, to));

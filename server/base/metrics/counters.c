@@ -12,7 +12,7 @@
 struct counter_entry {
     char *name, *type, *help;
     counter value;
-    bool microseconds;           /* true: the number is in microseconds, and printed in seconds */
+    bool microseconds;           /* true: the number is in microseconds but printed in seconds */
     struct histogram *histogram; /* histogram of durations; NULL: the metric is a single value */
     struct counter_entry *next;
 };

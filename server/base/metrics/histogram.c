@@ -19,7 +19,7 @@ void histogram_add(struct histogram *histogram, int64_t duration_ns)
     counter_inc(&histogram->sum_us, us);
 }
 
-/* Prints the metric's name with a suffix, and its labels with one more label if `label` is given: a{b="c"} becomes
+/* Prints the metric's name with a suffix, and its labels plus an additional one if `label` is given: a{b="c"} becomes
    a_bucket{b="c",le="0.1"}. */
 static void print_name(const char *name, const char *suffix, const char *label, struct text *out)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A histogram of durations in the form of Prometheus. Thread: any; each bucket is one atomic. */
+/* A histogram of durations in Prometheus format. Thread: any; each bucket is one atomic. */
 #ifndef BASE_METRICS_HISTOGRAM_H
 #define BASE_METRICS_HISTOGRAM_H
 #include "base/metrics/counter.h"
@@ -12,7 +12,7 @@ struct histogram {
 };
 
 void histogram_add(struct histogram *histogram, int64_t duration_ns); /* Counts a duration; a negative one counts as 0. */
-/* Prints the histogram. `name`: with or without labels, as in counters_add(). */
+/* Prints the histogram. `name` may have labels, as in counters_add(). */
 void histogram_print(struct histogram *histogram, const char *name, struct text *out);
 
 #endif

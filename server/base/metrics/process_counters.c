@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the metrics of the process from /proc/self. */
+/* Reads this process's metrics from /proc/self. */
 #include "base/metrics/process_counters.h"
 
 #include <dirent.h>
@@ -44,7 +44,7 @@ static int64_t boot_s(void)
 static int64_t count_files(void)
 {
     DIR *folder = opendir("/proc/self/fd");
-    int64_t count = -3; /* begins at -3, so that ".", ".." and the descriptor of the folder itself are not counted */
+    int64_t count = -3; /* starts at -3 to exclude ".", ".." and the descriptor of the folder itself */
     for (; folder && readdir(folder);)
         count++;
     if (folder)
@@ -63,7 +63,7 @@ void process_counters_set(struct counters *counters)
         counter_set(counters_add(counters, "process_threads", "gauge", "Threads of this process."), (int64_t)fields[STAT_THREADS]);
         counter *start_s =
             counters_add(counters, "process_start_time_seconds", "gauge", "Start time of the process, in seconds since 1970.");
-        if (atomic_load(start_s) == 0) /* sets the start time only once, so that a later change of the clock does not move it */
+        if (atomic_load(start_s) == 0) /* sets the start time only once, so that later changes of the clock do not move it */
             counter_set(start_s, boot_s() + (int64_t)(fields[STAT_START] / (unsigned long long)sysconf(_SC_CLK_TCK)));
         counter_set(counters_add(counters, "process_virtual_memory_bytes", "gauge", "Virtual memory of this process in bytes."),
                     (int64_t)fields[STAT_VIRTUAL]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Divides the service's cgroup among the daemon and its children, with the kernel's cgroup v2 files
+/* Divides the service's cgroup between the daemon and its children, with the kernel's cgroup v2 files
    (Documentation/admin-guide/cgroup-v2.rst). */
 #include "base/system/cgroup.h"
 
@@ -58,14 +58,14 @@ static bool write_file(const char *folder, const char *name, const char *text)
     return good;
 }
 
-/* Returns true if systemd delegated the cgroup, which it marks by this attribute (https://systemd.io/CGROUP_DELEGATION). */
+/* Finds this process's cgroup path. */
 static bool is_delegated(const char *folder)
 {
     char value[8];
     return getxattr(folder, "user.delegate", value, sizeof(value)) == 1 && value[0] == '1';
 }
 
-/* Finds the service's cgroup: the parent of this process's cgroup, after the process has moved into "daemon". */
+/* Finds the service's cgroup: the parent of this process's cgroup once the process has moved to "daemon". */
 static bool find_service(char out[PATH_MAX])
 {
     const size_t tail = sizeof(daemon_name) - 1;
@@ -98,7 +98,7 @@ bool cgroup_create(const char *name, size_t memory_bytes, int max_tasks, char **
     snprintf(number, sizeof(number), "%zu", memory_bytes);
     good = good && write_file(*path, "memory.max", memory_bytes ? number : "max");
     int error = errno;
-    /* a failure is ignored, because the file memory.swap.max is absent if the kernel does not count swap */
+    /* ignores a failure: memory.swap.max does not exist if the kernel does not account for swap */
     write_file(*path, "memory.swap.max", "0");
     if (!good)
         cgroup_destroy(path);
@@ -113,7 +113,7 @@ bool cgroup_add(const char *path, pid_t pid)
     return !path || write_file(path, "cgroup.procs", number);
 }
 
-/* Removes the cgroup. Killed processes leave it only when they have ended, so this waits some milliseconds. */
+/* Removes the cgroup. Killed processes leave it only after they have ended, so this waits for some milliseconds. */
 void cgroup_destroy(char **path)
 {
     if (!*path)

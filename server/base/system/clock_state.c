@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the kernel's state of the clock. */
+/* Reads the clock's state from the kernel. */
 #include "base/system/clock_state.h"
 
 #include "base/clock.h"

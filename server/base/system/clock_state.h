@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of the machine's clock, as chrony, ntpd, systemd-timesyncd or a PTP daemon has told the kernel. Thread: any. */
+/* State of the machine's clock, as reported to the kernel by chrony, ntpd, systemd-timesyncd or a PTP daemon. Thread: any. */
 #ifndef BASE_SYSTEM_CLOCK_STATE_H
 #define BASE_SYSTEM_CLOCK_STATE_H
 #include <stdbool.h>
@@ -8,14 +8,14 @@
 struct clock_state {
     bool set;       /* true: a time service synchronises the clock */
     double error_s; /* maximum error of the clock in seconds; 0: unknown, or not synchronised */
-    int leap_s;     /* leap seconds to be added at the end of this month: 1, -1 or 0 */
+    int leap_s;     /* leap seconds to be inserted at the end of this month: 1, -1 or 0 */
 };
 
 struct clock_state clock_state_read(void);
 /* Interprets the result of adjtimex(2). `state`: what the call returned. */
 struct clock_state clock_state_of(const struct timex *timex, int state);
-/* Returns the maximum error rounded up to 1, 10, 100, 1000 ms and so on, so that clients are not notified of small changes; 0 if the
-   error is 0. */
+/* Returns the maximum error rounded up to 1, 10, 100, 1000 ms and so on, so that clients need not be notified of small changes;
+   0 if the error is 0. */
 int clock_state_error_ms(const struct clock_state *state);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Confines processes by Landlock and seccomp. Defines the constants of Landlock itself and uses raw system calls, because the headers of
-   Debian 12 know only ABI 2 of Landlock. */
+/* Confines processes with Landlock and seccomp. Defines Landlock's constants itself and uses raw system calls, because the
+   headers of Debian 12 know only ABI 2 of Landlock. */
 #include "base/system/confine.h"
 
 #include <errno.h>
@@ -53,7 +53,7 @@ struct path_rule {
     int32_t parent;
 } __attribute__((packed));
 
-/* Paths that every program needs: libraries, fonts, kernel files that the C library and V8 read, and the dynamic loader. */
+/* Paths that every program needs: libraries, fonts, the dynamic loader, and kernel files that the C library and V8 read. */
 static const struct confine_path system_paths[] = {
     { "/lib", CONFINE_READ },
     { "/lib32", CONFINE_READ },
@@ -110,7 +110,7 @@ static uint64_t rights_of(enum confine_access access, enum confine_role role)
     return rights;
 }
 
-/* Adds a path to the ruleset. A path that is absent, or that this user cannot reach, is skipped without an error. */
+/* Adds a path to the ruleset. Skips a path that does not exist or that this user cannot reach, without an error. */
 static int permit(int ruleset, const char *path, uint64_t rights)
 {
     struct stat st;
@@ -126,7 +126,7 @@ static int permit(int ruleset, const char *path, uint64_t rights)
     return status;
 }
 
-/* Permits to read ThreadSanitizer's list of suppressions, which it needs when a program starts. Does nothing in other builds. */
+/* Allows reading ThreadSanitizer's list of suppressions, which it needs when a program starts. No-op in other builds. */
 static int permit_suppressions(int ruleset)
 {
     int status = 0;
@@ -144,13 +144,12 @@ static int restrict_paths(const struct confine_params *params, int abi)
 {
     const struct confine_ruleset attributes = confine_ruleset_of(abi);
     uint64_t known = attributes.files;
-    /* passes a structure with all members: an older kernel, whose own structure is smaller, accepts it if the excess bytes are zero */
+    /* passes a structure with all members: an older kernel, whose structure is smaller, accepts it if the excess bytes are zero */
     int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes), 0);
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
         status = permit(ruleset, system_paths[i].path, rights_of(system_paths[i].access, params->role) & known);
-    if (status == 0) /* a command may read all of /proc, because the programs that it starts have entries there whose names are unknown
-                        in advance */
+    if (status == 0) /* a command may read all of /proc, because the names of its child processes there are unknown in advance */
         status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
     if (status == 0)
         status = permit_suppressions(ruleset);
@@ -163,8 +162,7 @@ static int restrict_paths(const struct confine_params *params, int abi)
     return status;
 }
 
-/* Drops all capabilities, except that root keeps access to other users' folders, and in a command also the right to change a file's
-   owner. */
+/* Drops all capabilities, except root's access to other users' folders and, in a command, the right to change a file's owner. */
 static void drop_capabilities(enum confine_role role)
 {
     uint32_t kept = 1U << CAP_DAC_OVERRIDE | 1U << CAP_DAC_READ_SEARCH;
@@ -199,14 +197,14 @@ int confine(const struct confine_params *params)
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    /* commands also move files between folders, which Landlock ABI 1 forbids to every confined process; under ABI 1, paths of commands are
-       therefore not restricted */
+    /* commands also move files between folders, which a Landlock ruleset always forbids under ABI 1; under ABI 1, paths of
+       commands are therefore not restricted */
     bool moves_files = params->role != CONFINE_READER;
     int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
         return status;
     status = confine_calls(params->role, params->notifies);
-    /* a kernel without seccomp filters is no error here: confine_lacks() reports that they are missing */
+    /* missing seccomp filters are no error here: confine_lacks() reports them */
     return status == -ENOSYS || status == -EINVAL ? 0 : status;
 }
 
@@ -216,9 +214,9 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
         int abi;
         const char *missing;
     } parts[] = {
-        /* abi: first version of Landlock that can restrict an access; missing: the access, which commands under `convert` have on kernels
-           with an older version. Programs that read models never have these accesses, because seccomp blocks the system calls. TCP and
-           devices are missing in this table, because seccomp blocks them for commands, too. */
+        /* abi: first Landlock version that can restrict an access; missing: the access, which commands under `convert` have on
+           kernels with an older version. Model-reading programs never have these accesses, because seccomp blocks the system
+           calls. TCP and devices are not listed, because seccomp blocks them for commands, too. */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "truncate all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },
@@ -255,8 +253,8 @@ void confine_hide_memory(void)
 }
 
 #ifdef __SANITIZE_ADDRESS__
-/* LeakSanitizer calls this function before it looks for leaks, and skips the search if it returns true. It would inspect the process by
-   ptrace(), which confined processes and those with hidden memory deny. */
+/* LeakSanitizer calls this function before it looks for leaks, and skips the search if it returns true. It would inspect the
+   process with ptrace(), which confined processes and those with hidden memory deny. */
 int __lsan_is_turned_off(void);
 int __lsan_is_turned_off(void)
 {

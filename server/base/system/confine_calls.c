@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An allow-list of system calls in classic BPF. The length of the list costs nothing, because the kernel caches the verdict for calls
-   that do not depend on arguments. */
+/* An allow-list of system calls in classic BPF. The list's length costs nothing, because the kernel caches the verdict for
+   calls that do not depend on arguments. */
 #include "base/system/confine_calls.h"
 
 #include <errno.h>
@@ -24,8 +24,8 @@
 #endif
 
 #ifdef OWN_ARCH
-/* FIRST_NEWER_CALL: system call number of cachestat (Linux 6.5). The list was made before; this and higher numbers, which include those of
-   the x32 ABI, are unknown to it */
+/* FIRST_NEWER_CALL: number of cachestat (Linux 6.5), the first system call newer than the list. It and all higher numbers,
+   including those of the x32 ABI, count as unknown */
 enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 };
 #define NAMESPACES (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
 #ifndef PR_SET_VMA
@@ -47,7 +47,7 @@ struct values {
     int count;
 };
 
-/* Calls needed for parsing: memory, threads, time, signals to the process itself, and files. Landlock decides which files. */
+/* Calls that parsing needs: memory, threads, time, signals to the process itself, and files. Landlock decides which files. */
 static const int reader_calls[] = {
     SYS_brk, SYS_mmap, SYS_munmap, SYS_mprotect, SYS_mremap, SYS_madvise, SYS_msync, SYS_mincore, SYS_mlock, SYS_munlock, SYS_membarrier,
     SYS_exit, SYS_exit_group, SYS_futex, SYS_set_robust_list, SYS_set_tid_address, SYS_rseq, SYS_getpid, SYS_getppid, SYS_gettid,
@@ -70,8 +70,8 @@ static const int reader_calls[] = {
 #endif
 };
 
-/* Additional system calls for commands of the site (its own programs, which the plant file names): they may start programs and change files
-   in the folder that they may write. */
+/* Additional system calls for the site's commands (its own programs, named in the plant file): they may start programs, and
+   change files in the folder that they may write. */
 static const int command_calls[] = {
     SYS_kill, SYS_tgkill, SYS_pidfd_open, SYS_pidfd_send_signal, SYS_setpgid, SYS_prctl, SYS_seccomp, SYS_capset, SYS_fchmod, SYS_fchown,
     SYS_landlock_create_ruleset, SYS_landlock_add_rule, SYS_landlock_restrict_self, SYS_sched_setaffinity,
@@ -109,9 +109,10 @@ static void allow(struct filter_program *program, const int *calls, size_t count
     }
 }
 
-/* Appends a test of an argument of a system call to the filter: compares the lower half of the argument (all that the kernel uses of an
-   int) with `values`. `test` is BPF_JEQ, or BPF_JSET for any bit of a value. allowed: a match is allowed and anything else refused;
-   otherwise a match is refused. Both supported processors are little-endian. */
+/* Appends a test of a system call's argument to the filter: compares the lower half of the argument (all that the kernel uses
+   of an int) with `values`. `test` is BPF_JEQ, or BPF_JSET for any bit of a value. allowed true: a match is allowed and
+   anything else refused; false: a match is refused. The order of the halves is right because both supported processors are
+   little-endian. */
 static void decide(struct filter_program *program, int call, int argument, unsigned test, const struct values *values, bool allowed)
 {
     add_instruction(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, (unsigned)(2 + 2 * values->count));
@@ -123,7 +124,7 @@ static void decide(struct filter_program *program, int call, int argument, unsig
     answer(program, allowed ? SECCOMP_RET_ERRNO | EPERM : SECCOMP_RET_ALLOW);
 }
 
-/* Refuses O_TRUNC on files that are opened only for reading, which Landlock before ABI 3 would allow. */
+/* Refuses O_TRUNC for files opened read-only, which Landlock before ABI 3 would allow. */
 static void refuse_emptying(struct filter_program *program, int call, int flags_argument)
 {
     add_instruction(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
@@ -136,9 +137,9 @@ static void refuse_emptying(struct filter_program *program, int call, int flags_
 
 static void decide_by_arguments(struct filter_program *program, enum confine_role role, bool notifies)
 {
-    /* allowed requests of ioctl(): they can neither inject terminal input (TIOCSTI) nor control devices */
+    /* allowed ioctl() requests: they can neither inject terminal input (TIOCSTI) nor control devices */
     static const struct values ioctls = { { TCGETS, TIOCGWINSZ, TIOCGPGRP, FIONREAD, FIONBIO, FIOCLEX, FIONCLEX }, 7 };
-    /* refused commands of fcntl(): they can send signals to a descriptor's owner */
+    /* refused fcntl() commands: they can make the kernel send signals to a descriptor's owner */
     static const struct values owners = { { F_SETOWN, F_SETOWN_EX, F_SETSIG, F_SETLEASE, F_NOTIFY }, 5 };
     static const struct values names = { { PR_SET_NAME, PR_GET_NAME, PR_SET_VMA, PR_GET_DUMPABLE, PR_CAPBSET_READ, PR_GET_TIMERSLACK }, 6 };
     static const struct values itself = { { 0 }, 1 }, unix_sockets = { { AF_UNIX }, 1 }, thread = { { CLONE_THREAD }, 1 };
@@ -173,7 +174,7 @@ int confine_calls(enum confine_role role, bool notifies)
     add_instruction(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     add_instruction(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
-    /* refuses clone3() and openat2(), because a filter cannot see their flags, which are in memory */
+    /* refuses clone3() and openat2(): their flags are in memory, which a filter cannot inspect */
     add_instruction(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);
     add_instruction(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);

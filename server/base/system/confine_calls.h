@@ -5,13 +5,13 @@
 #include <stdbool.h>
 
 enum confine_role {
-    CONFINE_READER, /* process that parses untrusted files: has threads, but starts no process and sends signals only to itself */
-    /* command of the site (its own program): starts programs, and in the folder that it may write makes links and changes modes */
+    CONFINE_READER, /* process that parses untrusted files: has threads, but starts no processes and sends signals only to itself */
+    /* command of the site (its own program): starts programs, and may create links and change modes in its writable folder */
     CONFINE_COMMAND
 };
 
-/* Installs the filter of system calls for the calling thread, which must have no_new_privs. notifies: also allow messages to the service
-   manager. Returns 0 or -errno. */
+/* Installs the system call filter for the calling thread, which must have no_new_privs. notifies: also allow messages to the
+   service manager. Returns 0 or -errno. */
 int confine_calls(enum confine_role role, bool notifies);
 
 #endif

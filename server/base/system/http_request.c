@@ -28,7 +28,7 @@ bool http_request_make(struct http_request *request, const char *agent, const ch
     curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
     curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* makes libcurl not wait for a hanging name server when the program ends */
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* keeps libcurl from waiting for a hanging name server when the program ends */
     curl_easy_setopt(handle, CURLOPT_USERAGENT, agent);
     curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, request->error);
     curl_easy_setopt(handle, CURLOPT_WRITEFUNCTION, take);

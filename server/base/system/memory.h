@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Memory use of this process. Thread: any. */
+/* Memory usage of this process. Thread: any. */
 #ifndef BASE_SYSTEM_MEMORY_H
 #define BASE_SYSTEM_MEMORY_H
 #include <stddef.h>
 #include <stdint.h>
 
-/* Returns the bytes of the machine's memory, or of the control group's limit if that is less. */
+/* Returns the size of the machine's memory in bytes, or the control group's limit if that is less. */
 size_t memory_machine_bytes(void);
-/* Returns the default memory limit: a quarter of memory_machine_bytes(), at most 2 GiB. */
+/* Returns the default memory limit in bytes: a quarter of memory_machine_bytes(), at most 2 GiB. */
 size_t memory_default_bytes(void);
 
 struct memory_use {             /* memory use of the process, in bytes */
-    size_t resident, anonymous; /* resident: bytes in RAM; anonymous: those resident bytes that are not mapped from files */
+    size_t resident, anonymous; /* resident: bytes in RAM; anonymous: the part of them that is not mapped from files */
     size_t allocated;           /* memory that malloc() has allocated */
 };
 void memory_measure(struct memory_use *use); /* Fills *use with the current numbers. */

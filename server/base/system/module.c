@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads modules (shared libraries of the program) from the program's folder, or from the installation's ../lib/plantcast. */
+/* Loads modules (the program's own shared libraries) from the program's folder, or from the installation's ../lib/plantcast. */
 #include "base/system/module.h"
 
 #include <dlfcn.h>
@@ -11,8 +11,8 @@
 
 #define PATH_BYTES 4096
 
-/* Returns the path of a module's file; the caller frees it. Returns NULL with the reason if the file is missing. Each module has a Debian
-   package of its name. */
+/* Returns the path of a module's file; the caller frees it. Returns NULL with the reason if the file is missing. Each module
+   comes in a Debian package of the same name. */
 static char *path_of(const char *name, char *why, size_t why_bytes)
 {
     static const char *const places[] = { "", "../lib/plantcast/" };

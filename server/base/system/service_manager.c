@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends datagrams to systemd: sd_notify(3) and "Native Journal Protocol". */
+/* Sends datagrams to systemd: sd_notify(3) and the native journal protocol. */
 #include "base/system/service_manager.h"
 
 #include <dirent.h>
@@ -24,7 +24,7 @@ enum {
     FIRST_SOCKET = 3 /* number of the first descriptor that systemd passes: sd_listen_fds(3) */,
     EXTENSION_S = 60,
     EXTENSION_INTERVAL_S = 5,
-    /* minimum number of requests for more time within limit_s seconds: if limit_s is short, requests follow at shorter intervals */
+    /* minimum number of extension requests within limit_s seconds: with a short limit_s, requests are sent at shorter intervals */
     MIN_EXTENSIONS = 60
 };
 static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* processes that used less CPU time than this between two checks count as idle */
@@ -83,7 +83,7 @@ int service_take_socket(void)
     if (!pid || !count || strtol(pid, NULL, 10) != (long)getpid() || strtol(count, NULL, 10) < 1)
         return -1;
     bool one = strtol(count, NULL, 10) == 1;
-    /* removes LISTEN_PID from the environment: plantcast-prep, which a reload starts, would otherwise take the socket for its own */
+    /* removes LISTEN_PID from the environment; otherwise plantcast-prep, which a reload starts, would take the socket for its own */
     unsetenv("LISTEN_PID");
     unsetenv("LISTEN_FDS");
     fcntl(FIRST_SOCKET, F_SETFD, FD_CLOEXEC);
@@ -95,15 +95,15 @@ struct service_patience {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     int64_t limit_ns, every_ns;
-    int64_t used_ns; /* CPU time in nanoseconds that the processes had used at the last check; used only by the thread of this struct */
+    int64_t used_ns; /* CPU time in nanoseconds that the processes had used at the last check; accessed only by this struct's thread */
     /* --- below: under `lock` */
     char *status;
-    int64_t since_ns; /* monotonic time when the status text was set */
+    int64_t since_ns; /* monotonic time when the status text was last set */
     bool ending;
 };
 
-/* Returns the CPU time in nanoseconds of a process and its reaped children; 0: the process is gone, or belongs to another POSIX session.
-   id: name of its entry in /proc. */
+/* Returns the CPU time in nanoseconds used by a process and its reaped children; 0: the process is gone, or belongs to another
+   POSIX session. id: name of its entry in /proc. */
 static int64_t used_by(const char *id)
 {
     char path[32], line[1024];
@@ -119,7 +119,7 @@ static int64_t used_by(const char *id)
     return known && session == getsid(0) ? (int64_t)(ticks[0] + ticks[1] + ticks[2] + ticks[3]) * (NS_PER_S / sysconf(_SC_CLK_TCK)) : 0;
 }
 
-/* Returns true if this process, or one that it started, has used CPU time since the last call. */
+/* Returns true if any process of this session has used CPU time since the last call. */
 static bool is_at_work(struct service_patience *patience)
 {
     struct timespec own;
@@ -130,26 +130,26 @@ static bool is_at_work(struct service_patience *patience)
             used_ns += used_by(entry->d_name);
     if (folder)
         closedir(folder);
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* subtracts the CPU time that this check itself takes */
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* subtracts the CPU time used by this check itself */
     used_ns -= own.tv_sec * NS_PER_S + own.tv_nsec;
     bool works = !folder || used_ns - patience->used_ns >= AT_WORK_NS;
     patience->used_ns = used_ns;
     return works;
 }
 
-/* Main function of the thread that asks the service manager, at intervals, for more time to start. It stops asking while the processes use
-   no CPU time, or once the status is too old, so that the manager ends a hanging start. */
+/* Main function of the thread that periodically asks the service manager for more time to start. It stops asking while the
+   processes use no CPU time, or once the status is too old, so that the manager kills a hanging start. */
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
     int64_t begin_ns = clock_mono_ns(), logged_ns = begin_ns;
-    bool works = true; /* true at first, so that more time is requested at least once and a quick start shows its status, too */
+    bool works = true; /* true at first: even a quick start requests more time once and shows its status */
     pthread_mutex_lock(&patience->lock);
     do {
         int64_t now_ns = clock_mono_ns();
         if (works && now_ns - patience->since_ns < patience->limit_ns)
             service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", EXTENSION_S * 1000000ll, patience->status);
-        /* writes the status to the journal, also while a start hangs */
+        /* writes the status to the journal, even if the start hangs */
         if (now_ns - logged_ns > EXTENSION_INTERVAL_S * NS_PER_S * 9 / 10) {
             fprintf(stderr, "%s: %s, for %.0f s so far\n", program_invocation_short_name, patience->status,
                     (double)(now_ns - begin_ns) / 1e9);
