@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers each connection with one line. It reads nothing from clients, so they cannot attack it through input. */
+/* Answers each connection with one line. Reads nothing from clients, so their input cannot harm it. */
 #include "agent.h"
 
 #include <errno.h>
@@ -41,8 +41,7 @@ static void answer(struct agent *agent)
 {
     char line[64];
     int fd = accept4(agent->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0) { /* accept() failed, for example for lack of descriptors: waits PAUSE_MS, so that the loop does not use the processor in
-                     vain */
+    if (fd < 0) { /* accept() failed, for example because no descriptors are left: wait PAUSE_MS instead of spinning */
         poll(&(struct pollfd){ .fd = agent->stop_fd, .events = POLLIN }, 1, PAUSE_MS);
         return;
     }

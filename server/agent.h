@@ -8,7 +8,7 @@
 #include "base/log/log.h"
 
 struct agent_state {
-    int busy_percent; /* percentage of the render thread's time that is used */
+    int busy_percent; /* load of the render thread in percent of its time */
     bool has_core;    /* true: readings arrive; false only on a renderer that has lost its core */
     bool drains;      /* true: the daemon is being drained (it sends its sessions to other daemons) */
 };
@@ -18,7 +18,7 @@ struct agent;
    (logged). */
 struct agent *agent_start(struct log *log, const char *address, int port);
 void agent_stop(struct agent **agent); /* ends the thread, frees the agent and sets *agent to NULL; accepts a pointer to NULL */
-/* Sets the state that connections are told from now on. Thread: any. */
+/* Sets the state that the agent reports from now on. Thread: any. */
 void agent_tell(struct agent *agent, const struct agent_state *state);
 
 #endif

@@ -32,7 +32,7 @@ struct helper {
     struct text written; /* text that the program has printed on stderr */
     char *cgroup;        /* path of the program's cgroup; NULL: none */
     int64_t until_ns, kill_ns;
-    /* told: the caller told the program to end; timed_out: the program was told to end because its time limit was over */
+    /* told: stop() asked for the program's end; timed_out: the program was told to end because its time limit was over */
     bool told, timed_out;
 };
 

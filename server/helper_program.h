@@ -10,8 +10,8 @@
 
 enum {
     HELPER_LENT = 3,
-    HELPER_PARTLY = 3 /* HELPER_LENT: descriptor under which the program gets a lent lock; HELPER_PARTLY: exit
-                                               status of plantcast-import if it imported only some models */
+    HELPER_PARTLY = 3 /* HELPER_LENT: descriptor number under which the program inherits a lock; HELPER_PARTLY: exit status of
+                                               plantcast-import if it imported only some models */
 };
 
 struct helper_params {
@@ -26,7 +26,7 @@ struct helper_params {
     bool notifies;       /* true: the program may report its progress to the service manager */
     int lent;            /* open descriptor of this process, such as a lock, that the program inherits as HELPER_LENT; 0: none */
     int timeout_s;       /* seconds after which the program is told to end; 30 s later it is killed; 0: no limit */
-    size_t memory_bytes; /* memory limit in bytes, both of each process of the program and of all in its cgroup together; 0: no limit */
+    size_t memory_bytes; /* memory limit in bytes, for each process of the program and for its whole cgroup; 0: no limit */
     const char *timeout_option, *memory_option; /* names of the options that raise these limits, for messages to the user */
 };
 
@@ -35,7 +35,7 @@ struct helper_params {
 char *helper_run(const struct helper_params *params);
 
 struct quotas;
-/* Runs plantcast-prep with the limits of `quotas`. how: parameters for helper_run() without arguments and limits. Returns as
+/* Runs plantcast-prep with the limits of `quotas`. how: parameters for helper_run(), except arguments and limits. Returns as
    helper_run() does. */
 char *helper_prepare(const struct helper_params *how, const char *folder, const char *plant_path, const struct quotas *quotas);
 

@@ -32,7 +32,7 @@ struct import_job {
     struct texts first, read, last;
     ino_t revision; /* inode of the newest revision folder before the import (find_revision()); 0: there was none */
     bool prepares;  /* true: plantcast-prep, which prepares the models, was started */
-    bool undoes;    /* true: an undo is running, which params.stop does not end */
+    bool undoes;    /* true: an undo is running; params.stop does not stop it */
 };
 
 struct arguments { /* zero-initialise */

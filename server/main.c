@@ -400,8 +400,8 @@ static const char *role_wrong(const struct server_params *params)
     return NULL;
 }
 
-/* Handles any command-line option. Returns -1 if the program continues, otherwise the exit code. *task receives what the program does
-   instead of serving, if the option asks for that. */
+/* Handles any command-line option. Returns -1 if the program continues, otherwise the exit code. *task receives the function to
+   run instead of serving, if the option asks for one. */
 static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
     int megabytes;

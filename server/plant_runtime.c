@@ -170,8 +170,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
 {
     if (before)
         store_adopt(runtime->services.store, before->services.store);
-    /* opens the files that users change, unless this is a reload: then sessions of the old runtime change these files until the switch, at
-       which the event loop opens them */
+    /* not during a reload: until the switch, sessions of the old runtime change these files; the event loop opens them at the switch */
     if (!before)
         plant_runtime_open_lists(runtime);
     if (runtime->services.history_folder)

@@ -25,7 +25,7 @@ struct plant_runtime_context { /* objects that a reload keeps */
     struct plant_clock *clock;   /* the plant's clock */
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
     bool *follows;               /* true: another core polls devices and owns the alarms; plant_runtime_lead() sets it to false */
-    void (*notify)(void *arg);   /* callback on any thread when frames or alarm changes can be collected */
+    void (*notify)(void *arg);   /* called on any thread when frames or alarm changes can be collected */
     void *notify_arg;
 };
 
@@ -44,7 +44,7 @@ struct plant_runtime {
 /* Reads plant and scene from disk and creates the store; starts nothing. Findings are added to diag. Returns NULL on failure, with the
    error in diag or in the log. */
 struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *context, struct diag *diag);
-/* Ends the running parts, consumers before producers, and frees everything. &NULL is allowed; sets *runtime to NULL. */
+/* Ends the running parts, consumers before producers, and frees everything. Accepts a pointer to NULL; sets *runtime to NULL. */
 void plant_runtime_destroy(struct plant_runtime **runtime);
 
 /* Opens the files that users change: named views, notes, and what desks sent to walls. After a reload, call it in the event loop at the

@@ -21,11 +21,11 @@
 #include "helper_program.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
-/* time limit until a user's action is on disk; after it, the user is told that the action is not kept */
+/* time limit for writing a user's action to disk; when it expires, the user is told that the action is not kept */
 static const int64_t SETTLE_NS = NS_PER_S;
-/* FOLLOW_NS: time limit until the core has switched to its new plant; LOOK_NS: interval at which this is checked */
+/* FOLLOW_NS: how long to wait for the core to switch to its new plant; LOOK_NS: interval of the checks for this */
 static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
-enum { WAIT_MS = 3000 };       /* maximum wait in milliseconds until another program has finished changing the plant's folder */
+enum { WAIT_MS = 3000 };       /* how long to wait for another program to finish changing the plant's folder, in milliseconds */
 
 struct reload {
     const struct plant_runtime_context *context;
@@ -49,7 +49,7 @@ struct reload {
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports;
-    /* connection that this daemon's core ends once the core has loaded the plant, too; 0: the reload does not wait for the core */
+    /* connection to this daemon's core, which the core ends once it has loaded the plant too; 0: the reload does not wait for the core */
     uint64_t follows;
     char expects[17];           /* hash that the new configuration must have; empty: any */
     char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
@@ -212,8 +212,8 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
                      "changes", changes));
 }
 
-/* Switches the daemon to the new plant. The old plant's sources end in this function, so it cannot be undone: if a thread of the new
-   plant cannot be created, the daemon ends. begun_ns: when the reload was asked for. */
+/* Switches the daemon to the new plant. The old plant's sources end in this function, so it cannot be undone: if a thread of
+   the new plant cannot be created, the daemon ends. begun_ns: when the reload was requested. */
 static void put_in_force(struct reload *reload, struct plant_runtime *after, const struct plant_diff *diff, int64_t begun_ns)
 {
     struct plant_runtime *before = *reload->runtime;
@@ -267,7 +267,7 @@ static void announce(void *arg)
     net_announce_reload(arg);
 }
 
-/* Returns whether the running reload must wait, because this renderer's core has not switched to its new plant yet. */
+/* Returns whether the running reload must wait, because this renderer's core has not yet switched to its new plant. */
 static bool must_wait(struct reload *reload)
 {
     pthread_mutex_lock(&reload->put_lock); /* locks, because a standby that takes the lead frees its link to the core */

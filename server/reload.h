@@ -11,19 +11,19 @@ struct reload;
    NULL: imports are off. Returns NULL if a thread cannot start, already logged. */
 struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net,
                              struct supervision *supervision, struct plant_import *import);
-/* Ends the threads; the event loop must have ended. &NULL is allowed; sets *reload to NULL. */
+/* Ends the threads; the event loop must have ended. Accepts a pointer to NULL; sets *reload to NULL. */
 void reload_destroy(struct reload **reload);
-/* Asks for a reload and does not wait; if a reload is running, another one follows it. who: the user who asks, copied. Thread: any. */
+/* Requests a reload without waiting for it; if one is running, another follows. who: the requesting user, copied. Thread: any. */
 void reload_ask(struct reload *reload, const char *who);
-/* On a renderer or a standby core, asks for a reload because its core loads the plant. The new plant is activated once the core has
-   ended the connection `session` (core_link_session()), which it does to switch to its own new plant; if the core does not switch, the new
-   plant is dropped. session 0: the core has switched already. configuration: hash of the core's configuration; a plant with another hash
-   is dropped; NULL: not known. Does not wait. Thread: any. */
+/* On a renderer or a standby core, requests a reload because its core loads the plant. The new plant is activated once the core
+   has ended the connection `session` (core_link_session()), which it does to switch to its own new plant; if the core does not
+   switch, the new plant is dropped. session 0: the core has switched already. configuration: hash of the core's configuration;
+   a plant with another hash is dropped; NULL: not known. Does not wait. Thread: any. */
 void reload_follow(struct reload *reload, uint64_t session, const char *configuration);
 /* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Thread: any. */
 void reload_lead(struct reload *reload);
-/* Ends everything that only the leader of two cores may do (plant_runtime_end_leading()), for ever, and then calls net_on_lead_ended();
-   does not wait. Thread: any. */
+/* Ends permanently everything that only the leader of two cores may do (plant_runtime_end_leading()), and then calls
+   net_on_lead_ended(); does not wait. Thread: any. */
 void reload_end_leading(struct reload *reload);
 /* Saves another tag list: its file is replaced, plantcast-prep runs, and the plant is reloaded; if any of these steps fails, the old
    list is restored. Takes ownership of `save`; one save at a time. Thread: any. */

@@ -54,11 +54,11 @@ struct server {
     bool divided;                /* true: child processes that read files run in cgroups (resource limits) of their own */
     struct supervision *supervision;
     struct agent *agent;             /* answers load balancers; NULL: off */
-    struct signing_key *signing_key; /* key with which pictures are signed; NULL: they are not signed */
+    struct signing_key *signing_key; /* key that signs pictures; NULL: pictures are not signed */
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer;
     struct plant_import *import;     /* importer of plants; NULL: import is off */
-    pthread_mutex_t wake_lock; /* locked while the render thread wakes the event loop, so that `net` is not destroyed in the meantime */
+    pthread_mutex_t wake_lock; /* locked while the render thread wakes the event loop, so that `net` is not destroyed meanwhile */
     struct net *net;
     char *web;        /* folder of the web client's files; NULL: no page is served */
     int64_t begun_ns; /* monotonic time when the daemon began to start */
@@ -113,7 +113,7 @@ static struct plant *load_plant(const char *path)
     return plant;
 }
 
-/* Finds the web client's files: of an installed program, next to a built one, or in the source tree. */
+/* Finds the web client's files: in the installation, next to a built program, or in the source tree. */
 static char *find_web(const char *given)
 {
     static const char *const places[] = { "../share/plantcast/web", "web", "../clients/web", "../../../clients/web" };
@@ -316,7 +316,7 @@ static bool settle_folder(struct server *server)
     return settled;
 }
 
-/* Reads the plant; prints what it found, errors and warnings. Returns false on errors. */
+/* Reads the plant, and prints the errors and warnings found. Returns false on errors. */
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };

@@ -10,10 +10,10 @@
 
 struct address_limits {
     const struct quotas *quotas;
-    /* usage of each known address: a few thousand at most, because the list is searched when a connection opens */
+    /* usage of each known address; a few thousand at most, because each new connection searches the list linearly */
     struct address_usage **all;
     size_t count, capacity;
-    uint64_t payers; /* newest id of an address (address_share.account) that was assigned; ids count up from 1 */
+    uint64_t payers; /* last id assigned to an address (address_share.account); ids count up from 1 */
     bool exempt;
 };
 

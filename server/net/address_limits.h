@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Limits per client address: how many connections, streams, requests and messages each has. An IPv6 address counts by its first 64 bits,
-   because one customer has all addresses of such a prefix. Pure: the caller passes the time. Thread: the event loop. */
+/* Limits per client address: how many connections, streams, requests and messages each has. IPv6 addresses are grouped by their
+   first 64 bits, because one customer usually owns all addresses of such a prefix. Pure: the caller passes the time. Thread:
+   the event loop. */
 #ifndef NET_ADDRESS_LIMITS_H
 #define NET_ADDRESS_LIMITS_H
 #include "session/pacing/admission.h"
@@ -10,15 +11,15 @@ struct address_usage {
     bool local;          /* true: the address is loopback: 127.x or ::1 */
     int refs, connections, sessions;
     int named;               /* number of connections from a reverse proxy whose last request named this client address */
-    int pictures, questions; /* numbers of HTTP requests of the address that are being answered: requests for pictures, and for history */
+    int pictures, questions; /* HTTP requests in progress: for pictures, and for history */
     int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
-    int64_t rate_begin_ns, messages; /* number of stream messages within the second that began at rate_begin_ns (monotonic) */
+    int64_t rate_begin_ns, messages; /* messages: stream messages within the second that began at rate_begin_ns (monotonic) */
 };
 
 struct address_limits;
-/* exempt true: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply. Never returns
-   NULL. */
+/* exempt: true: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply.
+   Never returns NULL. */
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt);
 void address_limits_destroy(struct address_limits **limits); /* destroys the limits and sets *limits to NULL; accepts a pointer to NULL */
 

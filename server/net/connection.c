@@ -174,14 +174,14 @@ static bool find_client(struct server_context *server, struct lws *wsi, struct c
 
 static bool has_token_in_query(struct lws *wsi)
 {
-    char argument[4096]; /* room for one header; larger than all headers of a request together that libwebsockets keeps */
+    char argument[4096]; /* room for one header: larger than all headers together that libwebsockets keeps of a request */
     for (int i = 0; lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) >= 0; i++)
         if (access_argument_is_token(argument))
             return true;
     return false;
 }
 
-/* Finds the access token of the request; token "": the request has none. Returns false if a header is too long. */
+/* Finds the access token of the request; `token` becomes "" if the request has none. Returns false if a header is too long. */
 static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
 {
     char text[512];
@@ -268,7 +268,7 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
                  LOGIN_WAIT_S);
 }
 
-/* Checks a token. Returns NULL and sets connection->holder if the token is accepted; otherwise the refusal with which to answer. */
+/* Checks a token. Returns NULL and sets connection->holder if the token is accepted; otherwise the refusal to send. */
 static const struct http_refusal *judge_token(struct server_context *server, struct lws *wsi, const char *token)
 {
     struct connection *connection = connection_of(wsi);

@@ -14,8 +14,8 @@ struct connection {               /* identity of one connection; lives as long a
     char token[TOKEN_MAX_CHARS + 1]; /* access token of the last request on this connection; "": none */
     bool from_proxy;                 /* true: a trusted proxy sent the last request */
     bool forwarded;                  /* true: the trusted proxy passed on a client's request; false also for the proxy's own checks */
-    bool answered;                   /* true: all requests of this connection are answered */
-    /* bytes received by the connection when the wait for its next request began; UINT64_MAX: not waiting (http/stuck_head.h) */
+    bool answered;                   /* true: all requests of this connection have been answered */
+    /* bytes that the connection had received when it began to wait for its next request; UINT64_MAX: not waiting (http/stuck_head.h) */
     uint64_t received_before_head;
 };
 
@@ -48,8 +48,8 @@ const char *connection_who(const struct connection *connection);
 /* Records a request of an identified user in the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. */
 void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,
                        const char *why);
-/* Logs and counts whether a token was accepted, or a session that needed no token. way: how the client gained access (static text); holder:
-   of the token; role ROLE_NOBODY: the token is unknown. */
+/* Logs and counts an accepted or refused token, or a session that needed no token. way: how the client gained access (static
+   text). holder: the token's owner; role ROLE_NOBODY: the token is unknown. */
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,
                           enum login login);
 /* Copies a request header into out; "" if it is missing. Returns false if it is too long. */

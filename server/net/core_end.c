@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connects a renderer (daemon that draws for a core) with its core: forwards users' actions, takes what the core sends. */
+/* Connects a renderer (daemon that draws for a core) with its core: forwards users' actions, and handles the core's messages. */
 #include "net/core_end.h"
 
 #include <stdio.h>

@@ -11,7 +11,7 @@
 /* delay after the loss of a core before the load balancer's state counts. Renderers that lost the same core may notice it half a second
    apart, and the balancer asks each renderer only once a second */
 static const int64_t SETTLE_NS = 2500 * NS_PER_MS;
-/* time for which a state that the load balancer sent counts: three checks, of which it makes one a second */
+/* how long a state sent by the load balancer stays valid: three of its checks, which come once a second */
 static const int64_t CHECKED_NS = 3 * NS_PER_S;
 
 static bool is_elsewhere(const char *state)

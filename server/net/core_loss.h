@@ -7,10 +7,10 @@
 #include <stdint.h>
 
 struct core_loss {   /* zero-initialise; zero means that a core sends readings, and that no load balancer has checked this node */
-    int64_t lost_ns; /* monotonic time since when no core sends readings; 0: a core sends readings */
+    int64_t lost_ns; /* monotonic time since which no core has sent readings; 0: a core sends readings */
     /* monotonic time when a load balancer last said that it sends users only to other nodes; 0: its last check did not say so */
     int64_t elsewhere_ns;
-    int64_t moves_ns; /* monotonic time since when this daemon's sessions are moved to other nodes; 0: they stay */
+    int64_t moves_ns; /* monotonic time when this daemon began to move its sessions to other nodes; 0: they stay */
 };
 
 /* Takes the header X-Haproxy-Server-State of a load balancer's check of this node, such as "DOWN 2/2; ...; weight=0/100; ...". The balancer

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a leading core shuts down in order: it stops polling devices, sends all its state to its standby core, and gives the leadership lease
-   to the standby. The event loop continues to serve meanwhile, so that the lease stays confirmed and renderers keep their readings until
-   the standby leads. */
+/* Orderly shutdown of a leading core: it stops polling devices, sends all its state to its standby core, and gives the
+   leadership lease to the standby. The event loop continues to serve meanwhile, so that the lease stays confirmed and renderers
+   keep their readings until the standby leads. */
 #include "base/clock.h"
 #include "net/core_end.h"
 #include "net/net.h"
@@ -11,7 +11,7 @@
 static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit within which the standby must have received all state */
 static const int64_t TAKE_NS = NS_PER_S;     /* time limit within which the standby must have taken the lease */
 
-/* Returns the next step of handing the lead to the standby; returns `step` itself while that step is not finished. */
+/* Returns the next step of the handover to the standby, or `step` itself while that step is not finished. */
 static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
 {
     struct server_context *server = &net->server;

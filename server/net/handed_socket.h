@@ -6,7 +6,7 @@
 #include "net/net_impl.h"
 
 enum { HANDED_ADDRESS_BYTES = 64 };
-/* Finds where the socket listens: a numeric address and a port. Returns false if it is not a listening TCP socket. Any thread. */
+/* Finds the numeric address and the port on which the socket listens. Returns false if it is not a listening TCP socket. Any thread. */
 bool handed_socket_find(int fd, char address[HANDED_ADDRESS_BYTES], int *port);
 /* Makes the event loop accept connections from server.params.socket_fd. Returns false if it cannot; logged. Thread: the event loop's,
    before it runs. */

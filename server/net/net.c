@@ -25,13 +25,13 @@
 #include "net/wall_displays.h"
 #include "session/view/resume.h"
 
-/* interval at which the event loop checks, while actions wait for the disk, whether they are written */
+/* interval of the checks for actions that have reached the disk, while any wait */
 static const int64_t SETTLE_NS = 5 * NS_PER_MS;
-/* longest wait at shutdown until users' actions are on disk; it suffices, because settling_end() gives each action at most a second */
+/* longest wait at shutdown for users' actions to reach the disk; long enough, because settling_end() gives each action at most a second */
 static const int64_t SETTLED_NS = 1500 * NS_PER_MS;
 /* TICK_NS: interval between ticks of the sessions; REST_NS: the same while no session has timed work within the next second */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
-static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for which shutdown waits until close frames and answers are sent */
+static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* how long shutdown waits for close frames and answers to be sent */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about throttled addresses */
 static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;  /* interval between checks of the token and certificate files */
 enum { SPARE_FILES = 256 }; /* file descriptors reserved for uses other than connections: for example models, data sources, the database */
@@ -208,7 +208,7 @@ bool net_settle_answers(struct net *net)
 {
     struct server_context *server = &net->server;
     struct kept_answers *answers = &server->kept_answers;
-    /* writing a file may change views, notes and other lists that clients are sent */
+    /* a finished write may have changed views, notes and other lists that are sent to clients */
     bool changed = file_writer_collect(server->params.file_writer);
     if (answers->waiting) {
         answers->waiting = false;

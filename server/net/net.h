@@ -31,8 +31,8 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg);
 /* Makes the event loop soon reload the plant and read the files of tokens and certificate again. Any thread; safe in a signal handler. */
 void net_check_credentials(struct net *net);
 
-/* Tells the event loop of a stopping core that all work has ended that only a leader may do, so that it continues to stop. To be called
-   after net_params.end_leading was. Any thread. */
+/* Tells the event loop of a stopping core that all leader-only work has ended, so that the shutdown continues. Call it only
+   after net_params.end_leading was called. Any thread. */
 void net_on_lead_ended(struct net *net);
 
 /* --- plant reload; call these functions in the event loop --- */
@@ -51,8 +51,8 @@ void net_lead(struct net *net, const struct plant_services *plant);
 /* Switches to another plant; sessions keep their views as far as the new plant has items with the same names. Returns false if history
    cannot be read any more, already logged. */
 bool net_take_plant(struct net *net, const struct plant_services *plant);
-/* Writes to `out` at most `most` different views that sessions will show in the next plant, so that they can be drawn in advance. Returns
-   their number. next->render_service may be NULL. */
+/* Writes to `out` up to `most` distinct views that sessions will show in the next plant, so that they can be drawn in advance.
+   Returns their number. next->render_service may be NULL. */
 size_t net_views(struct net *net, const struct plant_services *next, struct view *out, size_t most);
 /* Answers all HTTP requests for a reload with the reload's result. */
 void net_report_reload(struct net *net, bool good, const char *text);

@@ -23,16 +23,16 @@ struct net {
     struct cpu_meter cpu;
     int64_t cpu_ns; /* monotonic time when the processors' load was last read */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
-    struct { /* state of handing the lead to the standby (hand_over.c) */
+    struct { /* state of the handover to the standby (hand_over.c) */
         enum hand_over_step step;
-        int64_t until_ns; /* monotonic time at which the current step of handing the lead to the standby is given up */
+        int64_t until_ns; /* monotonic time at which the current step of the handover is given up */
     } hand_over;
     struct {
-        pthread_mutex_t turn; /* lock that each caller of net_call() holds, so that one call is made at a time */
+        pthread_mutex_t turn; /* held by the caller of net_call(), so that only one call is made at a time */
         pthread_mutex_t lock;
         pthread_cond_t done;
         /* --- below: protected by `lock` */
-        void (*what)(void *arg); /* function that net_call() wants called; NULL: no call waits */
+        void (*what)(void *arg); /* function queued by net_call(); NULL: none */
         void *arg;
         bool closed; /* true: the event loop has ended */
     } call;
@@ -64,8 +64,8 @@ void net_calls_close(struct net *net);
 void net_bind_plant(struct net *net);
 /* Starts the readers of the plant's history, if there is one. Returns false if they cannot start, already logged. */
 bool net_open_history(struct net *net);
-/* Sets services in server->params.plant to NULL that cannot be used here: snapshot_cache if nothing is recorded, placing if this daemon
-   cannot save tag lists. Call after each change of params.plant. */
+/* In server->params.plant, sets services to NULL that cannot be used here: snapshot_cache if nothing is recorded, placing if
+   this daemon cannot save tag lists. Call after each change of params.plant. */
 void net_limit_services(struct server_context *server);
 /* Starts the thread that signs pictures, if there is a key. Returns false if it cannot start, already logged. */
 bool net_open_signer(struct net *net);

@@ -29,7 +29,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
     bool has_core;              /* true: readings arrive from the core; always true without --role render */
     const char *core;           /* role of this core in a pair of cores (static text); NULL: there is no pair */
     bool drains;                /* true: the daemon drains: it closes sessions so that their clients move to other daemons */
-    int64_t certificate_ends_s; /* expiry of the active certificate, seconds of UTC since 1970; 0: no certificate */
+    int64_t certificate_ends_s; /* expiry of the active certificate, in seconds since 1970 (UTC); 0: no certificate */
 };
 
 struct net_params {
@@ -43,7 +43,7 @@ struct net_params {
     int socket_fd;       /* socket that already listens, opened by systemd (net/handed_socket.h); -1: none */
     int64_t begun_ns;    /* monotonic time when the daemon began to start */
     struct access_params access;
-    const struct signing_key *signing_key; /* key with which pictures are signed; NULL: they are not signed */
+    const struct signing_key *signing_key; /* key that signs pictures; NULL: pictures are not signed */
     unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec) */
     const char *web_folder;                /* folder of the web client's files; NULL: no page is served */
     const char *version;
@@ -51,8 +51,8 @@ struct net_params {
     bool is_core;                /* true: this daemon is a core, to which renderers may connect */
     const char *node_name;       /* name of this daemon, by which other daemons of the plant know it */
     struct lease_keeper *keeper; /* leadership lease of a core in a pair (leader or standby); NULL: there is no pair */
-    /* callback in the event loop, only with `keeper`: starts to end everything that only a leader may do, on another thread. That thread
-       calls net_on_lead_ended() when it is done */
+    /* callback in the event loop, set only with `keeper`: starts a thread that ends everything that only a leader may do. At
+       its end, that thread calls net_on_lead_ended() */
     void (*end_leading)(void *arg);
     /* callback in the event loop that reloads the plant for user `who`; NULL: the plant cannot be reloaded */
     void (*reload)(void *arg, const char *who);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signs queued pictures on a thread, which moves each from the list of unsigned pictures to the list of signed ones. The quota on
-   unanswered picture requests keeps both lists short. */
+/* Signs queued pictures on a thread of its own, which moves them from the list of unsigned pictures to the list of signed ones.
+   The quota on unanswered picture requests keeps both lists short. */
 #include "net/picture_signer.h"
 
 #include "base/mem.h"

@@ -21,8 +21,8 @@ struct picture_signer;
 struct picture_signer *picture_signer_create(struct log *log, const struct signing_key *key, void (*notify)(void *arg), void *arg);
 /* Ends the thread and sets *signer to NULL; accepts a pointer to NULL. */
 void picture_signer_destroy(struct picture_signer **signer);
-/* Queues a frame that has the record of what it was drawn from; takes the frame and copies the args. origin->scene must stay valid until
-   picture_signer_settle(). */
+/* Queues a frame, which must carry the record of what it was drawn from. Takes ownership of the frame and copies the arguments.
+   origin->scene must stay valid until picture_signer_settle(). */
 void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin);
 /* Returns the list of pictures signed so far, oldest first; the caller frees each with signing_free(). NULL: none. */
 struct signing *picture_signer_collect(struct picture_signer *signer);

@@ -14,7 +14,7 @@ static int64_t later(int64_t a_ns, int64_t b_ns)
     return a_ns > b_ns ? a_ns : b_ns;
 }
 
-/* Tells streams and renderers which changes the last snapshots had. */
+/* Tells streams and renderers what changed in the last snapshots. */
 static void tell_changes(struct server_context *server)
 {
     bool data_changed = server->readings.data_changed, links_changed = server->readings.links_changed;
@@ -66,7 +66,7 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
         net->readings_ns = later(now_ns + GATHER_NS, server->session_context.changed_ns + READINGS_INTERVAL_NS);
     if (server->streams.count == 0 && !server->core.renderers)
         return INT64_MAX;
-    /* a request has taken a snapshot whose changes were not told yet */
+    /* a request took a snapshot, but its changes were not announced yet */
     if (server->readings.data_changed || server->readings.links_changed) {
         int64_t due_ns = next_ns(server);
         tell_changes(server);

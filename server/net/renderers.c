@@ -53,8 +53,8 @@ struct renderer_peer {
     bool stands_by; /* true: the peer is a standby, a core that follows this one and can take over */
     /* true: the last message with samples contained all samples that waited, so the next message has readings, which resets the flag */
     bool samples_sent;
-    bool reloads; /* true: the message that this core loads the plant must still be sent to the peer */
-    bool asks;    /* true: the question whether the peer promises not to take the lead must still be sent (corelink/lease.h) */
+    bool reloads; /* true: the peer must still be told that this core loads the plant */
+    bool asks;    /* true: the peer must still be asked for its promise not to take the lead (corelink/lease.h) */
     /* standby: when this core ends, it asks a last time for the promise not to take the lead, after all other messages. Number of this
        question; 0: not sent */
     uint64_t last_question;
@@ -71,7 +71,7 @@ struct renderer_peer {
     json_t *answers;
     struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
     int64_t told_ns;        /* monotonic time when readings were last sent to the peer */
-    int64_t since_ns;       /* monotonic time since when a message waits because the peer does not read; 0: no message waits */
+    int64_t since_ns;       /* monotonic time since which a message has waited because the peer does not read; 0: no message waits */
     const char *close_text; /* reason to close the connection; NULL: the connection stays open */
 };
 
@@ -438,8 +438,8 @@ static void wake_answers(const struct server_context *server)
             lws_callback_on_writable(one->wsi);
 }
 
-/* Returns whether a standby was not sent the latest actions of users yet. Until then no client is told that the action is done: the standby
-   might take over without having received it. A standby that is too slow is not waited for. */
+/* Returns whether a standby was not sent the latest actions of users yet. Until then no client is told that the action is done:
+   the standby might take over without having received it. The core does not wait for a standby that is too slow. */
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
@@ -529,9 +529,9 @@ static char *role_refusal(const struct renderer_peer *one)
         name_of(names_role, (int)role));
 }
 
-/* Returns the reason why peer `one` cannot be a standby, or NULL; the caller frees the text with mem_free. Only one standby with one name
-   is accepted, so that it is clear which core made a promise not to take the lead. matches: `one` has this core's version and files, and
-   may replace a core that only votes. */
+/* Returns the reason why peer `one` cannot be a standby, or NULL; the caller frees the text with mem_free. Only one standby is
+   accepted, and not under this core's own name, so that it is clear which core made a promise not to take the lead. matches:
+   `one` has this core's version and files, and may replace a core that only votes. */
 static char *standby_refusal(const struct server_context *server, struct renderer_peer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)

@@ -32,8 +32,8 @@ struct wall_displays {
     struct wall_seen {
         char wall[NAMED_VIEW_ID_BYTES];
         int display;
-        /* connected_ns: monotonic time up to which all pictures on this display are current: that of its oldest picture; 0: the display is
-           not connected. fresh_ns: the last such time, kept after the display disconnects */
+        /* connected_ns: monotonic time of the oldest picture on this display, so all its pictures are at least this recent; 0:
+           the display is not connected. fresh_ns: the last such time, kept after the display disconnects */
         int64_t connected_ns, fresh_ns;
         counter *age;
     } at[WALL_DISPLAYS_SEEN];
@@ -44,7 +44,7 @@ struct wall_displays {
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this entry is not used */
     uint64_t leader;                /* id of the session that leads the wall; 0: none */
-    uint64_t asked, presented;      /* ids of two pictures of the wall: of the picture requested last, and of the picture presented last */
+    uint64_t asked, presented;      /* ids of the wall's picture that was requested last, and of the one that was presented last */
     /* size of the wall's picture, chosen by how long the server takes to draw and encode it */
     struct quality_ladder made;
 };
@@ -58,8 +58,8 @@ struct server_context {
     struct { /* newest snapshot of the readings, and connections to their sources (readings.c) */
         struct snapshot *snapshot;
         uint32_t *changes;      /* by tag: the change counter (reading.changes) of the reading in the last snapshot */
-        int64_t data_ns;        /* monotonic time when the oldest of the readings arrived that changed in the last snapshot */
-        /* monotonic time when the quality of a reading next changes because the reading grows old; INT64_MAX: never */
+        int64_t data_ns;        /* monotonic arrival time of the oldest reading that changed in the last snapshot */
+        /* monotonic time when the quality of a reading next changes because of its age; INT64_MAX: never */
         int64_t next_change_ns;
         bool *links_up; /* connection state of each data source, by source index */
         /* true: streams and renderers were not told yet that readings, or connections to data sources, changed */
@@ -78,7 +78,7 @@ struct server_context {
         int count;
         uint64_t next_client;
         bool restless;    /* true: a session has timed work within the next second, so the event loop ticks at the short interval */
-        int64_t still_ns; /* time that the last refined frame took that was drawn for only one session */
+        int64_t still_ns; /* duration of the last refined frame that was drawn for only one session */
     } streams;
     struct {
         struct view_token_keys token_keys;      /* renderers only: keys that sign view tokens */
@@ -93,7 +93,7 @@ struct server_context {
     } core;
     struct {
         struct http_exchange *waiting; /* list of HTTP requests that wait for a frame, a pick or a reload */
-        int pictures, questions;       /* numbers of HTTP requests for pictures and for history that are being answered */
+        int pictures, questions;       /* HTTP requests in progress: for pictures, and for history */
         int64_t answer_bytes;          /* total bytes of HTTP answers that clients have not read yet */
         int64_t upload_bytes;          /* total size of all files that are being uploaded, counted at their full size from the start */
         int uploads;                   /* number of uploads in progress */
@@ -122,11 +122,11 @@ struct server_context {
     } logins;
     struct {
         bool hands_over; /* true: this leading core is handing the lead to its standby; users' messages are ignored meanwhile */
-        /* monotonic time since when the state that the standby must receive no longer changes; 0: changes are possible */
+        /* monotonic time since which the state owed to the standby no longer changes; 0: changes are possible */
         int64_t lead_ended_ns;
         bool goes_down;    /* true: the server shuts down; connections are closed after their answer */
         char goodbye[64];  /* reason that streams send when they are closed at shutdown */
-        int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not drain */
+        int64_t drain_ns;  /* monotonic time when the daemon began to drain its sessions to other daemons; 0: it does not drain */
         struct core_loss core_loss;
         int start_s; /* seconds that the daemon took to start, rounded up; 0: it is still starting */
     } life;
@@ -150,7 +150,7 @@ struct server_context {
             int64_t at_ns;    /* monotonic time when the handshake was refused */
             char why[120];
         } refused[UPGRADE_REFUSALS]; /* ring buffer of refused handshakes */
-        unsigned count;              /* number of all handshakes refused so far */
+        unsigned count;              /* number of handshakes refused since the start */
     } upgrade;
     struct latency_stages latency;
     struct wall_displays displays;
@@ -182,8 +182,8 @@ void net_refresh_readings(struct server_context *server);
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Returns whether the client with that id is a connected stream and not an HTTP request. */
 bool stream_owns(const struct server_context *server, uint64_t client);
-/* Functions stream_on_...() pass an answer to the stream whose client asked for it; the stream must be connected. stream_on_frame() takes
-   ownership of the frame. */
+/* The functions stream_on_...() pass an answer to the stream whose client asked for it; the stream must be connected.
+   stream_on_frame() takes ownership of the frame. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
 /* Sends a frame that picture_signer returned: signed, or unsigned if signing failed. Takes ownership of signing->encoded; the caller frees

@@ -16,13 +16,13 @@
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S = 6 };
 static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
-/* delay between the start of a drain (moving sessions to other daemons) and the first session closed, in which load balancers notice the
-   drain */
+/* delay from the start of a drain (moving sessions to other daemons) to the closing of the first session, so that load
+   balancers notice the drain first */
 static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
 /* time within which all sessions of a node that has lost its core are closed, so that they move to other nodes */
 static const int64_t MOVE_NS = 1 * NS_PER_S;
-static const int64_t MOVING_NS = 200 * NS_PER_MS; /* time after a user's input for which the session's camera counts as moving */
+static const int64_t MOVING_NS = 200 * NS_PER_MS; /* how long after a user's input the session's camera counts as moving */
 
 /* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
 
@@ -136,7 +136,7 @@ static void on_close(struct server_context *server, struct stream **slot)
 
 /* --- work after each event of a session ------------------------------------------------------------------------------- */
 
-/* Moves a session's playback on, and requests the readings of the past instant to be shown. Following sessions show the same instant. */
+/* Advances a session's playback, and requests the readings of the past instant to be shown. Following sessions show the same instant. */
 static void travel(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     struct session *session = stream->session;
@@ -205,7 +205,7 @@ void streams_check_tokens(struct server_context *server, int64_t now_utc_ns)
         session_check_token(stream->session, clock_mono_ns(), now_utc_ns);
 }
 
-/* Logs once that a client acknowledges no picture: after a few seconds, before the page's own watchdog reloads it (watchdog.js). */
+/* Logs once, after a few seconds, that a client acknowledges no picture; before the page's own watchdog reloads it (watchdog.js). */
 static void log_silence(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     const struct session *session = stream->session;
@@ -255,7 +255,7 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
    instants, because the closed pages reconnect to other nodes immediately. */
 static bool is_due(const struct stream *stream, int64_t begun_ns, int64_t spread_ns, int64_t now_ns)
 {
-    /* Fibonacci hashing gives each session its own instant: multiplying ids by 2^64 / golden ratio spreads consecutive ids evenly */
+    /* Fibonacci hashing gives each session its own instant: multiplying by 2^64 / golden ratio spreads consecutive ids evenly */
     uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32;
     return now_ns - begun_ns > (int64_t)(spread % 1000) * (spread_ns / 1000);
 }
@@ -424,8 +424,7 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         return;
     if (good)
         holder.role = session->identity.role;
-    /* a login that was not checked because of throttling (LOGIN_HELD, close code 1013) is not counted here, because pump() counts it as
-       refused */
+    /* pump() counts a login that throttling left unchecked (LOGIN_HELD, close code 1013) as refused, so it is not counted here */
     if (!good)
         counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD);
     if (!good || session->identity.role > ROLE_OPEN || holder.name[0])
@@ -524,8 +523,8 @@ void stream_on_historical_snapshot(struct server_context *server, const struct h
 
 /* --- libwebsockets events --------------------------------------------------------------------------------------------- */
 
-/* Returns whether answers to actions must still be sent. At shutdown that is done before connections are closed: a client that lacks an
-   answer cannot tell whether its action took effect. */
+/* Returns whether answers to actions must still be sent. At shutdown, connections are closed only after these answers: a client
+   that lacks an answer cannot tell whether its action took effect. */
 static bool owes_answer(const struct stream *stream)
 {
     return stream->close_code == LWS_CLOSE_STATUS_GOINGAWAY && stream->session->owed.reply_count > 0;

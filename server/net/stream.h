@@ -12,30 +12,30 @@ struct stream {
     struct address_usage *usage; /* quota usage of the client's address; the connection holds the reference */
     int64_t in_begin_ns;         /* monotonic time when the first bytes of the message being received arrived */
     struct text in;              /* part of the current message that has been received */
-    size_t in_count;             /* bytes of the current message received so far, including those that were too many to store */
+    size_t in_count;             /* bytes of the current message received so far, stored or dropped */
     struct encoded_frame *sending;
     uint32_t seq;
     enum session_depth depth; /* SESSION_DEPTH_...: whether depth grids are sent with the frame, and whether the client lacks them */
     int half;                 /* index of the depth grid being sent: 0, or 1 for the right half of a split view */
     enum { SEND_MARKERS, SEND_DEPTH, SEND_HEADER, SEND_PAYLOAD } step;
-    int packet, part;      /* which packet of the frame is being sent, and which part of that packet (both count from 0) */
+    int packet, part;      /* indices of the packet being sent in its frame, and of the part being sent in its packet */
     size_t sent, sent_all; /* sent: bytes of the part that were sent; sent_all: bytes of the whole frame that were sent */
-    bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
+    bool cut;              /* true: the frame was cut short, so only the end of its message is still to be sent */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic time when the last ping was sent */
-    /* progress of the first bandwidth measurement: it takes the time from sending the first texts to the pong that follows them */
+    /* progress of the first bandwidth measurement, which times the first texts from sending to the pong that follows them */
     enum { FIRST_TEXTS, FIRST_PING, FIRST_DONE } first;
     size_t first_bytes;
     int64_t first_ns; /* monotonic time when the first text was sent; used until the first frame is sent */
     struct known_markers known;
     char *carried;  /* during a plant reload: parameters of the session's view as text, for session_take_plant() */
     bool throttled; /* true: the client sent too many messages, so nothing is read from it for now */
-    /* monotonic time since when the client has acknowledged no picture, 0: it acknowledges pictures; INT64_MAX once the silence was
-       logged */
+    /* monotonic time since which the client has acknowledged no picture; 0: it acknowledges pictures; INT64_MAX once the
+       silence was logged */
     int64_t silent_ns;
     int close_code; /* WebSocket close code to send; 0: the connection stays open */
     const char *close_text;
-    int64_t messages, errors, dropped; /* numbers of messages, errors and dropped frames of the session that the metrics include already */
+    int64_t messages, errors, dropped; /* messages, errors and dropped frames of the session that are already in the metrics */
 };
 
 /* --- stream_table.c --- */
@@ -63,14 +63,13 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
 /* --- tile_walls.c: sessions that are tiles of one picture over many displays --- */
 
-/* Requests the next picture of the wall to which a tile (one display's part of a wall's picture) belongs. Also presents a picture that all
-   tiles have received, if its time has come. */
+/* Requests the next picture of a tile's wall. (A tile is one display's part of a wall's picture.) Also presents a picture that
+   all tiles have received, if its time has come. */
 void tiles_pump(struct server_context *server, const struct stream *stream);
-/* Chooses the leading tile of a wall and informs all tiles (a tile is one display's part of the wall's picture). Call it when tiles
-   connected, disconnected or were dropped. leaving: a stream that is being closed, or NULL. */
+/* Chooses the leading tile of a wall and informs all tiles. Call it when tiles connected, disconnected or were dropped.
+   leaving: a stream that is being closed, or NULL. */
 void tiles_gather(struct server_context *server, const char *wall, const struct stream *leaving);
-/* Drops tiles (each one display's part of a wall's picture) that delay their wall, and readmits them once they keep up. Call it every
-   tick. */
+/* Drops tiles that delay their wall, and readmits them once they keep up. Call it every tick. */
 void tiles_on_tick(struct server_context *server);
 
 /* --- stream_follow.c: sessions that are shown another session's view --- */
@@ -81,8 +80,8 @@ void follow_resolve(struct server_context *server, struct stream *stream);
 bool follow_spread(struct server_context *server, const struct stream *leader);
 /* Gives all viewers of one view the same step of the quality ladder. Call it every tick. */
 void follow_share_steps(struct server_context *server);
-/* Call it when a stream is being closed. Its followers then follow the session that has resumed its view over another connection, or nobody
-   if there is none. */
+/* Call it when a stream is being closed. If another connection has resumed the session's view, its followers then follow the
+   resuming session; otherwise they follow nobody. */
 void follow_forget(struct server_context *server, const struct stream *leader);
 /* Sends leaders the list of their followers if it changed. Call it every tick. */
 void follow_tell(struct server_context *server, int64_t now_ns);

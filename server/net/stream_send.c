@@ -22,8 +22,8 @@ static const struct text *padded(struct text *text)
     return text;
 }
 
-/* Sends the message `markers` (sensor markers of the frame) before the frame. Returns false if the connection is gone. *wrote: set to true
-   if something was sent. */
+/* Sends the message `markers` (sensor markers of the frame) before the frame. Sets *wrote if something was sent. Returns false
+   if the connection is gone. */
 static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
@@ -181,8 +181,8 @@ static void part_sent(struct server_context *server, struct stream *stream)
     encoded_frame_destroy(&stream->sending);
 }
 
-/* Puts the frame's header before the first bytes of its payload, to send both together: a separate write would cost a system call and a
-   network packet. */
+/* Puts the frame's header in front of the first payload bytes, so that one write sends both: a separate write would cost a
+   system call and a network packet. */
 static size_t put_header(const struct server_context *server, struct stream *stream, uint8_t *bytes)
 {
     struct wire_frame head = frame_header(server, stream);
@@ -240,8 +240,8 @@ void stream_give_up(struct server_context *server, struct stream *stream, int64_
     encoded_frame_destroy(&stream->sending);
 }
 
-/* Ends the WebSocket message of a frame that was cut short, with fewer bytes than the frame's header announces. Returns false if the
-   connection is gone. */
+/* Ends the WebSocket message of a frame that was cut short; the message then has fewer bytes than the frame's header announces.
+   Returns false if the connection is gone. */
 static bool write_end(struct server_context *server, struct stream *stream)
 {
     stream->cut = false;
@@ -251,8 +251,8 @@ static bool write_end(struct server_context *server, struct stream *stream)
 
 /* --- round trips ------------------------------------------------------------------------------------------------------ */
 
-/* Returns whether a WebSocket ping is due; pings are sent only between frames, as a pong behind a frame would measure the frame's transfer
-   and not the round trip. */
+/* Returns whether a WebSocket ping is due. Pings are sent only between frames: a pong behind a frame would measure the frame's
+   transfer, not the round trip. */
 static bool ping_due(const struct stream *stream, int64_t now_ns)
 {
     const struct pacer *pacer = &stream->session->delivery.pacer;

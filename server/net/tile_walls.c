@@ -7,8 +7,8 @@
 #include "net/stream.h"
 #include "session/tiles/tile_sync.h"
 
-/* maximum number of sessions of a wall's tiles; more than there are displays: a display may be open in several places, or reconnect before
-   its old connection is found dead */
+/* maximum number of sessions of a wall's tiles. It exceeds the number of displays, because a display may be open several times,
+   or reconnect before its old connection is found dead */
 enum { MEMBERS = 4 * WALL_DISPLAYS };
 
 static bool is_of(const struct stream *stream, const char *wall)
@@ -44,8 +44,8 @@ static bool may_lead(const struct stream *stream, const struct stream *leaving)
     return stream != leaving && session->hello && !session->hidden && !session->close.code && !session->tile.late_us;
 }
 
-/* Chooses the leader: the first connected display, because it shows the picture's title and chosen parameters. Among several sessions of
-   that display, the present leader stays. */
+/* Chooses the leader: the first connected display, because it shows the picture's title and chosen parameters. If that display
+   has several sessions, the present leader stays. */
 static struct session *choose(struct server_context *server, const struct tile_wall *wall, const struct stream *leaving)
 {
     struct session *first = NULL;
@@ -95,8 +95,7 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
         }
 }
 
-/* Applies the burn-in shift to all tiles (each one display's part of the picture) of a wall. A new tile gets the shift before its first
-   picture. */
+/* Applies the burn-in shift to all tiles of a wall. A new tile gets the shift before its first picture. */
 static void move_all(struct server_context *server, const char *wall)
 {
     struct burn_shift shift = burn_shift_at(clock_plant_ns(server->params.plant.clock));

@@ -18,7 +18,7 @@ void tls_serve(struct tls *tls, SSL_CTX *context);
 /* Reads the files again if they changed. If the new certificate cannot be served, the old one stays active; logged. Warns about a
    certificate that expires within 14 days, once a day and more often on its last day. */
 void tls_look(struct tls *tls);
-/* Returns when the active certificate expires, in seconds of UTC since 1970. */
+/* Returns when the active certificate expires, in seconds since 1970 (UTC). */
 int64_t tls_ends_s(const struct tls *tls);
 /* Returns whether the certificate is valid for that host name. */
 bool tls_is_called(const struct tls *tls, const char *name);

@@ -28,7 +28,7 @@ struct delivery {
     struct log *log;
     const struct plant_notify *notify;
     CURLM *multi;
-    struct transfer *transfers; /* by index of the recipient: its transfer */
+    struct transfer *transfers; /* by recipient: its transfer */
 };
 
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)
@@ -146,7 +146,7 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
-    /* makes libcurl send the mail to the other mailboxes if the mail server refuses one */
+    /* if the mail server refuses one mailbox, libcurl still sends the mail to the others */
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L);
     curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
     curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);

@@ -34,12 +34,12 @@ struct notifier {
     struct delivery *delivery;
     /* --- below: used by the notifier's thread only */
     struct outbox *outbox;
-    struct recipient_counters *counters; /* by index of the recipient: its counters */
+    struct recipient_counters *counters; /* by recipient: its counters */
     counter *lost, *spool_good;
-    bool *failing;   /* by index of the recipient: true if the last attempt to send to the recipient failed */
+    bool *failing;   /* by recipient: true: the last attempt to send to it failed */
     uint64_t number; /* change number of the last alarm change that the notifier has processed */
     bool looked, unsaved;
-    /* value of outbox_counts.lost up to which lost notifications are in the metrics; not 0 at the start if a reload restored the outbox */
+    /* value of outbox_counts.lost that the metrics already include; not 0 at the start if a reload restored the outbox */
     int64_t lost_before;
 };
 
@@ -61,7 +61,7 @@ static int put_file(const char *path, const char *text, bool durable)
     return error;
 }
 
-/* Makes `text`, the content of notify.json, available for a standby core; takes its ownership. */
+/* Makes `text`, the content of notify.json, available for a standby core; takes ownership of `text`. */
 static void publish(struct notifier *notifier, char *text)
 {
     pthread_mutex_lock(&notifier->kept_lock);

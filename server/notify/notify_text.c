@@ -92,8 +92,8 @@ static void add_date(struct text *out, int64_t utc_us)
                  utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-/* Returns why an alarm is sent again in an escalation step; "" if it is not escalated or has ended. If the plant has no acknowledgements
-   (alarms: display), the daemon knows only that the alarm is still active. */
+/* Returns why an escalation step sends an alarm again; "" if the alarm is not escalated or has ended. If the plant has no
+   acknowledgements (alarms: display), the daemon knows only that the alarm is still active. */
 static const char *escalated_for(const struct outbox_item *item)
 {
     bool waits = item->status == ALARM_UNACKNOWLEDGED || item->status == ALARM_RETURNED;

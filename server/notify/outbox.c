@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which recipients are told of which alarms, and when. */
+/* Decides who is notified of which alarms, and when. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>
@@ -99,7 +99,7 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    /* true: the alarm is sent again or escalated, so it is not queued if the queue already has it */
+    /* true: the alarm is sent again or escalated, so it is queued only if the queue does not have it already */
     bool may_wait = step > 0 || episode->told_us;
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)
@@ -292,8 +292,8 @@ static bool is_due(const struct outbox *outbox, const struct recipient_box *box,
     return box->waiting.count > 0 && gathered && (!paused || best < box->last_priority);
 }
 
-/* Makes a message of a recipient's queued alarms, with their present states. Leaves out alarms that were shelved or suppressed after
-   they were queued. */
+/* Makes a message of the alarms queued for a recipient, with their present states. Leaves out alarms that were shelved or
+   suppressed after they were queued. */
 static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];

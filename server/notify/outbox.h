@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which recipients are told of which alarms, and when: rules, several alarms in one message, pauses, escalation, retries. No
-   input or output: time is an argument, UTC in microseconds. The caller passes alarms in their present states, so an alarm that came and
-   went between two calls is missed. Thread: one at a time. */
+/* Decides which recipients are notified of which alarms, and when: rules, several alarms in one message, pauses, escalation,
+   retries. No input or output: time is an argument, UTC in microseconds. The caller passes alarms in their present states, so
+   an alarm that came and went between two calls is missed. Thread: one at a time. */
 #ifndef NOTIFY_OUTBOX_H
 #define NOTIFY_OUTBOX_H
 #include <jansson.h>
@@ -12,7 +12,7 @@
 enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms, of all recipients together */, OUTBOX_ID_BYTES = 40 };
 /* minimum time between two notifications of an alarm that comes and goes without anybody acknowledging it */
 #define OUTBOX_REPEAT_US (600 * INT64_C(1000000))
-#define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age after which a message that cannot be delivered is dropped */
+#define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age at which an undeliverable message is dropped */
 #define OUTBOX_REFRESH_US (60 * INT64_C(1000000)) /* interval at which all active alarms are sent to Alertmanager again */
 #define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* Alertmanager drops an alarm that is not sent again within this time */
 
@@ -23,7 +23,7 @@ struct outbox_item { /* one alarm in a message */
     int priority, step; /* step: index of the rule's escalation step that sends the alarm; 0: the first notification */
     enum alarm_status status;
     double value, limit; /* value at which the alarm was raised, and its limit; NaN: none */
-    /* UTC microseconds. ended_us: when the alarm returned to normal or was acknowledged; 0: it still needs attention */
+    /* UTC microseconds. ended_us: when the alarm returned to normal or was acknowledged; 0: the alarm still needs attention */
     int64_t raised_us, ended_us;
 };
 
@@ -31,7 +31,7 @@ struct outbox_message {
     char id[OUTBOX_ID_BYTES];        /* id of the message, the same in each attempt to send it */
     const struct outbox_item *items; /* alarms, most urgent first */
     size_t count;
-    int64_t left_out; /* number of further alarms, for which the message has no room */
+    int64_t left_out; /* number of further alarms that did not fit into the message */
     int64_t made_us;
 };
 
@@ -40,34 +40,34 @@ struct outbox;
 struct outbox *outbox_create(const struct plant *plant);
 void outbox_destroy(struct outbox **outbox); /* Frees the outbox and sets *outbox to NULL; accepts a pointer to NULL. */
 
-/* Processes the present state of an alarm. restored: the state was read from the journal after a restart; an alarm that needs no
-   attention is then not sent. */
+/* Processes the present state of an alarm. restored: true: the state was read from the journal after a restart; the alarm is
+   then sent only if it needs attention. */
 void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored, int64_t now_us);
-/* Ends those alarms of the saved state for which outbox_put() has not been called since the restart: they returned to normal, or lost
-   their limits, while the daemon did not run. Call it after outbox_put() was called for all alarms that are not normal. */
+/* Call it after a restart, once outbox_put() was called for all alarms that are not normal. Ends the alarms of the saved state
+   that outbox_put() was not called for: while the daemon did not run, they returned to normal or lost their limits. */
 void outbox_end_unseen(struct outbox *outbox, int64_t now_us);
 /* Does what is due at now_us: escalates alarms and drops old messages. */
 void outbox_tick(struct outbox *outbox, int64_t now_us);
 
-/* Returns true if a message is due for a recipient; *out then receives it, valid until the next call for this outbox, with items that
-   are valid until outbox_sent(). Call outbox_sent() or outbox_failed() with the result before the next call. */
+/* If a message is due for a recipient, writes it to *out and returns true. *out is valid until the next call for this outbox,
+   its items until outbox_sent(). Call outbox_sent() or outbox_failed() with the result before the next call. */
 bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct outbox_message *out);
 void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us);
 void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us);
 
 struct outbox_counts {
     int64_t waiting; /* number of alarms queued for one recipient */
-    /* number of notifications lost since the start, of all recipients: the queue was full, or the message was dropped for its age */
+    /* number of notifications lost since the start, of all recipients, because the queue was full or the message too old */
     int64_t lost;
 };
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient);
 bool outbox_rests(const struct outbox *outbox); /* Returns true if no message can become due before outbox_put() is called. */
-bool outbox_is_changed(struct outbox *outbox);  /* Returns true if the state has changed since the last call, so that it must be saved. */
+bool outbox_is_changed(struct outbox *outbox);  /* Returns true if the state has changed since the last call and must be saved. */
 
 /* --- outbox_json.c: saving the state across a restart --- */
 json_t *outbox_save(const struct outbox *outbox);
-/* Restores a state that outbox_save() returned, in which alarms, rules and recipients have names; drops entries that the plant no longer
-   has. Returns false if `saved` has another form. */
+/* Restores a state that outbox_save() returned, in which names identify alarms, rules and recipients. Drops entries that the
+   plant no longer has. Returns false if `saved` has the wrong format. */
 bool outbox_restore(struct outbox *outbox, const json_t *saved);
 
 #endif

@@ -14,12 +14,12 @@ struct episode { /* an episode: the time during which an alarm needs attention; 
     int64_t raised_us; /* UTC microseconds at which the alarm was raised, as of the last call of outbox_put() */
     int64_t began_us;
     int64_t ended_us;            /* UTC microseconds at which the alarm no longer needed attention; 0: it still needs attention */
-    int64_t cleared_us;          /* UTC microseconds at which the alarm was no longer shown to operators as active; 0: it still is */
+    int64_t cleared_us;          /* UTC microseconds at which operators stopped seeing the alarm as active; 0: they still do */
     int64_t told_us;             /* UTC microseconds of the newest notification; 0: no notification since the alarm was last acknowledged */
     uint32_t rules;              /* bit mask of the plant's notification rules that applied when the episode began */
-    uint32_t told;               /* bit mask of the recipients that were told of the alarm */
+    uint32_t told;               /* bit mask of the recipients that were notified of the alarm */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps carried out */
-    bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is told */
+    bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is notified */
     /* true: outbox_put() was called for the alarm since the daemon started; false: only the saved state has the episode */
     bool seen;
 };
@@ -54,7 +54,7 @@ struct outbox {
     struct episode *episodes;
     size_t count, capacity;
     int *by_alarm;               /* by tag and alarm kind: 1 + index of the alarm's episode in `episodes`; 0: the alarm has none */
-    struct recipient_box *boxes; /* by index of the recipient: its queue */
+    struct recipient_box *boxes; /* by recipient: its queue */
     size_t items;                /* number of queued alarms of all recipients */
     int64_t lost, made;
     bool dirty;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The outbox of alarm messages as JSON: episodes of alarms with the recipients that were told, and queued messages. Names identify
-   recipients, rules and alarms. */
+/* The outbox of alarm messages as JSON: episodes of alarms with the recipients that were notified, and queued messages. Names
+   identify recipients, rules and alarms. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>

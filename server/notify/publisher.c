@@ -41,7 +41,7 @@ struct publisher {
     /* --- below: used by the publisher's thread only */
     struct mqtt_client *client;
     struct snapshot *snapshot;
-    struct topic *topics; /* by index of the tag: its MQTT topic */
+    struct topic *topics; /* by tag: its MQTT topic */
     uint64_t alarm_number;
     bool connected, alarms_published;
     char said[200]; /* text of the last problem that was logged; empty: no problem */
@@ -56,8 +56,8 @@ static void add_level(struct text *text, const char *name)
         text_add(text, strchr("/+#%", *c) ? "%%%02X" : "%c", (unsigned char)*c);
 }
 
-/* Publishes a text to a topic. If the broker refuses the message, logs this and continues with others. Returns false if the connection
-   has ended. */
+/* Publishes a text to a topic. If the broker refuses the message, logs the refusal and continues. Returns false if the
+   connection has ended. */
 static bool publish(struct publisher *publisher, const char *topic, const char *text)
 {
     int status = mqtt_client_publish(publisher->client, topic, text);
@@ -123,8 +123,7 @@ static void add_alarm(void *arg, const struct alarm *alarm)
     json_array_append_new(arg, one);
 }
 
-/* Publishes all alarms that are not normal in one message. The broker retains only the last message, so it never shows an alarm that has
-   ended. */
+/* Publishes all alarms that are not normal in one message. The broker retains only the last message, so it never shows an ended alarm. */
 static bool publish_alarms(struct publisher *publisher)
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -164,8 +163,8 @@ static void on_message(void *arg, const struct mqtt_message *message)
     (void)message;
 }
 
-/* Publishes over one connection to the broker until it ends. Returns -ECANCELED when the publisher must stop, else another negative code
-   with the reason in `why`. */
+/* Publishes over one connection to the broker until the connection ends. Returns -ECANCELED when the publisher must stop, else
+   another negative code with the reason in `why`. */
 static int run_session(struct publisher *publisher, char why[200])
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -228,8 +227,8 @@ static void make_topics(struct publisher *publisher)
     }
 }
 
-/* Returns the MQTT client id from the plant file, or a random one, because the broker disconnects a client if another one connects with
-   the same id. */
+/* Returns the MQTT client id from the plant file. If the file has none, returns a random id, because the broker disconnects a
+   client when another one connects with the same id. */
 static char *make_client_id(const struct plant_publish *config)
 {
     unsigned random = 0;

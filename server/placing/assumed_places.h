@@ -11,7 +11,7 @@
 
 struct assumed_filter {
     int asset, group; /* indices in the plant of the asset and the group to which the selection is limited; -1: any */
-    /* glob for the tag's name; a text without * and ? is searched in the tag's name and description; case-insensitive; empty: any tag */
+    /* glob for the tag's name; a text without * or ? is searched for in the tag's name and description; case-insensitive; empty: any tag */
     char pattern[101];
     double within_m; /* largest distance in metres of the assumed place from the asset's surface; negative: any distance */
     /* smallest confidence (0..1) of the match between tag and asset, from matches.csv next to the tag list; negative: any */
@@ -31,8 +31,8 @@ enum assumed_outcome {
 
 /* Writes for each tag of the plant whether its assumed place is accepted (enum assumed_outcome). Returns the number of accepted tags. */
 size_t assumed_places_choose(const struct scene *scene, const struct assumed_filter *filter, uint8_t *outcome);
-/* Returns the text of the tag list with the column `Place` cleared in the rows of the accepted tags, and nothing else changed. `list`:
-   present text. NULL on failure, with the reason in *why. The caller frees the result (mem_free). */
+/* Returns the text of the tag list with the column `Place` cleared in the rows of the accepted tags, and nothing else changed
+   (mem_free). `list`: the present text. Returns NULL on failure, with the reason in *why. */
 char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, struct refusal *why);
 /* Describes the filter as text, for the audit trail. */
 void assumed_filter_text(const struct plant *plant, const struct assumed_filter *filter, char *out, size_t size);

@@ -6,8 +6,8 @@
 #include "scene/scene.h"
 #include "surface/relocation.h"
 
-/* Starts to load or build the surface of an asset, on which distances are computed (surface/relocation.h). folder: folder of the
-   prepared files. The scene must outlive the result. Never NULL; the caller destroys it. */
+/* Starts to load or build the surface of an asset, on which distances are computed (surface/relocation.h). folder: folder of
+   the prepared files. The scene must outlive the result. Never returns NULL; the caller destroys the result. */
 struct relocation *mover_create(struct log *log, struct workers *workers, const struct scene *scene, const char *folder, int asset);
 
 #endif

@@ -58,7 +58,7 @@ struct placing {
     /* --- below: under lock */
     struct distance_ask *done;
     struct sensor_coverage_answer *answers, **answers_last;
-    int jobs; /* number of coverage requests that workers have not finished */
+    int jobs; /* number of coverage requests that workers are still computing */
 };
 
 /* --- creating and destroying ------------------------------------------------------------------------------------------------ */
@@ -132,8 +132,9 @@ static bool is_moved_on(const struct placing *placing, int asset)
     return false;
 }
 
-/* Frees the least recently used relocation object of an asset without moved sensors, if more than MOVERS are in memory. Does not free an
-   object whose surface is still being built, because that would block. keep: index of an asset whose object is not freed. */
+/* Frees the least recently used relocation object of an asset without moved sensors, if more than MOVERS are in memory. Objects
+   whose surface is still being built are kept, because freeing one would block. keep: index of an asset whose object is kept.
+   */
 static void cool(struct placing *placing, int keep)
 {
     int count = 0, oldest = -1;

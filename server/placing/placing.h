@@ -20,8 +20,8 @@ struct placing_params {
     void *notify_arg;
 };
 struct placing;
-/* Creates the service for moved sensors. Everything that `params` points to, except `folder`, must outlive the result. Never NULL. The
-   caller destroys it. */
+/* Creates the service for moved sensors. Everything that `params` points to, except `folder`, must outlive the service. Never
+   returns NULL. The caller destroys it. */
 struct placing *placing_create(const struct placing_params *params);
 /* Waits for pending work and frees everything. Destroy all sets of moved sensors before. Accepts a pointer to NULL; sets *placing to
    NULL. */
@@ -53,12 +53,12 @@ struct place_set; /* the sensors that one user has moved on trial, with the new 
 struct place_set *place_set_create(struct placing *placing);
 /* Cancels the pending requests of the set and frees it. Accepts a pointer to NULL; sets *set to NULL. */
 void place_set_destroy(struct place_set **set);
-/* Replaces the moved sensors of the set: at most PLACING_MOVES, each tag once. Sensors that did not move keep their distances. Returns
-   false with nothing changed if a tag cannot be placed: it has no group, or the position is farther from the asset than the asset's
-   size; `why` names the tag. */
+/* Replaces the moved sensors of the set: at most PLACING_MOVES, each tag once. Sensors that did not move keep their distances.
+   Returns false, changing nothing, if a tag cannot be placed: it has no group, or the position is farther from the asset than
+   the asset's size. `why` names the tag. */
 bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, struct refusal *why);
-/* Returns the id of the set's trial (field/trials.h). Views with this id show the field of the moved sensors. Each change of the set
-   gives another id. 0: the set has no moved sensors, so there is no trial. */
+/* Returns the id of the set's trial (field/trials.h), or 0 if the set has no moved sensors. Views with this id show the field
+   of the moved sensors. Each change of the set gives it another id. */
 uint32_t place_set_trial(const struct place_set *set);
 /* *out receives the moved sensors of the set with their results, valid until the set changes. Returns their number. */
 size_t place_set_get(const struct place_set *set, const struct placed **out);
@@ -78,9 +78,9 @@ struct sensor_coverage_answer {
     } * assets; /* coverage of each asset that has sensors of the requested group */
     struct sensor_coverage_answer *next;
 };
-/* Computes on a worker thread how well the sensors of a group cover the surfaces of its assets, with the moved sensors of `set` (NULL:
-   none). far_m: distance in metres from which a point counts as far from its sensors; 0: chosen for each asset. placing_collect()
-   returns the answer. */
+/* Computes on a worker thread how well the sensors of a group cover the surfaces of its assets, with the moved sensors of `set`
+   (NULL: none). far_m: distance in metres from which a point counts as far from its sensors; 0: chosen for each asset.
+   placing_collect() returns the answer. */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
 /* Passes newly computed geodesic distances to the sets that requested them. Returns a linked list of the coverage answers that are

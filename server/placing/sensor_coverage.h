@@ -7,10 +7,10 @@
 
 struct sensor_coverage_query {
     const struct scene *scene;
-    const struct trial *trial; /* sensor positions that a user tries; NULL: none */
+    const struct trial *trial; /* trial layout of the sensors; NULL: none */
     int asset, group;
     enum distance_mode mode;
-    double reach_m; /* distance in metres beyond which a sensor does not count; INFINITY: no limit */
+    double reach_m; /* a sensor farther than this from a point does not cover it, in metres; INFINITY: no limit */
     /* metres; a point at least this far from all sensors counts as far. 0: half of reach_m or, without a limit, a fifth of the asset's
        size */
     double far_m;
@@ -33,8 +33,8 @@ struct sensor_coverage {
 /* Computes the coverage of the asset by the group's sensors into *out. Returns false if the asset has no sensor of the group. */
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out);
 
-/* Returns an array by vertex: the area in square metres that the vertex represents, a third of each adjacent triangle of the finest
-   level of detail. The caller frees it (mem_free). */
+/* Returns an array by vertex: the area in square metres that the vertex represents, a third of each adjacent triangle at the
+   finest level of detail. The caller frees it (mem_free). */
 double *sensor_coverage_areas(const struct asset_view *view);
 
 #endif

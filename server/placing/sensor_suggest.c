@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests positions for new sensors. Candidate positions are sorted by an upper bound of their gain. The bound uses straight-line
-   distances, which are never longer than geodesic ones. So geodesic distances must be computed only for the candidates with the highest
-   bounds. */
+/* Suggests positions for new sensors. Candidate positions are sorted by an upper bound of their gain. The bound uses
+   straight-line distances, which are never longer than geodesic ones. So only the candidates with the highest bounds need
+   geodesic distances. */
 #include "placing/sensor_suggest.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@
 #define MAX_CANDIDATES 1500
 /* maximum number of candidates per suggestion for which geodesic distances are computed: those with the highest bounds */
 #define MAX_MEASURED 40
-#define MIN_GAIN 1e-6 /* a sensor is suggested only if it reduces the measure (sensor_suggest.h) by at least this */
+#define MIN_GAIN 1e-6 /* minimum reduction of the measure (sensor_suggest.h) for which a sensor is suggested */
 
 struct suggest_asset { /* an asset on which sensors may be suggested */
     int asset;
@@ -41,7 +41,7 @@ struct candidate {
 
 struct suggesting {
     const struct suggest_query *query;
-    double seen_m; /* within this distance in metres from a sensor, a hot spot as high as the group's whole range is detectable */
+    double seen_m; /* distance in metres from a sensor within which a hot spot as strong as the group's full value range is detectable */
     struct suggest_asset *parts;
     size_t part_count;
     double whole_m2;
@@ -136,8 +136,8 @@ static int by_bound(const void *a, const void *b)
     return (first->bound < second->bound) - (first->bound > second->bound);
 }
 
-/* Lists candidate positions for a sensor, spread evenly over the area where hot spots are hard to detect, highest bound first. Always
-   gives the same list for the same input. *count receives the number of candidates. The caller frees the list. */
+/* Lists candidate positions for a sensor, spread evenly over the area where hot spots are hard to detect, highest bound first.
+   Deterministic. *count receives the number of candidates. The caller frees the list. */
 static struct candidate *find_candidates(const struct suggesting *suggesting, size_t *count)
 {
     struct candidate *list = mem_array(suggesting->part_count * (MAX_CANDIDATES + 1), sizeof(*list));
@@ -204,8 +204,8 @@ static float *distances_from(const struct suggesting *suggesting, struct suggest
     return waiting.result.status == RELOCATION_DONE ? waiting.result.geodesic_m : NULL;
 }
 
-/* Finds the candidate position with the largest gain and counts it as a sensor from now on. Returns false if no candidate gains more
-   than MIN_GAIN. */
+/* Finds the candidate position with the largest gain, and counts it as a sensor from now on. Returns false if no candidate
+   gains more than MIN_GAIN. */
 static bool take_best(struct suggesting *suggesting, struct suggestion *out)
 {
     size_t count;

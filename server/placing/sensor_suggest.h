@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests where additional sensors would help most: one position after the other, each chosen so that a single sensor there reduces the
-   measure as much as possible. The measure says how hard hot spots are to detect. 0: there is a sensor everywhere; 1: even a hot spot as
-   high as the group's whole range is undetectable. The measure is the mean over the surface of ln(h / h0) / ln(1 / 0.05), capped at 1. h
-   is the height of the smallest hot spot that is detectable at a point (the view option `show: blind` draws it), and h0 that height at a
-   sensor. This greedy choice among the tested positions reaches at least 63 % of the best set's gain (Nemhauser, Wolsey & Fisher, 1978).
-   Thread: one; waits for worker threads. */
+/* Suggests where additional sensors would help most: one position after the other, each chosen so that one sensor there reduces
+   the measure as much as possible. The measure says how hard hot spots are to detect. 0: there is a sensor everywhere; 1: even
+   a hot spot as strong as the group's full value range is undetectable. The measure is the mean over the surface of ln(h / h0)
+   / ln(1 / 0.05), capped at 1. h is the strength of the weakest hot spot that is detectable at a point (drawn by the view
+   option `show: blind`), and h0 that strength at a sensor. This greedy choice among the tested positions reaches at least 63 %
+   of the best set's gain (Nemhauser, Wolsey & Fisher, 1978). Thread: one; waits for worker threads. */
 #ifndef PLACING_SENSOR_SUGGEST_H
 #define PLACING_SENSOR_SUGGEST_H
 #include "base/log/log.h"
@@ -24,8 +24,8 @@ struct suggestion {
     int asset;
     double at_m[3];       /* suggested position on the surface, in plant coordinates */
     double before, after; /* the measure (see the top of this file) over all assets of the query, before and after adding this sensor */
-    double unseen_before, unseen_after; /* fraction of the area where even a hot spot of the group's whole range is undetectable, before
-                                           and after adding this sensor */
+    double unseen_before, unseen_after; /* fraction of the area where even a hot spot as strong as the group's full value range is
+                                           undetectable, before and after adding this sensor */
 };
 
 /* Writes up to query->count suggestions to `out` and returns their number; fewer if no further sensor would help. Returns 0 if no asset

@@ -16,15 +16,15 @@ struct tag_save {
     uint64_t client; /* id of the client that asked to save the list and gets the answer */
     uint32_t seq;
 };
-/* Frees a request to save a tag list. NULL is fine. */
+/* Frees a request to save a tag list. Accepts NULL. */
 void tag_save_free(struct tag_save *save);
 
 /* Returns the text of the tag list; free with mem_free(). Returns NULL on failure, with the reason in *why. */
 char *tag_file_read(const char *path, struct refusal *why);
-/* Writes a hash of the tag list's text as 16 hexadecimal digits, by which versions are told apart. */
+/* Writes a hash of the tag list's text, which identifies its version, as 16 hexadecimal digits. */
 void tag_file_hash(const char *text, char out[17]);
-/* Keeps the present tag list under the first unused name of NAME.1, NAME.2, ..., by a second hard link. Returns that name (mem_free).
-   NULL with the reason in *why. */
+/* Keeps the present tag list under the first unused name of NAME.1, NAME.2, ..., by a second hard link. Returns that name
+   (mem_free), or NULL with the reason in *why. */
 char *tag_file_keep(const char *path, struct refusal *why);
 /* Saves save->after under the list's name. *kept receives the path of the previous version (mem_free). Returns false with nothing
    changed on disk and the reason in *why. */

@@ -4,7 +4,7 @@
 #define PLANT_COLORMAPS_H
 #include "plant/plant.h"
 
-/* plant NULL in these functions: only the built-in colour maps exist. Index 0 is the default map. */
+/* In these functions, plant NULL means that only the built-in colour maps exist. Index 0 is the default map. */
 size_t colormap_count(const struct plant *plant);
 const struct colormap *colormap_at(const struct plant *plant, size_t index);
 /* Returns the index of the colour map with this name, or -1. */

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields (interpolated values) that pictures show exactly: shepard and paper by straight-line distances are evaluated at each pixel
-   (field/pixel_field.h). plantcast-prep does not subdivide triangles for such fields. Thread: any. */
+/* Fields (interpolated values) that pictures show exactly: the interpolations `shepard` and `paper` with straight-line
+   distances are evaluated at each pixel (field/pixel_field.h). plantcast-prep does not subdivide triangles for such fields.
+   Thread: any. */
 #ifndef PLANT_EXACT_H
 #define PLANT_EXACT_H
 #include "plant/influence.h"
 #include "plant/plant.h"
 
-/* Largest relative error, in either direction, of a distance along the surface that accuracy_test finds on shapes without the faults of CAD
-   exports. A sensor's weight in the interpolation shepard is the power -p of a distance, so weights err by up to p times as much. */
+/* Largest relative error, in either direction, of a distance along the surface. accuracy_test measured it on shapes without the
+   faults of CAD exports. The interpolation `shepard` weights a sensor by a distance to the power of -p, so a weight's relative
+   error is up to p times as large. */
 #define PLANT_DISTANCE_ERROR 0.0031
 
 /* Returns whether a field with this interpolation and kind of distance is evaluated at each pixel. */

@@ -73,7 +73,7 @@ static int count_sensors(const struct plant *plant, int group, int asset)
     return count;
 }
 
-/* Warns of assets that have too few sensors of a group for determining the parameters of `gp` from readings. */
+/* Warns of assets with too few sensors of a group to determine the parameters of `gp` from readings. */
 static void warn_of_fits(const struct plant *plant, int g, struct diag *diag)
 {
     const struct plant_group *group = &plant->groups[g];

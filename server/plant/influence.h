@@ -13,9 +13,9 @@
 
 /* assumed standard deviation of the field (interpolated values) of `gp`, as a fraction of the group's range */
 #define PLANT_GP_DEVIATION 0.25
-/* correlation length of `gp`, used if there are no readings from which to determine it, as a fraction of the asset's size */
+/* correlation length of `gp` as a fraction of the asset's size, used if there are no readings to determine it from */
 #define PLANT_GP_RANGE 0.25
-#define PLANT_GP_FITTED 3       /* minimum number of sensors on an asset for determining the parameters of `gp` from readings */
+#define PLANT_GP_FITTED 3       /* minimum number of sensors on an asset to determine the parameters of `gp` from readings */
 #define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, for `gp`, as a fraction of the group's range */
 
 #define PLANT_SEEN_PART 0.05 /* smallest difference of values that users can see in the colours, as a fraction of the group's range */
@@ -32,8 +32,8 @@ static inline bool plant_prepares(const struct plant_group *group, enum interpol
 {
     return group->prepared >> interpolation & 1;
 }
-/* Returns whether plantcast-prep computes anything for the group: an interpolation, heat-method distances, or how directions are carried
-   along the surface. */
+/* Returns whether plantcast-prep computes anything for the group: an interpolation, heat-method distances, or the transport of
+   directions along the surface. */
 static inline bool plant_prepares_any(const struct plant_group *group)
 {
     return group->prepared >> INTERPOLATION_HARMONIC != 0 || group->heat || group->directed;

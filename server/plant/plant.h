@@ -31,7 +31,7 @@ enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 /* initial display state of an asset: shown, ghosted (outline only) or hidden */
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN };
-enum { PLANT_STARTS = 4096 }; /* only this many assets, the first ones of the plant file, can be hidden or ghosted one by one */
+enum { PLANT_STARTS = 4096 }; /* maximum number of assets (the first of the plant file) that can be hidden or ghosted individually */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
     DATA_BIT,
@@ -76,7 +76,7 @@ struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
     char *area;                   /* part of the plant under which the asset is listed; "": none */
     char *model;                  /* path of the model file; a relative path is relative to the plant file's folder */
-    char *nodes;   /* node patterns (nodes.h), one a line; each matching node is taken with its sub-tree. NULL: the whole model */
+    char *nodes;   /* node patterns (nodes.h), one per line; each matching node is taken with its sub-tree. NULL: the whole model */
     double unit_m; /* length of a model unit in metres, including the scale of the asset's placement */
     enum axis up;  /* upward axis of the model */
     /* maximum width in metres of gaps in the surface that count as closed when distances along the surface are computed; 0: chosen from the
@@ -123,7 +123,7 @@ struct plant_group {
     /* true (key `units: as-written`): values count as being in the group's unit, even if the tag list states another unit */
     bool as_written;
     double min, max;
-    double limits[LIMIT_COUNT]; /* alarm limits of tags in the group that state none themselves; NaN: no limit */
+    double limits[LIMIT_COUNT]; /* default alarm limits for the group's tags that state none; NaN: no limit */
     struct plant_alarm_settings alarm_settings;
     enum interpolation interpolation;
     enum distance_mode distance;
@@ -160,7 +160,7 @@ enum mqtt_payload { MQTT_NUMBER /* text: one number */, MQTT_JSON, MQTT_SPARKPLU
 struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are not given are NULL */
     enum mqtt_payload payload;
     int protocol;    /* protocol version; 4: MQTT 3.1.1; 5: MQTT 5 */
-    bool persistent; /* true: persistent session: the broker keeps messages while we are disconnected */
+    bool persistent; /* true: persistent session: the broker keeps messages while this daemon is disconnected */
     int qos, keepalive_s;
     char *client_id;
     bool has_tls;
@@ -177,7 +177,7 @@ struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are
 enum opcua_policy { OPCUA_BEST /* best security policy that the server offers */, OPCUA_AES256, OPCUA_BASIC256, OPCUA_AES128, OPCUA_NONE };
 
 struct plant_opcua {                   /* OPC UA settings of a source; texts that are not given are NULL */
-    bool has_security;                 /* true: the plant file states the key `security`; a source without that key is refused */
+    bool has_security;                 /* true: the plant file has the key `security`; a source without that key is refused */
     enum opcua_policy policy;          /* security policy. Messages are signed and encrypted (SignAndEncrypt), except with OPCUA_NONE */
     char *certificate, *key;           /* files with the daemon's own certificate and key, PEM or DER */
     char *trusted;                     /* folder with the certificates of trusted OPC UA servers, and revocation lists */
@@ -185,7 +185,7 @@ struct plant_opcua {                   /* OPC UA settings of a source; texts tha
     /* files with certificate and key of the user as which the daemon signs in; used in place of a login file */
     char *user_certificate, *user_key;
     char *path;                        /* path of the endpoint URL */
-    char *name_space;                  /* namespace URI that is used for nodes whose address states none */
+    char *name_space;                  /* namespace URI of nodes whose address states none */
     int queue;                         /* number of values per node that the OPC UA server keeps between two messages to the daemon */
     /* smallest change of a value that the OPC UA server reports: absolute, or in percent of the node's range (EURange); 0: every change */
     double deadband, deadband_percent;
@@ -199,8 +199,8 @@ struct plant_source {
     char *device;                      /* serial device */
     int baud, parity, stop_bits;       /* parity: 'N', 'E' or 'O' */
     int port, unit;                    /* unit: Modbus unit identifier */
-    /* milliseconds; poll_ms: between two readings of a value; timeout_ms: until an answer counts as missing; pause_ms: between an answer
-       and the next request */
+    /* milliseconds; poll_ms: between two readings of a value; timeout_ms: after which an answer counts as missing; pause_ms:
+       between an answer and the next request */
     int poll_ms, timeout_ms, pause_ms;
     int connect_delay_ms;              /* pause in milliseconds between connecting to the device and the first request */
     bool close_between_polls;          /* one request per connection */
@@ -273,8 +273,8 @@ struct tag_signal { /* where the device has a tag's value, and how the value is 
     /* topic, path: parts of the address, split. MQTT: the full topic, and the path of the value in its payload ("": the source's default).
        Sparkplug: GROUP/NODE[/DEVICE], and the metric. OPC UA: the namespace URI, and an identifier such as s=NAME. Other sources: NULL. */
     char *topic, *path;
-    int element;     /* index of the element in an OPC UA array; -1: the node's value is no array */
-    int modbus_unit; /* Modbus unit identifier of the device; -1: as stated for the source */
+    int element;     /* index of the element in an OPC UA array; -1: the node's value is not an array */
+    int modbus_unit; /* Modbus unit identifier of the device; -1: the source's */
     enum register_table table;
     int register_index; /* number of the first register, counted from 0 as in Modbus messages */
     int bit;            /* number of the bit within the register; -1: the value is the whole register */
@@ -307,12 +307,11 @@ struct tag_place { /* where a tag's sensor is on its asset */
     bool has_position;    /* true: position_m is set; false: `node` gives the position or, without a node, the middle of the asset */
     double position_m[3]; /* position in metres, in the coordinate frame that the asset's settings name */
     char *node;           /* name of the model node that gives the position, or NULL */
-    char *lost_asset;     /* id of the tag's asset in the tag list if no such asset exists (plant_load_with_orphans()), else NULL */
+    char *lost_asset;     /* asset id in the tag's row if no such asset exists (plant_load_with_orphans()), else NULL */
 };
 
 struct tag_validity {                 /* conditions under which a tag's reading is good */
-    /* age in seconds from which the tag's reading counts as too old (stale). Default: three poll intervals, at least 5 s; OPC UA and
-       Sparkplug: never */
+    /* age in seconds at which the tag's reading becomes stale. Default: three poll intervals, at least 5 s; OPC UA and Sparkplug: never */
     double stale_s;
     bool states_stale;                /* the row states stale_s */
     double flatline_s;                /* seconds without any change after which the tag's value is uncertain; 0: never */
@@ -322,7 +321,7 @@ struct tag_validity {                 /* conditions under which a tag's reading 
 struct tag_alarms {
     double limits[LIMIT_COUNT];           /* alarm limits that apply to the tag: its own, or those of its group; NaN: no limit */
     struct plant_alarm_settings settings; /* alarm settings that apply to the tag: its own, or those of its group */
-    int suppressed_by; /* index of a bit tag; while that bit is 1, this tag's alarms are suppressed by design; -1: none */
+    int suppressed_by; /* index of a bit tag that suppresses this tag's alarms by design while it is 1; -1: none */
     struct plant_mirror mirror;
 };
 
@@ -343,7 +342,7 @@ struct plant_tag {
     double strength, decay;
     struct tag_validity validity;
     struct tag_alarms alarms;
-    /* largest difference in the tag's unit by which recorded history may deviate from the readings; NaN: the history's default */
+    /* largest deviation of recorded history from the readings, in the tag's unit; NaN: the history's default */
     double deadband;
     struct tag_direction direction;
     int line, column; /* position of the tag's name in the tag list's file; both count from 1 */
@@ -409,7 +408,7 @@ struct plant {
     struct plant_history history;
     enum alarm_mode alarms;
     struct plant_publish *publish; /* NULL: no publishing */
-    struct plant_notify *notify;   /* recipients of alarm notifications (plant/sections/notification.h); NULL: nobody */
+    struct plant_notify *notify;   /* recipients of alarm notifications (plant/sections/notification.h); NULL: none */
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;
@@ -446,14 +445,14 @@ int plant_tag_scan_ms(const struct plant *plant, const struct plant_tag *tag);
 /* Returns whether a tag's source sends values only when they change, and reports the loss of values by itself: OPC UA servers, and
    Sparkplug nodes, which have death certificates. */
 bool plant_tag_sends_changes(const struct plant *plant, const struct plant_tag *tag);
-/* Returns stale_s of a tag that is not derived and whose row states none. */
+/* Returns the default stale_s, for a tag that is not derived and whose row states none. */
 double plant_tag_default_stale_s(const struct plant *plant, const struct plant_tag *tag);
 /* Returns the Modbus unit (server address) of a tag that has a source: its own, else that of the source. */
 int plant_tag_modbus_unit(const struct plant *plant, const struct plant_tag *tag);
 /* Returns whether readings of a tag are simulated: its source is simulated or, for a derived tag, the source of a tag in its expression. */
 bool plant_tag_simulated(const struct plant *plant, int tag);
-/* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: `path` is not that of
-   a service's plant file. name: `prepared` or `history`. Free with mem_free(). */
+/* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: `path` is
+   not a service's plant file. name: `prepared` or `history`. Free with mem_free(). */
 char *plant_service_folder(const char *path, const char *name);
 /* Returns the folder of the prepared asset files: FOLDER/NAME.prepared next to NAME.yaml, or the service's folder. Free with
    mem_free(). */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds assets, groups and tags of a plant by name, and what a tag inherits from its source. */
+/* Finds assets, groups and tags of a plant by name, and returns settings that a tag inherits from its source. */
 #include <math.h>
 #include <string.h>
 

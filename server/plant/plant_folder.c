@@ -125,7 +125,7 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    /* if the revision's record lacks this version of the file, the file was moved already, or the revision does not change it: success */
+    /* no such version in the record: the file was moved already, or the revision does not change it; success */
     int status = access(source, F_OK) != 0 ? 0 : *name == '/' ? put_elsewhere(source, target) : move(source, target);
     mem_free(source);
     mem_free(target);
@@ -178,8 +178,8 @@ int revision_go_on_undoing(const char *folder)
     return status;
 }
 
-/* Returns whether killed programs left work folders in the plant's folder. now true: also removes these. own: path of a work folder of this
-   program, which stays. */
+/* Returns whether killed programs left work folders in the plant's folder. now: true: also removes these folders. own: path of
+   a work folder of this program, which is kept. */
 static bool remove_left(const char *folder, const char *own, bool now)
 {
     DIR *dir = opendir(folder);
@@ -315,8 +315,8 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
     int lock = plant_folder_lock(&at_once, why);
     if (lock >= 0)
         close(lock);
-    /* reports no error for a failed lock, because no revision is in progress: an import is running that has not begun to replace files, or
-       this program may not remove what a killed program left */
+    /* without a revision in progress, a failed lock is no error: either a running import has not begun to replace files, or
+       this program lacks the right to remove what a killed program left */
     if (!killed) {
         mem_free(*why);
         *why = NULL;

@@ -76,8 +76,9 @@ void plant_opcua_finish(struct plant_opcua *opcua);
    and names the key. This is no error, since a user who only prepares the plant may lack the right to read it. */
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
-/* Prepares reading a YAML list into records that begin with `char *id`: allocates a record for each item of the list and sets *count.
-   Reports a list with fewer than `least` items. Returns NULL, reported, if the node is no list or memory runs out. */
+/* Prepares reading a YAML list into records that begin with `char *id`: allocates a record for each item of the list and sets
+   *count. Reports a list with fewer than `least` items. Returns NULL, reported, if the node is not a list or memory runs out.
+   */
 void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
 /* Reports the id of the record read last if an earlier record of the list has it, too. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,

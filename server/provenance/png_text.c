@@ -105,7 +105,7 @@ static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct png_
     return true;
 }
 
-/* A kind of chunk that the writer of our PNG files emits. `bytes`: the chunk's exact data; NULL: any data of at least one byte. */
+/* A chunk type that our PNG writer emits. `bytes`: the chunk's exact data; NULL: any data of at least one byte. */
 struct plain_chunk {
     char type[5];
     bool required, repeats;

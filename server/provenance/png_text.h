@@ -8,7 +8,7 @@
 
 struct png_text {
     const char *keyword; /* name of the text, 1 to 79 bytes */
-    const char *text;    /* UTF-8, but some readers decode the text as Latin-1, as PNG says: use ASCII */
+    const char *text;    /* UTF-8; use ASCII, because some readers decode the text as Latin-1, as PNG says */
     size_t length;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ed25519 keys by OpenSSL: reading, signing and verifying. */
+/* Ed25519 keys, implemented with OpenSSL: reading, signing and verifying. */
 #include "provenance/signing_key.h"
 
 #include <errno.h>

@@ -10,9 +10,9 @@
 #include "base/color/lab.h"
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
-/* a finder pattern's runs of dark and light pixels may be longer or shorter than expected by this fraction of a cell */
+/* tolerance of the lengths of a finder pattern's dark and light runs, as a fraction of a cell */
 static const double SLACK = 0.6;
-/* a colour that is farther than this CIELAB distance from all legend colours counts as not in the legend */
+/* a colour counts as not in the legend if its CIELAB distance from all legend colours is larger than this */
 static const double STRANGE = 7;
 /* two colours count as equal within this CIELAB distance plus the picture's noise */
 static const double INDISTINCT = 1.2;

@@ -26,8 +26,8 @@ enum strip_state { STRIP_VALUE, STRIP_BELOW, STRIP_ABOVE, STRIP_NO_COLOR };
 struct strip_value {
     /* STRIP_NO_COLOR: the pixel's colour is not in the legend, for example the background, a label, or no data */
     enum strip_state state;
-    /* Only for STRIP_VALUE. value: the pixel's value; low, high: range of the values whose colours cannot be told from the pixel's
-       colour. */
+    /* Only for STRIP_VALUE. value: the pixel's value; low, high: range of values whose colours cannot be distinguished from the
+       pixel's colour. */
     double value, low, high;
     double off; /* CIELAB distance of the pixel's colour from the nearest colour of the legend */
 };

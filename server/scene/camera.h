@@ -6,7 +6,7 @@
 
 #include "plant/plant.h"
 
-/* smallest ratio of the distances of near and far plane; a smaller one would exceed the precision of a depth buffer of 24 bits */
+/* smallest ratio of near to far plane distance; a smaller one would exceed the precision of a 24-bit depth buffer */
 #define CAMERA_NEAR_TO_FAR 1e-4
 
 struct camera {
@@ -18,8 +18,8 @@ struct camera {
 /* Returns whether all numbers are finite and within PLANT_MAX_M, the eye differs from the target, up is not along the view, and 1 <=
    fov_deg <= 120 or height_m >= 1e-5. */
 bool camera_valid(const struct camera *camera);
-/* Frames the whole box from the plant's raised south-west corner: x points east; y points north in a Z-up frame, -z in a Y-up frame. Sets
- * every member. */
+/* Frames the whole box, seen from above the plant's south-west corner: x points east; y points north in a Z-up frame, -z in a
+ * Y-up frame. Sets every member. */
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect);
 struct camera_window { /* rectangle of the picture, in coordinates from -1 to 1 along each axis; all zero: the whole picture */
     double left, right, bottom, top;
@@ -33,8 +33,8 @@ void camera_fit_points(struct camera *camera, const double forward[3], const dou
                        const struct camera_window *window);
 /* Writes the unit vectors of the picture's axes: right, up, and forward. */
 void camera_basis(const struct camera *camera, double right[3], double up[3], double forward[3]);
-/* Returns the distance from which a camera with the default angle sees as much as an orthographic picture shows. 0: the camera is
-   perspective. */
+/* Returns the distance from which a perspective camera with the default angle sees as much as this camera's orthographic
+   picture shows. 0: this camera is perspective. */
 double camera_parallel_m(const struct camera *camera);
 /* Computes two column-major matrices: view, from plant to eye space, and projection, from eye to clip space. Near and far planes enclose
    the box; in an orthographic picture also the part of the box behind the eye. */

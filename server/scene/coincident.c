@@ -9,12 +9,12 @@
 #include "base/mem.h"
 #include "plant/models/transform.h"
 
-/* tolerances within which two faces count as lying in one plane: distance in metres, and difference of their unit normals; both follow from
-   the accuracy of CAD positions stored as floats */
+/* tolerances within which two faces count as coplanar: distance in metres, and difference of their unit normals; both follow
+   from the accuracy of CAD positions stored as floats */
 static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3;
 static const double MIN_AREA_M2 = 1e-4, MIN_OVERLAP_M = 1e-3;
-/* shift of an asset towards the viewer per step of its rank, as a part of its distance. It exceeds the depth error of frames for surfaces
-   seen at an angle of 6 degrees or more, with positions rounded to 1/256 pixel */
+/* shift of an asset towards the viewer per step of its rank, as a fraction of its distance. It exceeds the depth error of
+   frames for surfaces seen at an angle of 6 degrees or more, with positions rounded to 1/256 pixel */
 static const double SHIFT_PER_STEP = 4e-5;
 enum { MAX_STEPS = 7 };
 

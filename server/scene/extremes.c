@@ -10,12 +10,12 @@
 #include "scene/main_part.h"
 
 enum { DIRECTIONS = 96 };
-/* Limits for recognising an asset as the plant's ground: it has no sensor, is low for its size, including lamps and kerbs, and covers most
- * of the plant's area. */
-/* GROUND_HEIGHT: largest height of ground, as a part of its larger side; GROUND_PART: smallest area of ground, as a part of the plant's
-   area */
+/* Limits for recognising an asset as the plant's ground: it has no sensor, is low for its size (even with lamps and kerbs), and
+ * covers most of the plant's area. */
+/* GROUND_HEIGHT: largest height of ground, as a fraction of its larger side; GROUND_PART: smallest area of ground, as a
+   fraction of the plant's area */
 static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8;
-/* length in metres from which the larger side of a plate makes it ground; a smaller plate counts as equipment */
+/* minimum length in metres of the larger side of a ground plate; a smaller plate counts as equipment */
 static const double GROUND_LEAST_M = 5;
 /* largest error of the level of detail whose vertices are searched, relative to the asset's size; with a coarser level, a view fitted to
    the vertices would crop the asset */

@@ -7,11 +7,12 @@
 
 #include "base/mem.h"
 
-/* Tilt of the views straight down and up against the vertical, as a tangent. In an exactly vertical view, north would have no direction in
- * the picture. With the tilt, the camera's up vector stays the plant's, and orbiting continues smoothly. */
+/* Tilt from the vertical of the views straight down and straight up, as a tangent. In an exactly vertical view, north would
+ * have no direction in the picture. With the tilt, the camera's up vector stays the plant's, and orbiting continues smoothly.
+ * */
 static const double VERTICAL_TILT = 1e-3;
 static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio for which the initial view in the plant file is made */
-/* size of the surroundings shown around a sensor, as a part of the asset's size */
+/* size of the surroundings shown around a sensor, as a fraction of the asset's size */
 static const double SENSOR_PART = 0.35;
 static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* smallest and largest size of the surroundings shown around a sensor */
 static const double SENSOR_RISE = 0.36;                   /* elevation of the camera above a sensor, as a tangent */
@@ -49,7 +50,7 @@ static void compass(const struct scene *scene, double east[3], double north[3], 
 
 static void side_forward(const struct scene *scene, enum side side, const struct camera *camera, double forward[3])
 {
-    static const double parts[][3] = { /* components of the view direction along east, north and up */
+    static const double parts[][3] = { /* by side: components of the view direction along east, north and up */
                                        [SIDE_TOP] = { 0, VERTICAL_TILT, -1 },
                                        [SIDE_BOTTOM] = { 0, VERTICAL_TILT, 1 },
                                        [SIDE_FRONT] = { 0, 1, 0 },
@@ -65,7 +66,7 @@ static void side_forward(const struct scene *scene, enum side side, const struct
                                       : parts[side][0] * east[i] + parts[side][1] * north[i] + parts[side][2] * up[i];
 }
 
-/* Computes the view direction onto a sensor: along the normal of the ellipsoid in the asset's box, slightly from above. */
+/* Computes the view direction onto a sensor: against the outward normal of the ellipsoid in the asset's box, slightly from above. */
 static void sensor_forward(const struct scene_asset *asset, const double place_m[3], const double up[3], double forward[3])
 {
     double out[3], rise = 0, length = 0;

@@ -11,7 +11,7 @@ enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, S
 struct framing {
     int asset, tag;              /* indices of the asset or tag to show; -1: none; both -1: the whole plant */
     enum side side;              /* SIDE_NOW: keeps the camera's direction, but a sensor is viewed from outside its asset */
-    struct camera_window window; /* rectangle of the picture that the subject shall fill */
+    struct camera_window window; /* rectangle of the picture for the subject to fill */
 };
 
 /* Finds what a name means: an asset, otherwise a tag that is on an asset. NULL means the whole plant. Sets every member of the framing.

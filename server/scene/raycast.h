@@ -10,7 +10,7 @@
 struct ray {
     double origin[3], direction[3]; /* ray in the plant frame; its points are origin + t direction */
     double low, high;               /* range of the ray's parameter t that is searched */
-    double parallel_m;              /* as camera_parallel_m() returns; 0: perspective */
+    double parallel_m;              /* result of camera_parallel_m(); 0: perspective */
 };
 
 struct raycast_hit {

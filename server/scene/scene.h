@@ -30,7 +30,7 @@ struct scene_asset {
     double stray_at_m[3], stray_away_m;
     /* reason why the asset could not be prepared; it then has no sensors and is invisible; NULL: it was prepared */
     char *missing;
-    int front; /* rank in places where faces of two assets coincide: the asset with the higher rank is visible there (scene/coincident.h) */
+    int front; /* rank where faces of two assets coincide: the asset with the higher rank is visible (scene/coincident.h) */
 };
 
 struct scene {

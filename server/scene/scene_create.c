@@ -63,7 +63,7 @@ static size_t count_placed(const struct plant *plant, const struct plant_sensor 
     return placed;
 }
 
-/* Returns whether the prepared parameters equal those stated in the plant file; unstated ones were fitted. */
+/* Returns whether the prepared parameters equal those stated in the plant file. Unstated ones were fitted and are not compared. */
 static bool is_as_stated(const struct plant_gp *gp, const struct influence_entry *entry)
 {
     return (isnan(gp->range_m) || gp->range_m == entry->range_m) && (isnan(gp->noise) || gp->noise == entry->noise) &&
@@ -244,8 +244,8 @@ static int compare_assets(const void *a, const void *b)
     return ((const struct file_use *)a)->asset - ((const struct file_use *)b)->asset;
 }
 
-/* Opens the files of all assets. The array of uses is sorted by file name: the first use of a name opens the file, and those that follow
-   share it. */
+/* Opens the files of some assets. The array of uses is sorted by file name: the first use of a name opens the file, and later
+   uses share it. */
 static void open_some(void *arg, size_t begin, size_t end)
 {
     const struct file_uses *uses = arg;

@@ -26,11 +26,11 @@ void clip_plane(const struct clip *clip, int index, double out[4]);
 void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
 void clip_get_box(const struct clip *clip, double min_m[3], double max_m[3]);
 bool clip_keeps(const struct clip *clip, const double point_m[3]);
-/* clip_drops: returns whether the box is cut away entirely; clip_touches: returns whether at least a part of the box is cut away */
+/* clip_drops() returns whether the whole box is cut away, clip_touches() whether at least a part of the box is cut away */
 bool clip_drops(const struct clip *clip, const double min_m[3], const double max_m[3]);
 bool clip_touches(const struct clip *clip, const double min_m[3], const double max_m[3]);
-/* Reduces the part low <= t <= high of a ray (origin + t direction) to the space that section planes leave. Returns false if this space
-   contains no point of the part. */
+/* Limits the range low <= t <= high of a ray (origin + t direction) to the space that the section planes leave. Returns false
+   if none of the range is in this space. */
 bool clip_ray(const struct clip *clip, const double origin[3], const double direction[3], double *low, double *high);
 
 struct visibility {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A queue of deferred request groups: frame requests that one frame answers, but which cannot be drawn yet. Oldest first. */
+/* Queue of deferred request groups, oldest first. One frame answers all requests of a group, but it cannot be drawn yet. */
 #include "service/deferred_requests.h"
 
 #include <string.h>

@@ -199,7 +199,7 @@ static bool same_quality(const struct encoder_params *a, const struct encoder_pa
     return a->quality == b->quality && a->full_chroma == b->full_chroma;
 }
 
-/* Encodes the job's frame. Returns false on failure. *out NULL: the picture has not changed since the stream's last frame. */
+/* Encodes the job's frame. Returns false on failure. *out becomes NULL if the picture has not changed since the stream's last frame. */
 static bool encode(struct encode_job *job, struct packet **out)
 {
     struct encode_queue *queue = job->queue;
@@ -223,8 +223,8 @@ static bool encode(struct encode_job *job, struct packet **out)
     return good;
 }
 
-/* Returns the lowest sequence number of a packet that this job, or a later job of the same stream, has to deliver to a client. The caller
-   holds the lock. */
+/* Returns the lowest sequence number of the packets that this job or a later job of the stream still has to deliver to a
+   client. The caller holds the lock. */
 static uint64_t still_needed(const struct encode_job *job)
 {
     uint64_t least = UINT64_MAX;

@@ -13,9 +13,9 @@ struct encode_queue_params {
     struct workers *workers;
     struct counters *counters;
     const char *h264_library; /* name of the libavcodec encoder */
-    /* Callback on a worker, for each ticket (frame request whose drawing has begun). It gets the packets (encoded frames) that bring the
-       ticket's client up to date, oldest first. count 0: the client already shows this content, or, if `failed` is true, the frame could
-       not be encoded. The packets are valid only during the call. */
+    /* Callback on a worker, for each ticket (frame request whose drawing has begun). It gets the packets (encoded frames) that
+       bring the ticket's client up to date, oldest first. count 0: the frame could not be encoded if `failed` is true;
+       otherwise the client already shows this content. The packets are valid only during the call. */
     void (*done)(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
     void (*all_done)(void *arg); /* callback on a worker after the last ticket of a frame */
     void *done_arg;              /* argument of both callbacks */
@@ -27,7 +27,7 @@ void encode_queue_destroy(struct encode_queue **queue);
 /* Queues jobs that encode the frame: one for each codec and quality in the group, and one for each client that cannot share a packet
    stream. Takes its own reference to the frame; empties the group. */
 void encode_queue_submit(struct encode_queue *queue, struct frame *frame, struct request_group *group);
-/* Destroys the encoders that no stream uses any more. */
+/* Destroys encoders that no stream uses any more. */
 void encode_queue_drop_idle(struct encode_queue *queue);
 /* Removes a client from its encode stream: it gets no more packets. */
 void encode_queue_forget(struct encode_queue *queue, uint64_t client);

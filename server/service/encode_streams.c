@@ -8,14 +8,13 @@
 #include "base/math/search.h"
 #include "base/mem.h"
 
-/* minimum time between key frames that are encoded only so that clients can join an encode stream; the time doubles for clients that often
-   fall behind */
+/* minimum time between key frames that are encoded only to let clients join an encode stream; doubled for clients that often fall behind */
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
-/* maximum number of packets by which a client may be behind its stream and still get all that it missed; also the maximum number of frames
-   that are planned but not encoded yet */
+/* maximum number of packets that a client may lag behind its stream and still get all that it missed; also the maximum number
+   of frames that are planned but not encoded yet */
 enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
-/* half of the number of bytes of sent packets that a stream keeps for clients that missed some; if the last key frame is larger, the stream
-   keeps twice that frame's bytes */
+/* half of the limit on the bytes of sent packets that a stream keeps for clients that missed some; if the last key frame is
+   larger than this, the limit is twice the key frame's bytes */
 static const size_t KEPT_BYTES = 64 * 1024;
 
 /* --- members of streams ----------------------------------------------------------------------------------------------- */
@@ -80,7 +79,7 @@ static bool reaches(const struct encode_stream *stream, const struct encode_stre
 
 /* --- planning --------------------------------------------------------------------------------------------------------- */
 
-/* Returns the encode stream to which most of these clients already belong, if they can still get all packets that they missed from it. */
+/* Returns the encode stream to which most of these clients already belong, if the stream still keeps all packets that they missed. */
 static struct encode_stream *most_common(struct encode_streams *streams, const struct request_group *tickets)
 {
     struct encode_stream *best = NULL;
@@ -97,8 +96,7 @@ static struct encode_stream *most_common(struct encode_streams *streams, const s
     return best;
 }
 
-/* Returns whether a client of the group wants a depth grid, which the frame has, but which was not sent with the stream's newest
-   content. */
+/* Returns whether a client of the group wants a depth grid, the frame has one, and none was sent with the stream's newest content. */
 static bool brings_depth(const struct encode_stream *stream, const struct frame *frame, const struct request_group *tickets)
 {
     return frame->depth[0] && !stream->has_depth && request_group_wants_depth(tickets);
@@ -176,8 +174,8 @@ static size_t count_outside(struct outsiders *outsiders, const struct request_gr
     return count;
 }
 
-/* Returns whether clients from outside of the stream may join it now. Joining takes a key frame, which uses bandwidth of the stream's other
-   clients. If they may not, moves the joining clients' tickets to `rest`. */
+/* Returns whether clients of other streams may join this stream now. Joining takes a key frame, which uses bandwidth of the
+   stream's other clients. If joining is refused, moves the tickets of these clients to `rest`. */
 static bool let_in(struct encode_streams *streams, const struct encode_stream *stream, struct request_group *tickets, int64_t now_ns,
                    struct request_group *rest)
 {
@@ -207,7 +205,7 @@ static void join(struct encode_stream_member *link, struct encode_stream *stream
     link->join_after_ns = now_ns + link->patience_ns;
 }
 
-/* Determines the packets that each client must be sent to show the newest frame, and counts these clients as up to date. */
+/* Determines the packets that each client needs to show the newest frame, and counts these clients as up to date. */
 static void give(struct encode_streams *streams, const struct request_group *tickets, int64_t now_ns, struct encode_plan *plan)
 {
     struct encode_stream *stream = plan->stream;
@@ -240,8 +238,9 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     return stream ? stream : add_chain(streams);
 }
 
-/* Returns whether a client of the group must get the frame although it already shows the same picture (`always`). Requests that must decode
-   without earlier packets (`alone`) do not count: their clients are sent the stored packets from the last key frame on. */
+/* Returns whether a client of the group must get the frame although it already shows the same picture (`always`). Ignores
+   requests that must decode without earlier packets (`alone`): their clients get the stored packets from the last key frame on.
+   */
 static bool must_again(const struct request_group *tickets)
 {
     for (size_t i = 0; i < tickets->count; i++)
@@ -304,8 +303,8 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
     while (stream->kept_count > 0 && stream->oldest < needed &&
            (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
         drop_oldest(stream);
-    /* drops the oldest packet if clients still need all packets in the list: the list holds more packets than a client may have in flight,
-       so that one has arrived */
+    /* drops the oldest packet although clients still need all packets in the list: the list holds more packets than a client
+       may have in flight, so the oldest one has arrived */
     if (stream->kept_count == ENCODE_STREAM_KEPT)
         drop_oldest(stream);
     stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encode streams: which clients share one stream of packets (encoded frames). A packet may depend on the previous one (H.264, or a picture
-   of changes only), so each client belongs to one stream and has a position in it. Clients of one view share a stream. A client that missed
-   packets is sent them, or a key frame. Pure: the caller passes the time. Thread: under the lock of the encode queue. */
+/* Encode streams: which clients share one stream of packets (encoded frames). A packet may depend on the previous one (H.264,
+   or a picture of changes only), so each client belongs to one stream and has a position in it. Clients of one view share a
+   stream. A client that missed packets gets them later, or gets a key frame. Pure: the caller passes the time. Thread: under
+   the lock of the encode queue. */
 #ifndef SERVICE_ENCODE_STREAMS_H
 #define SERVICE_ENCODE_STREAMS_H
 #include "service/request_group.h"
@@ -11,14 +12,14 @@ struct encode_stream {
     struct encode_stream *next;
     void *work;                 /* the encode queue's data about this stream (struct stream_work); NULL in a new stream */
     uint64_t planned;           /* sequence number of the newest frame planned, from 1; also counts frames that were then not encoded */
-    uint64_t oldest;            /* lowest sequence number of the frames whose packets are kept */
+    uint64_t oldest;            /* lowest sequence number among the frames whose packets are kept */
     uint64_t key;               /* sequence number of the newest key frame; 0: none */
     int64_t key_ns;             /* monotonic time when the newest key frame was planned */
     struct frame_request shown; /* request for the newest frame: its view, codec and quality */
     uint64_t content;           /* content hash of the newest frame: equal for frames that show the same picture */
     bool has_depth;             /* true: a depth grid was sent with the newest content */
-    /* packets kept for clients that missed some, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; an element is
-       NULL if nothing had changed in its frame */
+    /* packets kept for clients that missed some: those of the frames `oldest` to oldest + kept_count - 1; an element is NULL if
+       nothing had changed in its frame */
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
     size_t kept_bytes, key_bytes;
@@ -52,22 +53,22 @@ struct encode_plan { /* zero-initialise */
     size_t from_capacity;
 };
 
-/* Plans which packets bring a frame to the clients of the requests (tickets), which all have the same codec and quality; fills *plan.
-   Tickets whose clients cannot share one stream are moved to `rest`; the caller plans them by another call. */
+/* Plans which packets bring a frame to the clients of the requests (tickets), which all have the same codec and quality; fills
+   *plan. Moves tickets whose clients cannot share one stream to `rest`; the caller plans these with another call. */
 void encode_streams_plan(struct encode_streams *streams, const struct frame *frame, struct request_group *tickets, int64_t now_ns,
                          struct encode_plan *plan, struct request_group *rest);
-/* Stores the packet of the stream's next frame for clients that miss it, with a reference. packet NULL: nothing had changed in the frame.
-   Packets with a sequence number below `needed`, the lowest that some client still has to get, may be dropped. */
+/* Stores the packet of the stream's next frame, with a reference, for clients that missed it. packet NULL: nothing had changed
+   in the frame. May drop packets with a sequence number below `needed`, the lowest that a client still has to get. */
 void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uint64_t needed);
-/* Writes the packets with sequence numbers from..to, which bring a client up to date, into `out`, oldest first, borrowed. Returns their
-   count; -1: some were dropped already. */
+/* Writes to `out` the packets with sequence numbers from..to, which bring a client up to date, oldest first. The packets are
+   borrowed. Returns their count, or -1 if some were dropped already. */
 int encode_stream_catch_up(const struct encode_stream *stream, uint64_t from, uint64_t to, struct packet *out[ENCODE_STREAM_KEPT]);
 /* Notes that the newest frame could not be encoded, so that all clients of the stream get a key frame next. */
 void encode_stream_break(struct encode_stream *stream);
 /* Removes a client from its encode stream. */
 void encode_streams_forget(struct encode_streams *streams, uint64_t client);
-/* Removes from the list, and returns, a stream that has no clients and no running job; NULL: there is none. The caller frees the stream's
-   work and then calls encode_stream_destroy(). */
+/* Removes from the list and returns a stream without clients and without a running job; NULL: there is none. The caller frees
+   the stream's `work` and then calls encode_stream_destroy(). */
 struct encode_stream *encode_streams_take_empty(struct encode_streams *streams, bool (*busy)(const struct encode_stream *stream));
 /* Releases the stream's packets and frees it; sets *stream to NULL. */
 void encode_stream_destroy(struct encode_stream **stream);

@@ -4,8 +4,8 @@
 #define SERVICE_ENCODED_FRAME_H
 #include "service/frame_request.h"
 
-/* Reason why a request was answered without a packet. FRAME_SKIPPED: the frame was not drawn, because a later request of the client is
-   answered instead, or because the requested instant is no longer loaded. The client may then show any older picture. */
+/* Reason why a request was answered without a packet. FRAME_SKIPPED: the frame was not drawn, because the client sent a later
+   request, or because the requested instant is no longer loaded. The client may then show any older picture. */
 enum frame_absence {
     FRAME_SKIPPED,
     FRAME_UNCHANGED, /* no packet, because the client already shows this picture */

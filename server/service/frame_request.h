@@ -16,21 +16,21 @@ struct frame_request {
        address */
     uint64_t account;
     int64_t asked_ns; /* monotonic time when the request was made */
-    /* monotonic time of the newest change of readings that the client knows of; a frame with older readings does not answer the request */
+    /* monotonic time of the newest change of readings that the client knows; frames with older readings do not answer the request */
     int64_t read_ns;
     int step;         /* step of the quality ladder at which a preview is drawn */
-    bool draft;       /* true: a draft, which is a refined frame encoded in low quality, sent before the final one */
+    bool draft;       /* true: a draft: a refined frame encoded in low quality and sent before the final one */
     bool of_data;     /* true: the request was made because a reading changed, at the time view.input_ns */
-    /* true: a refined frame is drawn only if that is as quick as a preview; otherwise a preview with moving_quality is drawn */
+    /* true: a refined frame is drawn only if it takes no longer than a preview; otherwise a preview with moving_quality is drawn */
     bool or_moving;
     struct encoder_params moving_quality;
-    /* codec of a preview that may be drawn instead of a refined frame; then the preview also comes without the record of its inputs; 0: the
-       preview has the codec and the record that the refined frame would have */
+    /* codec of a preview that may be drawn instead of a refined frame; that preview comes without the record of its inputs. 0:
+       the preview has the codec and the record that the refined frame would have */
     enum wire_codec moving_codec;
     /* rectangle of the picture that the client gets; requests for different rectangles of one picture share one drawing */
     struct frame_part part;
-    /* sequence number, from 1, of the wall's picture that all its tiles show together (session/tiles/tile_sync.h); 0: the client is no
-       tile */
+    /* sequence number, from 1, of the wall's picture that all its tiles show together (session/tiles/tile_sync.h); 0: the
+       client is not a tile */
     uint64_t picture;
     /* true: the request may only replace an earlier request whose drawing has not begun, because the client may have no more frames in
        flight */
@@ -39,7 +39,7 @@ struct frame_request {
     bool alone;  /* true: the frame must decode without any packet sent before */
     bool depth;  /* true: the client gets the frame's depth grid (render/depth_grid.h) */
     bool record; /* true: the frame includes the record of what it was drawn from (render/frame_record.h), for signing; PNG only */
-    /* which texts and signs are drawn over the model. FULL: legend, clock, sensors and alarms; BARE: legend and clock */
+    /* texts and signs drawn over the model. FULL: legend, clock, sensors and alarms; BARE: legend and clock */
     enum { OVERLAY_NONE, OVERLAY_FULL, OVERLAY_BARE } overlay;
 };
 

@@ -10,8 +10,8 @@ struct content_of {
     int64_t cost_ns; /* drawing time that is charged to each client that shares the frame */
 };
 
-/* Returns whether the ticket's client already shows the picture that is shared among clients, and has its depth grid if the client wants
-   one. The caller holds the lock. */
+/* Returns whether the ticket's client already shows the shared picture, and has its depth grid if it wants one. The caller
+   holds the lock. */
 static bool has_it(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -23,9 +23,9 @@ static bool has_it(const struct request_ticket *ticket, void *arg)
     return has;
 }
 
-/* Returns whether a later request of the ticket's client was already handed to the encoders, because this frame was drawn late (it was
-   deferred, or a long job in steps). The client would never show this older frame, so its encode stream must not count it as shown. The
-   caller holds the lock. */
+/* Returns whether a later request of the ticket's client has already gone to the encoders. That happens if this frame was drawn
+   late: it was deferred, or a long job in steps. The client would never show this older frame, so its encode stream must not
+   count the frame as shown. The caller holds the lock. */
 static bool is_overtaken(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -50,8 +50,8 @@ static bool remember(const struct request_ticket *ticket, void *arg)
     return true;
 }
 
-/* Submits a frame for encoding. The function holds the lock that render_service_forget() takes, so that clients that have gone get no
-   packets. Clients that share a frame share the drawing time that they are charged. */
+/* Submits a frame for encoding. The function holds the lock that render_service_forget() takes, so that clients that have gone
+   get no packets. The drawing time is divided among the clients that share the frame. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns)
 {
     struct content_of now = { .service = service, .content = frame->content, .gives_depth = frame->depth[0] != NULL };
@@ -82,8 +82,8 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
     render_service_answer_without_frame(service, &thread->same, FRAME_UNCHANGED);
 }
 
-/* Returns whether a frame that was drawn for other clients can answer the requests of the group. It cannot if a request wants the record of
-   what the frame was drawn from, or the depth grid, and the frame has none. */
+/* Returns whether a frame that was drawn for other clients can answer the requests of the group. It cannot if a request wants
+   the depth grid, or the record of what the frame was drawn from, and the frame has none. */
 static bool answers(const struct frame *frame, const struct request_group *group)
 {
     return frame && (frame->record || !request_group_wants_record(group)) && (frame->depth[0] || !request_group_wants_depth(group));

@@ -14,8 +14,8 @@
 #include "history/history.h"
 
 static const int64_t SPAN_INTERVAL_NS =
-    60 * NS_PER_S; /* interval at which the time at which recorded history begins is read again; long, as old files are removed rarely */
-/* interval at which the thread checks, while nothing is recorded yet, whether recorded history has begun */
+    60 * NS_PER_S; /* interval of reading the start of recorded history again; long, because old files are removed rarely */
+/* interval of checks whether recorded history has begun, while nothing is recorded yet */
 static const int64_t RETRY_DELAY_NS = 2 * NS_PER_S;
 
 struct wanted_instant {
@@ -26,8 +26,8 @@ struct wanted_instant {
 struct history_loader {
     struct history_loader_params params;
     _Atomic bool stop;
-    /* reader of the history that this machine recorded; NULL: history is read from the core. Only the loader's thread uses this member and
-       the ones below it, down to `thread` */
+    /* reader of the history that this machine recorded; NULL: history is read from the core. Only the loader's thread uses the
+       members from this one to `thread` */
     struct history_reader *reader;
     struct core_history *core; /* link to the core; NULL: the history is on this machine */
     struct history_tag *tags;
@@ -137,15 +137,15 @@ static void look_at_span(struct history_loader *loader)
                             : history_span(loader->reader, &first_us, &last_us);
     if (!any) {
         first_us = 0;
-        loader->spanned_ns = 0; /* lets the thread look again soon, and at the next request, because nothing is recorded yet */
+        loader->spanned_ns = 0; /* nothing is recorded yet: makes the thread check again soon, and at the next request */
     }
     pthread_mutex_lock(&loader->thread.lock);
     loader->first_us = first_us;
     pthread_mutex_unlock(&loader->thread.lock);
 }
 
-/* Waits until a client requests the readings of a past instant. Returns false without one if the thread must stop, or if it is time to read
-   the beginning of recorded history again. */
+/* Waits until a client requests the readings of a past instant. Returns false without a request if the thread must stop, or if
+   the start of recorded history must be read again. */
 static bool next_wanted(struct history_loader *loader, struct wanted_instant *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + RETRY_DELAY_NS;

@@ -32,11 +32,11 @@ struct history_loader *history_loader_create(const struct history_loader_params 
 void history_loader_destroy(struct history_loader **loader);
 /* Requests the readings of the past instant at_us, in UTC microseconds. Replaces the client's last request if that still waits. */
 void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us);
-/* Drops the client's request, and answers to the client that were not collected yet. */
+/* Drops the client's request, and answers for the client that were not collected yet. */
 void history_loader_forget(struct history_loader *loader, uint64_t client);
 /* Returns all answers so far, oldest first; the caller frees each with mem_free. NULL: no answer. */
 struct history_loader_answer *history_loader_collect(struct history_loader *loader);
-/* Returns the beginning of recorded history, UTC microseconds; 0: not known yet, or nothing is recorded. */
+/* Returns when recorded history begins, UTC microseconds; 0: not known yet, or nothing is recorded. */
 int64_t history_loader_first_us(struct history_loader *loader);
 
 #endif

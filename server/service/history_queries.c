@@ -16,22 +16,22 @@
 #include "service/drift_report.h"
 #include "service/remote_history.h"
 
-/* number of threads that read history. Each client address uses one at a time, so that its queries do not block another address */
+/* number of threads that read history. A client address uses one at a time, so that its queries do not block those of another address */
 enum { THREADS = 2 };
-/* size in bytes after which a piece of an answer ends, together with the tag that is being read */
+/* size limit of a piece of an answer, in bytes; the piece ends after the tag that reaches the limit */
 static const size_t PIECE_BYTES = 256 * 1024;
-/* time after which a piece of an answer ends, together with the tag that is being read */
+/* time limit for a piece of an answer; the piece ends after the tag that reaches the limit */
 static const int64_t PIECE_NS = 100 * NS_PER_MS;
 
 struct pending_query {
     struct history_query query;
     int next_tag; /* index of the next tag to read; for drift queries, of the next asset */
-    /* CSV output: whether the last line that was written has the columns for means of time buckets (true) or for single values (false) */
+    /* CSV output: true: the last line written has the columns for means of time buckets; false: those for single values */
     bool buckets;
     bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
     bool wanted;  /* true: the client asked for the next piece of its answer */
     bool forgotten;
-    uint64_t served; /* value of history_queries.served when the newest piece of this query's answer was begun; 0: none was begun */
+    uint64_t served; /* value of history_queries.served when the newest piece of this query's answer was begun; 0: no piece was begun */
     struct pending_query *next;
 };
 
@@ -52,9 +52,9 @@ struct history_queries {
     struct pending_query *questions; /* queries that wait for a thread, or for their client to request the next piece, newest first */
     uint64_t at_work[THREADS];       /* account (client address) of the query on which each thread works; 0: none */
     struct pending_query *working[THREADS];
-    /* number of pieces of answers begun so far, over all queries: a counter that shows which query was served longest ago */
+    /* number of pieces of answers begun so far, over all queries; used to find the query that was served longest ago */
     uint64_t served;
-    int count;       /* number of queries that exist, including those on which a thread works */
+    int count;       /* number of all queries, including those that a thread works on */
     struct history_answer *answers, **last;
     bool stopping;
 };
@@ -83,8 +83,8 @@ static void print_json(const struct pending_query *question, const struct plant_
         text_add(out, "]}\n");
 }
 
-/* Requests the history of the query's next tag from the core and appends it to the answer (JSON or CSV), in the same format in which this
-   daemon writes the history that it records itself. Returns false if the core did not answer. */
+/* Requests the history of the query's next tag from the core, and appends it to the answer (JSON or CSV) in the format that
+   this daemon uses for history of its own. Returns false if the core did not answer. */
 static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -211,13 +211,12 @@ static uint64_t served_of(const struct history_queries *queries, const struct pe
 static bool goes_before(const struct history_queries *queries, const struct pending_query *a, const struct pending_query *b)
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
-    /* If two queries were served equally long ago, the older one goes first. The list is newest first, so that is the later one in the
-       list. */
+    /* if two queries were served equally long ago, the older one goes first: the later one in the list, which is sorted newest first */
     return a_served < b_served || (a_served == b_served && a->served <= b->served);
 }
 
-/* Removes from the list, and returns, the query whose account (client address) was served longest ago; NULL: no query can be served now.
-   The caller holds the lock. */
+/* Removes from the list and returns the query whose account (client address) was served longest ago; NULL: no query can be
+   served now. The caller holds the lock. */
 static struct pending_query *take_next(struct history_queries *queries)
 {
     struct pending_query **best = NULL;
@@ -230,7 +229,7 @@ static struct pending_query *take_next(struct history_queries *queries)
     return question;
 }
 
-/* Puts a finished piece of a query's answer into the list from which the event loop collects. The caller holds the lock. */
+/* Adds a finished piece of a query's answer to the list for the event loop. The caller holds the lock. */
 static void give(struct history_queries *queries, struct pending_query *question, struct history_answer *piece)
 {
     bool last = piece->last;

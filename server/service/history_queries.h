@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* History queries: series, recording gaps, drifting sensors and the alarm journal, read for HTTP on threads of their own. An answer
-   comes in pieces of some hundred kilobytes, each made on request, so that a slow reader costs the memory of one piece. Addresses take
-   turns. Thread: any. */
+/* History queries: series, recording gaps, drifting sensors and the alarm journal, read for HTTP on threads of their own. An
+   answer comes in pieces of a few hundred kilobytes, each made on request, so that a slow reader occupies the memory of one
+   piece only. Client addresses take turns. Thread: any. */
 #ifndef SERVICE_HISTORY_QUERIES_H
 #define SERVICE_HISTORY_QUERIES_H
 #include <stdbool.h>
@@ -26,12 +26,12 @@ struct history_answer { /* one piece of the answer to a query; free with history
 };
 
 struct history_queries;
-/* Frees the piece of an answer and sets *answer to NULL. */
+/* Frees one piece of an answer and sets *answer to NULL. */
 void history_answer_free(struct history_answer **answer);
 
-/* Starts the threads; they call notify(arg) when a piece is ready. Returns NULL if they cannot start, already logged. plant, scene and
-   core_link must outlive the queries. scene NULL: drift queries are not used. folder: folder of the recorded history; NULL: the core has
-   the history and is asked through core_link. */
+/* Starts the threads; they call notify(arg) when a piece is ready. Returns NULL if they cannot start, already logged. plant,
+   scene and core_link must outlive the queries. scene NULL: drift queries are not used. folder: folder of the recorded history;
+   NULL: the core has the history, reached through core_link. */
 struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const struct scene *scene, const char *folder,
                                                struct core_link *core_link, void (*notify)(void *arg), void *arg);
 /* Ends the threads and sets *queries to NULL; accepts a pointer to NULL. */
@@ -42,7 +42,7 @@ bool history_queries_ask(struct history_queries *queries, const struct history_q
 void history_queries_continue(struct history_queries *queries, uint64_t client);
 /* Drops the client's query, and pieces of its answer that were not collected yet. */
 void history_queries_forget(struct history_queries *queries, uint64_t client);
-/* Returns all pieces of answers that are finished, oldest first; the caller owns them. NULL: no piece. */
+/* Returns all finished pieces of answers, oldest first; the caller owns them. NULL: none. */
 struct history_answer *history_queries_collect(struct history_queries *queries);
 
 #endif

@@ -14,7 +14,7 @@ enum { HISTORY_QUERY_TAGS = 64, HISTORY_QUERY_POINTS = 20000 };
 
 struct history_query {
     uint64_t client;
-    /* id of the account that the query counts for: the client's address; 0: one account for all queries without an address */
+    /* id of the account (client address) to which the query is charged; 0: the account of all queries without an address */
     uint64_t account;
     int tags[HISTORY_QUERY_TAGS]; /* indices into the plant's tags */
     int tag_count, max_points;
@@ -22,8 +22,7 @@ struct history_query {
     bool csv;
     /* true: instead of series of values, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
     bool drift;
-    /* only in drift queries: index in the plant of the group whose sensors are judged, or of one tag; the other of the two is -1. In other
-       queries both are -1 */
+    /* index of the group or tag to judge, for drift queries: one of the two is set, the other is -1. In other queries both are -1 */
     int group, tag;
     bool gaps;      /* true: instead of series of values, the query asks for the periods in which nothing was recorded */
     bool journal;   /* true: instead of series of values, the query asks for rows of the alarm journal, filtered by `alarms` */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements the queue of frames that were submitted to the GPU and not read back yet. */
+/* Queue of frames that were submitted to the GPU and not read back yet. */
 #include "service/pending_readbacks.h"
 
 #include <string.h>

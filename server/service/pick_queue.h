@@ -22,9 +22,9 @@ struct pick_queue;
 struct pick_queue *pick_queue_create(void);         /* never returns NULL */
 void pick_queue_destroy(struct pick_queue **queue); /* destroys the queue and sets *queue to NULL; accepts a pointer to NULL */
 
-/* Queues a copy of the query. Replaces the client's last query if the last one still waits. */
+/* Queues a copy of the query. Replaces the client's last query if that one still waits. */
 void pick_queue_ask(struct pick_queue *queue, const struct pick_query *query);
-/* Drops the client's pick query, and answers that were not collected yet. */
+/* Drops the client's pick query, and its answers that were not collected yet. */
 void pick_queue_forget(struct pick_queue *queue, uint64_t client);
 /* Returns whether a query waits. */
 bool pick_queue_has_query(struct pick_queue *queue);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements the recent-frame cache: an array of frames, searched by content hash. */
+/* The recent-frame cache: an array of frames, searched by content hash. */
 #include "service/recent_frames.h"
 
 #include "base/clock.h"
 
-/* maximum age of a cached frame: the clock and the ages of readings in the frame are wrong by up to this time */
+/* maximum age of a cached frame, and thus the maximum error of the clock and of the ages of readings in the frame */
 static const int64_t KEPT_NS = 500 * NS_PER_MS;
-#define KEPT_BYTES ((size_t)32 * 1024 * 1024) /* maximum number of bytes of all frames in the cache; a single frame may be larger */
+#define KEPT_BYTES ((size_t)32 * 1024 * 1024) /* limit on the bytes of all cached frames; a single larger frame is still kept */
 
 static size_t bytes_of(const struct frame *frame)
 {

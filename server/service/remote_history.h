@@ -6,12 +6,12 @@
 #include "corelink/core_history.h"
 #include "service/history_query.h"
 
-/* All functions append to *out and return false if the core did not answer, already logged. */
+/* All functions append to *out. They return false if the core did not answer, already logged. */
 /* Appends the series of a tag as JSON. first: also append the beginning of the whole answer; last: also append its end. */
 bool remote_history_json(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool last,
                          struct text *out);
-/* Appends the series of a tag as CSV. *buckets: whether the last line that was written has the columns for means of time buckets (true) or
-   for single values (false); the call updates it. */
+/* Appends the series of a tag as CSV. *buckets, updated by the call: whether the last line written has the columns for means of
+   time buckets (true) or for single values (false). */
 bool remote_history_csv(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool *buckets,
                         struct text *out);
 /* Appends the complete answer to a query for gaps, drifting sensors or the journal. */

@@ -6,13 +6,13 @@
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
-/* time without an answer to a check after which the render thread counts as stuck; REBUILDING_NS: the same while the thread rebuilds a lost
-   GL context */
+/* STUCK_NS: time without an answer to a check after which the render thread counts as stuck; REBUILDING_NS: the same while the
+   thread rebuilds a lost GL context */
 static const int64_t STUCK_NS = 12 * NS_PER_S, REBUILDING_NS = 120 * NS_PER_S;
 
 /* --- requests, from any thread ---------------------------------------------------------------------------------------- */
 
-/* Replaces a client's waiting request by a newer one. The result has the newer view, and the more urgent of both urgencies. */
+/* Replaces a client's waiting request by a newer one. The result has the newer view and the higher urgency of the two. */
 static void replace(struct frame_request *old, const struct frame_request *request)
 {
     struct frame_request merged = *request;
@@ -111,7 +111,7 @@ void render_service_forget(struct render_service *service, uint64_t id)
     render_service_remove_client(service, id);
     encode_queue_forget(service->queue, id);
     if (service->client_count == 0)
-        /* wakes the render thread: if no clients are left, it may have to release its caches soon */
+        /* wakes the render thread: without clients, it may have to release its caches soon */
         pthread_cond_broadcast(&service->wake);
     pthread_mutex_unlock(&service->lock);
     encode_queue_sweep(service->queue);

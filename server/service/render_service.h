@@ -56,7 +56,7 @@ void render_service_request_all(struct render_service *service, size_t count, co
 /* Wakes the render thread if requests were queued since the last call. Call it after all requests of one event, so that equal requests
    share a frame. */
 void render_service_wake(struct render_service *service);
-/* Answers the client's waiting request, if there is one, without a frame (FRAME_SKIPPED), and gives up the frame that is being drawn in
+/* Answers the client's waiting request, if any, without a frame (FRAME_SKIPPED), and gives up the frame that is being drawn in
    steps for the client. Call it for clients that show no pictures for a while. */
 void render_service_withdraw(struct render_service *service, uint64_t client);
 /* Drops all waiting requests and encoded frames of the client. */
@@ -69,8 +69,8 @@ void render_service_set_loop_checks(struct render_service *service, const struct
 void render_service_set_readings(struct render_service *service, const struct snapshot *readings);
 /* Returns false while a lost GL context is being rebuilt; frame requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
-/* Returns whether the render thread is stuck: for 12 s, or for 2 minutes while a lost GL context is rebuilt, it has not answered a check.
-   Each call starts the next check, so call it every few seconds. */
+/* Returns whether the render thread is stuck: it has not answered a check for 12 s, or for 2 minutes while it rebuilds a lost
+   GL context. Each call starts the next check, so call it every few seconds. */
 bool render_service_is_stuck(struct render_service *service, int64_t now_ns);
 /* Destroys the GL context in the middle of the next frame, like a GPU reset. For tests. */
 void render_service_lose_context(struct render_service *service);

@@ -14,8 +14,8 @@ struct render_client {
     bool has_content;
     bool has_depth; /* true: the client has the depth grid of the content that it was last sent */
     bool left; /* true: the client has withdrawn, so it no longer wants the frame that the long job (a frame drawn in steps) draws for it */
-    /* time that changed readings wait for the long job (a frame drawn in steps) of this client before the client gets a preview that shows
-       the readings; 0: the initial time */
+    /* how long changed readings wait for this client's long job (a frame drawn in steps) before the client gets a preview with
+       these readings; 0: the initial time */
     int64_t patience_ns;
     struct frame_request request;
     /* content: hash of what the newest frame for the client shows; content_number: sequence number of the request that this frame
@@ -40,12 +40,12 @@ struct render_service {
     struct snapshot *readings;             /* copy of the event loop's newest snapshot of readings */
     const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
     bool lost;                             /* true: the GL context is lost and being rebuilt */
-    int64_t asked_ns; /* monotonic time since when a check waits for the render thread's answer; 0: none waits */
+    int64_t asked_ns; /* monotonic time since which a check has waited for the render thread's answer; 0: none waits */
     bool lose;        /* true: a test wants the GL context to be destroyed in the middle of the next frame */
     struct render_client **clients;        /* clients of the service, sorted by id */
     size_t client_count, client_capacity;
     struct time_accounts accounts;
-    /* by kind of frame (scheduler_share()): drawing time that had been charged to the client served last, before it was served; clients
+    /* by kind of frame (scheduler_share()): drawing time charged to the client served last, as of before it was served; clients
        that enter the queue start with at least this charge */
     int64_t spent_ns[SCHEDULER_SHARES];
     struct encoded_frame *done, **done_last; /* encoded frames that the event loop has not collected yet, oldest first */
@@ -65,7 +65,7 @@ void render_service_remove_client(struct render_service *service, uint64_t id);
 
 /* Answers each request of the group without a frame; `absence` says why. Any thread. */
 void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, enum frame_absence absence);
-/* Calls params.notify if encoded frames or pick answers wait for collection and notify was not called for these yet. Any thread. */
+/* Calls params.notify if encoded frames or pick answers wait for collection and notify was not yet called for them. Any thread. */
 void render_service_announce(void *service);
 /* Takes the encoded packets for one request (ticket), or the failure, from the encode queue. Thread: a worker. */
 void render_service_on_encoded(void *service, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);

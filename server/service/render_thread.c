@@ -10,7 +10,7 @@ static const int64_t STEP_NS = 10 * NS_PER_MS;
 /* drawing time that each frame of a session with a moving camera may spend on baking the light that the session chose */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
 static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time that each frame may spend on computing a field that takes long */
-/* delay between attempts to create a new GL context; it doubles up to the maximum */
+/* REBUILD_NS: delay between attempts to create a new GL context; it doubles up to REBUILD_MAX_NS */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
 /* longest time that changed readings wait for a refined frame, if the view has had one before; after it a preview is drawn */
 static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S;

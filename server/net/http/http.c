@@ -20,7 +20,7 @@ static int alive(struct server_context *server, struct http_exchange *request)
     return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
 }
 
-/* Returns whether a load balancer checks with this request whether the daemon may draw for a core (/readyz?role=render). */
+/* Returns whether the request is a load balancer's check whether the daemon may draw for a core (/readyz?role=render). */
 static bool is_asked_as_renderer(struct http_exchange *request)
 {
     char argument[16];
@@ -28,8 +28,8 @@ static bool is_asked_as_renderer(struct http_exchange *request)
            !strcmp(argument, "role=render");
 }
 
-/* Reads whether the load balancer sends users to this node from a header of its check. Ignores requests with X-Forwarded-For, which come
-   from clients and may be forged. */
+/* Learns from a header of the load balancer's check whether the balancer sends users to this node. Ignores requests with
+   X-Forwarded-For, which come from clients and may be forged. */
 static void hear_balancer(struct server_context *server, struct http_exchange *request)
 {
     static const char header[] = "x-haproxy-server-state:";
@@ -63,8 +63,8 @@ static int ready(struct server_context *server, struct http_exchange *request)
 /* time for which the server remembers why it refused to open a stream: the page may ask for the reason within this time */
 static const int64_t REFUSED_NS = 15 * NS_PER_S;
 
-/* Logs a request to the stream's path without the header Upgrade, which a wrongly configured proxy sends: proxies drop Upgrade and
-   Connection, because these apply to one connection only, and keep the other headers of a handshake. */
+/* Logs a request to the stream's path that lacks the header Upgrade, the sign of a misconfigured proxy. Proxies drop Upgrade
+   and Connection, which apply to one connection only, and keep the other headers of a handshake. */
 static void log_without_upgrade(struct server_context *server, struct lws *wsi, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES], via[100], shown[48];
@@ -245,7 +245,7 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
     return import_post(server, request, path);
 }
 
-/* Answers 405. posts: the path accepts POST, and nothing else. */
+/* Answers 405. posts: true: the path accepts only POST. */
 static int refuse_method(const struct server_context *server, struct http_exchange *request, bool posts)
 {
     struct text text = { 0 };

@@ -211,8 +211,8 @@ int http_answer(struct lws *wsi, int status, const char *text)
     return lws_write(wsi, (unsigned char *)text, strlen(text), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 0;
 }
 
-/* Returns whether argument i of the query is empty, as the second one of `a=1&&b=2`. libwebsockets turns an empty last argument into "/".
-   *end: true: there is no argument i. */
+/* Returns whether argument i of the query is empty, like the second one in `a=1&&b=2`. libwebsockets turns an empty last
+ * argument into "/". *end becomes true if there is no argument i. */
 static bool is_empty_arg(struct lws *wsi, int i, bool *end)
 {
     char text[2] = "";
@@ -289,7 +289,7 @@ struct http_exchange *request_find(const struct server_context *server, uint64_t
     return request;
 }
 
-/* Frees the data about the frame or pick for which a request waits. sets *asked to NULL; accepts a pointer to NULL. */
+/* Frees the data about the frame or pick for which a request waits, and sets *asked to NULL; accepts a pointer to NULL. */
 static void asked_free(struct asked **asked)
 {
     if (!*asked)

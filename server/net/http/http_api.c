@@ -118,7 +118,7 @@ int ask_journal(struct server_context *server, struct http_exchange *request)
     return await_history(server, request, &query);
 }
 
-/* Sends the next piece (or the first) of an answer to a history query, which is made in pieces. */
+/* Sends the first or the next piece of an answer to a history query. */
 static int take_piece(struct http_exchange *request, struct history_answer *piece, const char *type)
 {
     if (piece->first && chunked_begin(request, type) < 0)

@@ -18,7 +18,7 @@ struct asked { /* the frame, or the pick in a frame, for which an HTTP request w
 
 struct http_exchange {
     struct lws *wsi;
-    /* counts of the client's address, while the request waits; the connection holds the reference */
+    /* usage of the client's address, while the request waits; the connection holds the reference */
     struct address_usage *usage;
     bool head;              /* true: the request's method is HEAD, so the answer has no body */
     bool close;             /* true: the connection is closed after this answer */
@@ -29,7 +29,7 @@ struct http_exchange {
     struct refusal refusal; /* refusal to be sent in the header Plantcast-Refusal of the next answer; REFUSAL_NONE: no such header */
     char *body;
     size_t count, sent;
-    /* counts of the address to whose answer_bytes the body is added; NULL: the body is not counted. The connection holds the reference */
+    /* usage of the address to whose answer_bytes the body is added; NULL: the body is not counted. The connection holds the reference */
     struct address_usage *holder;
     bool asks;         /* true: the request's history query is being answered */
     bool asks_instant; /* true: the request comes from a renderer and asks for the readings of a past instant */
@@ -104,7 +104,7 @@ void request_await(struct server_context *server, struct http_exchange *request)
 struct http_exchange *request_find(const struct server_context *server, uint64_t client);
 /* Ends the request's waiting; does nothing if it does not wait. */
 void request_forget(struct server_context *server, struct http_exchange *request);
-/* Carries out the result of an answer that was given outside of the request's own callback: 0 keeps the connection, -1 closes it soon. */
+/* Applies the result of an answer that was given outside of the request's own callback: 0 keeps the connection, -1 closes it soon. */
 void request_answered(struct http_exchange *request, int result);
 
 /* Handlers of HTTP paths: each answers the request or makes it wait (request_await). */

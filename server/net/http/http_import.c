@@ -70,8 +70,8 @@ static int answer_empty(struct http_exchange *request)
     return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
 }
 
-/* Records the import step as done in the audit trail; http_settle() answers the request once that line is on disk, or can not be written.
-   file: name of the uploaded file; "": none. */
+/* Records the import step as done in the audit trail; http_settle() answers the request once that line is on disk or cannot be
+   written. file: name of the uploaded file; "": none. */
 static int answer_done(struct http_exchange *request, const char *file)
 {
     struct server_context *server = server_context_of(request->wsi);

@@ -9,7 +9,7 @@
 #include "net/http/http_impl.h"
 #include "views/other_plants.h"
 
-/* Returns the index of another plant, or -1. A paired device may only ask for plants that its display shows. */
+/* Returns the index of the other plant with that id, or -1. A paired device may only ask for plants that its display shows. */
 static int find(const struct server_context *server, const struct http_exchange *request, const char *id)
 {
     const struct plant *plant = server->params.plant.scene->plant;

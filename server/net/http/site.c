@@ -85,9 +85,9 @@ static bool toggles_template(const char *line, const char *end)
     return toggles;
 }
 
-/* Removes the indentation of a script's lines, and empties lines that hold only a comment, except the first line, which is the licence. A
-   page thus loads a fifth fewer bytes. Lines of template literals are left unchanged, and no line is removed, so that line numbers match
-   the source. Returns how many of the `count` bytes are left. */
+/* Removes the indentation of a script's lines, and empties lines that hold only a comment, except the first line, which is the
+   licence. This saves the page a fifth of its bytes. Lines of template literals are left unchanged, and no line is removed, so
+   that line numbers match the source. Returns how many of the `count` bytes are left. */
 static size_t drop_comments(char *bytes, size_t count)
 {
     size_t out = 0;
@@ -113,10 +113,10 @@ static void set_etag(struct site_form *form)
     snprintf(form->etag, sizeof(form->etag), "\"%016" PRIx64 "\"", (uint64_t)XXH3_64bits(form->bytes, form->count));
 }
 
-/* Returns the bytes compressed as gzip; bytes NULL: they would not become at least a tenth smaller. */
+/* Returns the bytes compressed as gzip; bytes is NULL if compression would save less than a tenth. */
 static struct site_form compressed(const struct site_form *plain)
 {
-    enum { GZIP_WINDOW = MAX_WBITS + 16, MEMORY_LEVEL = 9 }; /* zlib: 16 more than the window asks for gzip's header */
+    enum { GZIP_WINDOW = MAX_WBITS + 16, MEMORY_LEVEL = 9 }; /* zlib: adding 16 to the window bits selects the gzip header */
     z_stream stream = { .next_in = (Bytef *)plain->bytes, .avail_in = (uInt)plain->count };
     struct site_form gzip = { .count = plain->count - plain->count / 10 };
     if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, GZIP_WINDOW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)

@@ -8,7 +8,7 @@
 
 #include "base/log/log.h"
 
-struct site_form { /* a file as it is sent */
+struct site_form { /* one form of a file, as sent to clients */
     char *bytes;
     size_t count;
     char etag[24]; /* value of the HTTP header ETag, with its quotes */
@@ -18,7 +18,7 @@ struct site_file {
     char *path;       /* path in the URL, decoded, with its leading '/' */
     const char *type; /* MIME type, static text */
     struct site_form plain;
-    /* the file compressed (RFC 1952), from the first request on that accepts gzip; bytes NULL: not yet, or the file hardly shrinks */
+    /* the file compressed (RFC 1952), made at the first request that accepts gzip; bytes NULL: not made yet, or it saves too little */
     struct site_form gzip;
     bool compresses; /* true: no request has accepted gzip yet */
 };

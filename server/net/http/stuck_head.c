@@ -12,8 +12,8 @@
 #include "base/clock.h"
 #include "net/connection.h"
 
-/* QUIET_MS: time without a byte after which a request counts as stalled; longer than 1 s, because a lost packet is retransmitted within 1
-   s, unless the retransmission is lost as well */
+/* QUIET_MS: time without a byte after which a request counts as stalled. It exceeds 1 s, the time within which a lost packet is
+   retransmitted unless the retransmission is lost as well */
 enum { CHECK_INTERVAL_US = 500000, QUIET_MS = 2000 };
 static const uint64_t NOT_WATCHED = UINT64_MAX;
 
@@ -31,8 +31,8 @@ void stuck_head_await(struct lws *wsi, bool first)
     lws_set_timer_usecs(wsi, CHECK_INTERVAL_US);
 }
 
-/* Stops to wait for the rest of the request's head. The timer stays set and fires one last time: libwebsockets 4.1 cannot cancel a timer,
-   and a delay of -1 makes it fire immediately. */
+/* Stops waiting for the rest of the request's head. The timer stays set and fires one last time: libwebsockets 4.1 cannot
+   cancel a timer, and a delay of -1 makes it fire immediately. */
 void stuck_head_arrived(struct lws *wsi)
 {
     connection_of(wsi)->received_before_head = NOT_WATCHED;

@@ -10,8 +10,8 @@
 void stuck_head_await(struct lws *wsi, bool first);
 /* Ends the watch for stalled heads, because the request's head is complete. */
 void stuck_head_arrived(struct lws *wsi);
-/* Handles LWS_CALLBACK_TIMER. Returns 0; or -1 if the connection must be closed because bytes arrived, then none for 2 s; the client was
-   sent 408. */
+/* Handles LWS_CALLBACK_TIMER. Returns -1 if the connection must be closed because its request stalled for 2 s; the client was
+   then sent 408. Otherwise returns 0. */
 int stuck_head_look(struct server_context *server, struct lws *wsi);
 
 #endif

@@ -99,7 +99,7 @@ void model_box_add(struct model_box *box, const struct model_box *other)
     }
 }
 
-/* Returns the number by which the integers of a normalised glTF accessor are divided: the integer that represents 1. */
+/* Returns the divisor for the integers of a normalised glTF accessor: the integer that represents 1. */
 static double divisor_of(const json_t *accessor)
 {
     if (!json_is_true(json_object_get(accessor, "normalized")))
@@ -269,7 +269,7 @@ bool model_header_read(struct model_header *header, const char *path, char *why,
     bool good = version && version[0] == '2';
     if (!good)
         wrong(walk.why, "is not glTF 2.0: its asset.version is '%.20s'", version ? version : "");
-    else if (!model_rules_check(root, invalid)) /* called before the members of the document are looked up, because it may delete some */
+    else if (!model_rules_check(root, invalid)) /* must run before members of the document are looked up, because it may delete some */
         good = wrong(walk.why, "is not valid: %.*s", MODEL_WHY_BYTES - 20, invalid);
     walk.nodes = json_object_get(root, "nodes");
     walk.meshes = json_object_get(root, "meshes");

@@ -20,7 +20,7 @@ struct model_rule {
     /* kinds INDEX, INDICES, ATTRIBUTES: name of the glTF array into which the property's value is an index; NULL for ATTRIBUTES: any number
        is allowed */
     const char *target;
-    size_t length;      /* NUMBERS: length of the array */
+    size_t length;      /* kind NUMBERS: length of the array */
 };
 
 #define TEXTURE(path)                                                                                                                      \
@@ -109,7 +109,7 @@ struct rule_check { /* the object being checked */
     json_t *root;
     const char *list; /* name of the glTF array that contains the object being checked; NULL: the object is the whole document */
     size_t number;
-    int primitive; /* index of the primitive being checked in mesh `number`; -1: the object being checked is no primitive */
+    int primitive; /* index of the primitive being checked in mesh `number`; -1: the object being checked is not a primitive */
     char *why;
 };
 

@@ -7,7 +7,7 @@
 
 #include "plant/models/transform.h"
 
-/* limit of the numbers in a node's matrix; least length of a rotation quaternion; tolerance of a matrix's last row */
+/* MAX_COORDINATE: limit of a matrix's numbers; LEAST_ROTATION: of a quaternion's length; MATRIX_SLACK: tolerance of the last row */
 static const double MAX_COORDINATE = 1e15, LEAST_ROTATION = 1e-6, MATRIX_SLACK = 1e-6;
 
 const char *node_rules_local(const double t[3], const double q[4], const double s[3], const double *matrix, double out[16])

@@ -19,7 +19,7 @@ enum pattern_kind { NAME, GLOB, NUMBER, MESH, PATH };
 struct pattern {
     enum pattern_kind kind;
     bool excludes;
-    char *text; /* the pattern's text without its prefixes ! and mesh:. A pattern that is a path is cut at its slashes, in this text */
+    char *text; /* the pattern without its prefixes ! and mesh:; cut_path() replaces the slashes of a path by NUL */
     uint64_t number;
     bool from_root; /* true: the pattern is a path that begins with a slash, so it starts at the scene's root */
     const char *segments[SEGMENTS_MAX];
@@ -197,8 +197,8 @@ static bool mark(const struct pattern *pattern, const struct node_list *model, b
     return any;
 }
 
-/* Applies either the patterns that include nodes, or those that exclude nodes (with !), to the flags `taken`. Returns false with the reason
-   in `why` if a pattern matches no node. *done is increased by the number of patterns applied. */
+/* Applies either the patterns that include nodes, or those that exclude nodes (with !), to the flags `taken`. Adds the number
+   of applied patterns to *done. Returns false with the reason in `why` if a pattern matches no node. */
 static bool mark_all(const char *patterns, bool excludes, const struct node_list *model, bool *taken, size_t *done, char *why, size_t bytes)
 {
     bool good = true;

@@ -16,8 +16,8 @@ struct model_node { /* node of a model. The array of nodes is in depth-first ord
 
 #define NODES_SEPARATOR '\n' /* character that separates the node patterns of an asset */
 
-/* Sets taken[i] for each node that a pattern matches, and for the node's sub-tree. Patterns that begin with ! clear it for their nodes.
-   patterns NULL: all nodes. Returns false with the pattern in `why` if a pattern matches no node. */
+/* Sets taken[i] for each node that a pattern matches, and for the node's sub-tree. Patterns that begin with ! clear taken[i]
+   instead. patterns NULL: all nodes. Returns false with the pattern in `why` if a pattern matches no node. */
 bool nodes_take(const char *patterns, const struct model_node *nodes, size_t count, bool *taken, char *why, size_t why_bytes);
 
 /* Finds the nodes that a pattern matches, without their sub-trees. `found` must hold `count` indices. Returns the number of matches; if

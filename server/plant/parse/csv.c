@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads CSV and unquotes it in place: a cell's text never grows, so it fits into the file's own buffer. */
+/* Reads CSV and unquotes it in place: unquoting never lengthens a cell, so the text fits into the file's own buffer. */
 #include "plant/parse/csv.h"
 
 #include <string.h>

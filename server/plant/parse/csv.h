@@ -35,8 +35,8 @@ bool csv_open(struct csv *csv, const char *path, struct diag *diag);
    receives the encoding. */
 bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice);
 void csv_close(struct csv *csv);
-/* Reads the next row that is not blank. Returns false after the last row. Rows with faulty quotes, or with another count of cells than the
-   header, are reported to diag. */
+/* Reads the next row that is not blank. Returns false after the last row. Rows with faulty quotes, or with a different number
+   of cells than the header, are reported to diag. */
 bool csv_next(struct csv *csv);
 /* Returns the separator that occurs most often, outside quotes, in the first line that is not blank. */
 char csv_separator(const char *text);

@@ -13,7 +13,7 @@
 
 enum {
     REPORTED_LINES = 10,
-    TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: minimum number of valid characters for each invalid byte, so that a file counts as text */
+    TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: minimum number of valid characters per invalid byte in a file that counts as text */
 };
 
 /* Reports bytes that are not valid UTF-8. Returns false if the bytes are not text at all; nothing is then reported. */

@@ -67,11 +67,11 @@ void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const ch
 bool yaml_is_null(const yaml_node_t *node);
 /* Returns the text of a YAML node that is a single value; NULL for lists and mappings. */
 const char *yaml_text(const yaml_node_t *node);
-/* Reads a finite number in [low, high]. Returns false, reported, if the node is no such number. */
+/* Reads a finite number in [low, high]. Returns false, reported, if the node is not such a number. */
 bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char *name, double low, double high, double *out);
 
-/* Reads a YAML mapping into the struct `record`; members whose key is absent or null stay unchanged. `what` names the mapping in messages
-   ("a group"). Returns false if the node is no mapping. */
+/* Reads a YAML mapping into the struct `record`; members whose key is absent or null stay unchanged. `what` names the mapping
+   in messages ("a group"). Returns false if the node is not a mapping. */
 bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct yaml_key *keys, void *record,
                    struct yaml_map *map);
 /* Returns whether the key was given and its value read without an error. */
@@ -80,7 +80,7 @@ bool yaml_map_has(const struct yaml_map *map, const char *name); /* Returns whet
 /* Returns the position of a key's value; the position of the mapping if the key is absent. */
 struct text_position yaml_map_place(const struct yaml_map *map, const char *name);
 
-/* Returns the number of items of a YAML list; -1 if the node is no list (reported). */
+/* Returns the number of items of a YAML list; -1 if the node is not a list (reported). */
 int yaml_list_count(struct yaml_reader *reader, const yaml_node_t *node, const char *name);
 yaml_node_t *yaml_list_item(struct yaml_reader *reader, const yaml_node_t *node, int index);
 

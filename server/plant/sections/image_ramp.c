@@ -12,7 +12,7 @@
 
 enum { MAX_PX = 4096 };
 
-/* Returns a pixel of the image's middle row or column. lying: the row is used, else the column. place: index of the pixel along it. */
+/* Returns a pixel of the image's middle row or column. lying: true: of the row; false: of the column. place: index of the pixel in it. */
 static const uint8_t *pixel_at(const struct image *image, bool lying, uint32_t place)
 {
     uint32_t x = lying ? place : image->width_px / 2, y = lying ? image->height_px / 2 : image->height_px - 1 - place;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the alarm settings of the plant file and the tag list. PLANT.md and TAGS.md describe the form. */
+/* Reads the alarm settings of the plant file and the tag list. PLANT.md and TAGS.md describe the format. */
 #include "plant/sections/plant_alarms.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads plant.yaml: has the tables of its keys, and checks keys against each other. PLANT.md describes the form. */
+/* Reads plant.yaml: has the tables of its keys, and checks keys against each other. PLANT.md describes the format. */
 #include <errno.h>
 #include <limits.h>
 #include <math.h>

@@ -98,7 +98,7 @@ static void read_mail(struct yaml_reader *reader, yaml_node_t *node, void *recor
 }
 
 struct recipient_record {
-    struct notify_recipient recipient; /* must be the first member */
+    struct notify_recipient recipient; /* must be first: read_email() gets a pointer to it */
     char *webhook, *alertmanager;
 };
 
@@ -161,7 +161,7 @@ static void read_recipients(struct yaml_reader *reader, yaml_node_t *node, void 
 /* --- rules ------------------------------------------------------------------------------------------------------------------ */
 
 struct rule_record {
-    struct notify_rule rule; /* must be the first member */
+    struct notify_rule rule; /* must be first: read_areas() gets a pointer to it */
     const struct plant_notify *notify;
 };
 

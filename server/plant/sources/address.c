@@ -71,7 +71,7 @@ int data_type_registers(enum data_type type)
 bool byte_order_parse(const char *text, enum byte_order *out)
 {
     static const struct {
-        const char *name, *suffix; /* byte order: its name, and the letters after # with which a Modbus address states it */
+        const char *name, *suffix; /* name of the byte order, and the letters after # that state it in a Modbus address */
         enum byte_order order;
     } orders[] = {
         { "ABCD", "LL", BYTE_ORDER_ABCD },
@@ -101,8 +101,8 @@ static int read_digits(const char **p, long *value)
     return count;
 }
 
-/* Parses an address that names its Modbus table, such as hr:0 for holding registers. Its register number counts from 0, as in Modbus
-   messages. Returns false with the reason in `why` if the text is no such address. */
+/* Parses an address that names its Modbus table, such as hr:0 for holding registers. Its register number counts from 0, as in
+   Modbus messages. Returns false with the reason in `why` if the text is not such an address. */
 static bool read_named_table(const char **p, struct modbus_address *out, char why[200])
 {
     static const struct {
@@ -128,8 +128,8 @@ static bool read_named_table(const char **p, struct modbus_address *out, char wh
     return true;
 }
 
-/* Parses 40001 and 400001: the first digit selects the Modbus table, the other digits are the register number, counted from address_base.
-   Returns false with the reason in `why` if the text is no such address. */
+/* Parses 40001 and 400001: the first digit selects the Modbus table, the other digits are the register number, counted from
+   address_base. Returns false with the reason in `why` if the text is not such an address. */
 static bool read_digit_table(const char **p, int address_base, struct modbus_address *out, char why[200])
 {
     static const enum register_table tables[] = { TABLE_COIL, TABLE_DISCRETE, 0, TABLE_INPUT, TABLE_HOLDING }; /* by first digit */

@@ -12,7 +12,7 @@
 enum address_field { FIELD_TAG, FIELD_ASSET, FIELD_GROUP, FIELD_ADDRESS, FIELD_COUNT };
 static const char *const field_names[FIELD_COUNT] = { "{tag}", "{asset}", "{group}", "{address}" };
 
-/* Returns the placeholder (enum address_field) of a topic template with which the text begins, or FIELD_COUNT if it begins with none. */
+/* Returns which placeholder of a topic template (enum address_field) the text begins with, or FIELD_COUNT if none. */
 static enum address_field field_at(const char *text)
 {
     enum address_field field = FIELD_TAG;

@@ -59,8 +59,8 @@ static void check_paths(struct yaml_reader *reader, const struct yaml_map *map, 
             yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: '%.60s': %s", paths[i].key, paths[i].path, why);
 }
 
-/* Requires a time path for persistent sessions: messages that the broker kept while we were disconnected would look new without a time of
-   their own. */
+/* Requires a time path for persistent sessions: without a time of their own, messages that the broker kept during a
+   disconnection would look new. */
 static void check_session(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
 {
     if (mqtt->persistent && !mqtt->time)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the list `sources` of a plant file: field devices, servers, brokers and replays. SOURCES.md describes the form. */
+/* Reads the list `sources` of a plant file: field devices, servers, brokers and replays. SOURCES.md describes the format. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>

@@ -14,7 +14,7 @@ struct expression;
 struct expression *expression_parse(const char *text, int (*find)(const void *arg, const char *name), const void *arg, char why[200],
                                     size_t *at);
 void expression_destroy(struct expression **expression); /* Frees the expression and sets *expression to NULL; accepts a pointer to NULL. */
-/* Returns the number of tags in the expression; *inputs receives their indices, which `find` returned, each once. */
+/* Returns the number of tags in the expression; *inputs receives their indices (as returned by `find`), without duplicates. */
 size_t expression_inputs(const struct expression *expression, const int **inputs);
 /* Computes the expression from the values of its tags, in the order of expression_inputs(). Returns NaN or infinity if the expression has
    no value. */

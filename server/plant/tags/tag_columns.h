@@ -28,7 +28,7 @@ struct tag_columns {
 /* Opens the tag list and finds its columns; unknown and duplicate columns are reported. Returns false if the list cannot be read
    (reported). */
 bool tag_columns_open(struct tag_columns *columns, const char *path, struct diag *diag);
-void tag_columns_need(struct tag_columns *columns, enum tag_column column); /* Reports that the tag list lacks the column, if it does. */
+void tag_columns_need(struct tag_columns *columns, enum tag_column column); /* Reports an error if the tag list lacks the column. */
 const char *tag_column_name(enum tag_column column);
 
 /* Returns the text of a cell of the current row; "" if the list has no such column. */

@@ -11,7 +11,7 @@ enum mark { UNSEEN, OPEN, DONE };
 
 struct derived_walk {
     struct plant *plant;
-    char *marks; /* by tag: how far the search for its inputs has come (enum mark) */
+    char *marks; /* by tag: state of the depth-first search (enum mark) */
 };
 
 static int find_tag(const void *plant, const char *name)

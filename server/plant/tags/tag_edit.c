@@ -148,7 +148,7 @@ static void print_metres(double metres, char out[32])
         strcpy(out, "0");
 }
 
-/* Returns whether an edit changes the column of a row; if so, *out receives the cell's new text. */
+/* Returns whether an edit changes the row's cell in this column; if so, *out receives the cell's new text. */
 static bool wanted(const struct tag_text *list, const struct tag_edit *edit, size_t column, char number[32], const char **out)
 {
     if (edit->place_only) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Looks up the tags that other tags and sources name: quality tags, tags with directions, heartbeats. */
+/* Resolves references by name to tags: quality tags, tags with directions, heartbeats. */
 #include "plant/tags/tag_links.h"
 
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static bool take_number(const char **text, uint64_t *out)
     return true;
 }
 
-/* Parses [!]NAME, NAME&MASK or NAME&MASK=VALUE. Returns the name, or NULL if the text has another form. */
+/* Parses [!]NAME, NAME&MASK or NAME&MASK=VALUE. Returns the name, or NULL if the text has none of these forms. */
 static char *read_form(const char *text, struct plant_quality_tag *out)
 {
     bool turned = *text == '!';

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the tag list: turns rows into tags and checks each row. TAGS.md describes the form. */
+/* Reads the tag list: turns rows into tags and checks each row. TAGS.md describes the format. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,8 +48,8 @@ static bool is_lost(const struct tag_list *list)
     return *id && plant_find_asset(list->plant, id) < 0;
 }
 
-/* Reads group and asset of a tag's row. If the plant file has no groups or no assets at all, one error for the plant file says so, not one
-   for each row. */
+/* Reads group and asset of a tag's row. If the plant file has no groups or no assets at all, reports that once for the plant
+   file, not for each row. */
 static void read_group_and_asset(struct tag_list *list)
 {
     const struct plant *plant = list->plant;
@@ -297,7 +297,7 @@ static void check_overlaps(const struct plant *plant, struct diag *diag)
         if (registers_of(plant, &plant->tags[i]) > 0)
             tags[count++] = (int)i;
     qsort_r(tags, count, sizeof(*tags), by_register, (void *)(uintptr_t)plant);
-    const struct plant_tag *one = NULL; /* earlier tag in the table of `two` whose registers end last */
+    const struct plant_tag *one = NULL; /* earlier tag in the table of `two` with the highest last register */
     for (size_t i = 0; i < count; i++) {
         const struct plant_tag *two = &plant->tags[tags[i]];
         bool same = one && one->source == two->source && plant_tag_modbus_unit(plant, one) == plant_tag_modbus_unit(plant, two) &&

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the part of a tag's row that says at which address the device has the value, which data type it has, and how it is converted to
-   engineering units. */
+/* Reads from a tag's row the address of the value in the device, its data type, and its conversion to engineering units. */
 #include "plant/tags/tag_wire.h"
 
 #include <math.h>

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the columns of a row that say at which address the device has a tag's value and how it is converted. Only for the files of this
-   folder. */
+/* Reads the columns of a row with the address of a tag's value in the device and with its conversion. Only for the files of this folder. */
 #ifndef PLANT_TAGS_TAG_WIRE_H
 #define PLANT_TAGS_TAG_WIRE_H
 #include "plant/plant.h"

@@ -324,7 +324,7 @@ static bool take_end(char *name, const char *end)
     return true;
 }
 
-/* Finds a pressure unit with a suffix for absolute or gauge: psia, bar(g), kPa abs. Returns false if the name is no such unit. */
+/* Finds a pressure unit with a suffix for absolute or gauge: psia, bar(g), kPa abs. Returns false if the name is not such a unit. */
 static bool find_pressure(const char *name, struct unit_entry *out)
 {
     static const char *const absolute[] = { "absolute", "abs", "a" }, *const gauge[] = { "gauge", "gage", "g" };
@@ -344,8 +344,8 @@ static bool find_pressure(const char *name, struct unit_entry *out)
     return false;
 }
 
-/* Finds the unit of a temperature difference, such as deltaK. Its conversion has no offset, because the zero point of the scale does not
-   matter for a difference. Returns false if the name is no such unit. */
+/* Finds the unit of a temperature difference, such as deltaK. Its conversion has no offset, because the zero point of the scale
+   does not matter for a difference. Returns false if the name is not such a unit. */
 static bool find_difference(const char *name, struct unit_entry *out)
 {
     const struct unit_entry *unit = strncasecmp(name, "delta", 5) == 0 ? look_up(name + 5) : NULL;

@@ -12,10 +12,10 @@ struct unit_change {
 };
 
 enum unit_match {
-    UNITS_SAME, /* equal units; also two unknown units whose names are spelled alike */
+    UNITS_SAME, /* equal units, or two unknown units with names that are spelled alike */
     UNITS_CONVERT,
     UNITS_OTHER_KIND, /* units of different quantities, including absolute and gauge pressure; both units are known */
-    UNITS_UNKNOWN     /* no comparison is possible, because at least one of the units is unknown */
+    UNITS_UNKNOWN     /* not comparable, because at least one of the units is unknown */
 };
 
 /* Compares two units by their names and sets *change to the conversion, all zero if there is none. Blanks, brackets, dots, superscript

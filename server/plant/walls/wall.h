@@ -96,7 +96,7 @@ struct plant;
 const struct named_view *named_view_find(const struct plant *plant, const char *id);
 const struct tour *tour_find(const struct plant *plant, const char *id);
 const struct wall *wall_find(const struct plant *plant, const char *id);
-int other_plant_find(const struct plant *plant, const char *id); /* Returns an index, or -1. */
+int other_plant_find(const struct plant *plant, const char *id); /* Returns the index of the other plant with this id, or -1. */
 /* Returns a display of a wall of the plant file, NULL if the wall has no such display. number: from 1. */
 const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number);
 /* Each function answers one question about a wall's display, and returns false for a NULL display: whether it has a pane of views or a
