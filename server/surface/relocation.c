@@ -41,7 +41,7 @@ struct relocation {
     /* positions of the asset's vertices on the surface; once the surface is built, they are read without the mutex; NULL: not needed,
        because the surface was built from these vertices */
     struct vertex_embedding *embedding;
-    /* requests for the distances from a sensor's place that wait or are being computed, oldest first */
+    /* waiting and running requests for the distances from a sensor position, oldest first */
     struct relocation_ask *asks;
     uint64_t last_ticket;
     size_t jobs; /* number of jobs that were submitted to the workers and have not finished; relocation_destroy() waits for them */
@@ -147,8 +147,8 @@ static void end_job(struct relocation *relocation)
     pthread_mutex_unlock(&relocation->lock);
 }
 
-/* Returns the oldest request that is not running, and marks it as running. Returns NULL if no request waits: the one for which this job was
-   submitted was cancelled. */
+/* Returns the oldest request that is not running, and marks it as running. Returns NULL if no request is waiting: the one for
+   which this job was submitted was cancelled. */
 static struct relocation_ask *begin_ask(struct relocation *relocation)
 {
     pthread_mutex_lock(&relocation->lock);

@@ -79,8 +79,8 @@ bool relocation_place(struct relocation *relocation, const double point_m[3], st
  * relocation_place() refuses the point: then done is not called. */
 uint64_t relocation_request(struct relocation *relocation, const double point_m[3],
                             void (*done)(void *arg, struct relocation_result *result), void *arg);
-/* Cancels the request with this ticket: immediately if it waits, or after its computation if it is running. Ignores the ticket of a
- * finished request. While a sensor is dragged, the caller cancels each request before it makes the next one. */
+/* Cancels the request with this ticket: immediately if it is waiting, or after its computation if it is running. Ignores the
+ * ticket of a finished request. While a sensor is dragged, the caller cancels each request before it makes the next one. */
 void relocation_cancel(struct relocation *relocation, uint64_t ticket);
 
 #endif

@@ -42,7 +42,7 @@ struct surface_report {
     size_t components, components_after;     /* number of connected components, before and after gaps were bridged */
     size_t bridges;                          /* number of points that repair joined to another point of the surface */
     double longest_bridge_m;
-    /* largest number of neighbours for which the search for gaps asked per point (point_cloud.h); 0: no search was needed */
+    /* largest number of neighbours per point that the search for gaps requested (point_cloud.h); 0: no search was needed */
     int k;
     size_t samples;         /* points added */
     size_t hidden_vertices; /* number of model vertices inside another closed part, or covered by one */
@@ -52,9 +52,10 @@ struct surface_report {
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };
 
-/* Builds a surface from a model's triangles (positions in metres, 3 indices per triangle; all copied): welds, repairs, samples. workers may
-   be NULL, else they must outlive the surface. Returns NULL if no triangle has an area or memory runs out: logged, unless params->why takes
-   the reason. Thread: one call at a time per surface; surfaces are independent. */
+/* Builds a surface from a model's triangles (positions in metres, 3 indices per triangle; all copied): welds, repairs, samples.
+   workers may be NULL, else they must outlive the surface. Returns NULL if no triangle has an area or memory runs out; the
+   reason is logged, or stored in params->why if that is set. Thread: one call at a time per surface; surfaces are independent.
+   */
 struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count,
                                const uint32_t *triangles, size_t triangle_count, const struct surface_params *params);
 /* Frees the surface and sets *surface to NULL. *surface may be NULL. */
@@ -94,7 +95,7 @@ struct surface_point {
 /* Finds the surface point nearest to point_m. With `normal`, prefers, among triangles about equally near, one whose normal is close to it,
  * so that the far side of a thin wall is not taken (NULL: no preference). */
 void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *hit);
-/* Finds the surface point nearest to point_m within limit_m, as surface_find_point() does. Returns false if no point is that near. */
+/* Finds the surface point nearest to point_m within limit_m, like surface_find_point(). Returns false if no point is that near. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
                                struct surface_point *hit);
 /* Finds the nearest visible surface point within limit_m that is on one of two model triangles (which may be the same), or on a coplanar
@@ -106,8 +107,8 @@ bool surface_find_point_on(const struct surface *surface, const double point_m[3
 bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
                               bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *hit);
 
-/* Finds the point of triangle `tri` of the sampled surface nearest to point_m. If an earlier search found this triangle, the result is the
-   same as then. Returns false if there is no such triangle, or the point is farther than limit_m. */
+/* Finds the point of triangle `tri` of the sampled surface nearest to point_m. If an earlier search found this triangle, the
+   result equals that of the search. Returns false if there is no such triangle, or the point is farther than limit_m. */
 bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *hit);
 
 /* Computes the geodesic distance in metres from each point (projected onto the surface) to every model vertex: out[point * vertex_count +

@@ -37,9 +37,10 @@ static double reach_of(const struct surface *surface)
     return reach_m;
 }
 
-/* Returns the root mean square difference between the distances of both methods, relative to the largest distance. Heat distances have a
- * free constant, chosen so that both methods agree on average. The heat method smooths ridges and borders over about sqrt(t), so a few
- * percent at single points are normal; more indicates that the surface is not connected as it looks. */
+/* Returns the root mean square difference between the distances of the two methods, relative to the largest distance. Heat
+ * distances have a free constant, chosen so that the two methods agree on average. The heat method smooths ridges and borders
+ * over about sqrt(t), so a few percent at single points are normal; more indicates that the surface is not connected the way it
+ * looks. */
 static double disagreement_of(const struct propagation *propagation, const struct surface_field *field, size_t source, const double *heat_m)
 {
     double sum = 0, squares = 0, largest_m = 0, count = 0;

@@ -40,7 +40,7 @@ struct surface {
  * lists of triangles by model triangle, and the intrinsic triangulation if the stored surface had none. */
 void surface_index(struct surface *surface);
 
-/* Argument of surface_faces(), which accepts only triangles that face along `normal`. */
+/* Argument of surface_faces(), which accepts only triangles whose front faces along `normal`. */
 struct surface_facing {
     const struct trimesh *mesh;
     const double *normal;

@@ -11,7 +11,7 @@ enum alarm_kind {
     ALARM_L,
     ALARM_H,
     ALARM_HH,   /* ALARM_LL to ALARM_HH: the reading is beyond that limit of the tag; each number is 1 + that of enum limit */
-    ALARM_ON,   /* another alarm system sets a bit of the tag, which means that the alarm is active */
+    ALARM_ON,   /* the alarm is active because another alarm system has set the tag's bit */
     ALARM_BAD,  /* the quality of the tag's reading is Bad (OPC UA severity) */
     ALARM_LINK, /* a device does not answer, so that the readings of all its tags are unusable */
     ALARM_KINDS

@@ -11,7 +11,7 @@ struct backoff { /* number of failures since the last success; initialise with z
 /* Counts one more failure and returns the delay before the next attempt, 0.5 to 10 s. `random`: any random bits, used for the jitter. */
 int64_t backoff_next_ns(struct backoff *backoff, uint64_t random);
 
-/* Chooses the next of several hosts of one source: tries each host once without a delay, then waits with backoff before the next round. */
+/* Chooses the next of several hosts of one source: tries each host once without a delay, then backs off before the next round. */
 struct host_turn { /* zero-initialise */
     int index;     /* index of the host that is being tried or is connected */
     int tried;     /* number of hosts that were tried since a connection last succeeded */

@@ -42,7 +42,7 @@ static struct baseline_copy *copy_create(const struct snapshot *from)
     return copy;
 }
 
-/* Gives up one use of a baseline's copy of the readings, and frees the copy after the last use. Call with the lock held. */
+/* Drops one reference to a baseline's copy of the readings, and frees the copy with the last one. Call with the lock held. */
 static void copy_unref(struct baseline_copy *copy)
 {
     if (--copy->users > 0)
@@ -81,7 +81,7 @@ static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
     return NULL;
 }
 
-/* Returns the number of baselines with a name, or without one. Call with the lock held. */
+/* Returns the number of named baselines (named true) or of unnamed ones (false). Call with the lock held. */
 static size_t count_of(const struct baselines *baselines, bool named)
 {
     size_t count = 0;
@@ -126,8 +126,7 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
     return id;
 }
 
-/* Returns the first unnamed baseline whose readings are of the time taken_utc_ns (below 0: of any time), or NULL. Call with the lock
-   held. */
+/* Returns the first unnamed baseline whose readings have the time taken_utc_ns (below 0: any time), or NULL. Call with the lock held. */
 static struct baseline_slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
 {
     for (size_t i = 0; i < baselines->count; i++)

@@ -16,8 +16,8 @@ int decode_width(const struct plant_tag *tag);
    defines as a failure. The tag's option `negate` inverts a bit and changes the sign of a number. */
 void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sample *out);
 
-/* Decodes a number that a source received as a number and not as registers, by the same rules as decode_sample(). For a tag of type bool,
- * the number becomes 0 or 1. */
+/* Decodes a value that a source received as a number rather than as registers, by the same rules as decode_sample(). For a tag
+ * of type bool, the number becomes 0 or 1. */
 void decode_number(const struct plant_tag *tag, double raw, struct sample *out);
 
 /* Returns the quality of a value that needs no scaling, in the unit of the tag list: Good, Uncertain_EngineeringUnitsExceeded beyond the

@@ -7,12 +7,12 @@
 
 struct derived_state; /* the results that were last written, to detect changes; use the struct in one thread only */
 
-/* Starts the thread that computes derived tags. Returns it as a source, to be ended by source_stop(), although plant->sources does not
-   contain it; NULL if the thread could not be started (logged). */
+/* Starts the thread that computes derived tags. Returns it as a source, which plant->sources does not contain; end it with
+   source_stop(). NULL if the thread could not be started (logged). */
 struct source *derived_start(struct log *log, const struct plant *plant, struct store *store);
 
-/* derived_create(), derived_destroy() and derived_compute() compute derived tags without a thread and a clock of their own: each call of
-   derived_compute() computes all derived tags once. */
+/* derived_create(), derived_destroy() and derived_compute() compute derived tags without their own thread and clock: each call
+   of derived_compute() computes all derived tags once. */
 struct derived_state *derived_create(const struct plant *plant);
 void derived_destroy(struct derived_state **state); /* Frees the state and sets *state to NULL. *state may be NULL. */
 void derived_compute(struct derived_state *state, struct store *store, int64_t now_mono_ns, int64_t now_utc_ns);

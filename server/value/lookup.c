@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves a host name by getaddrinfo() on a detached thread. The caller and that thread share the struct lookup; the last
-   of the two to finish with the struct frees the struct. */
+/* Resolves a host name with getaddrinfo() on a detached thread. The caller and that thread share the struct lookup; the last of
+   the two to finish frees it. */
 #include "value/lookup.h"
 
 #include <errno.h>

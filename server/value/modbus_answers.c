@@ -98,8 +98,8 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
-        /* reads both halves of the split block (tags read by one request) at once; a half that the device refuses is split again, until the
-           refused register is found */
+        /* reads both halves of the split block (tags read by one request) immediately; a half that the device refuses is split
+           again, until the refused register is found */
         block->due_ns = now_ns;
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Declarations shared by the files of a Modbus source: its thread (modbus.c), the state of each unit (modbus_units.c), the "manners",
-   which adapt to the way in which the device handles connections (modbus_manners.c), and processing of responses (modbus_answers.c).
+/* Declarations shared by the files of a Modbus source: its thread (modbus.c), the state of each unit (modbus_units.c), its
+   adaptation to the way the device handles connections (modbus_manners.c), and processing of responses (modbus_answers.c).
    Thread: the source's own. */
 #ifndef VALUE_MODBUS_IMPL_H
 #define VALUE_MODBUS_IMPL_H
@@ -18,7 +18,7 @@ struct modbus_unit { /* one Modbus unit (slave address); a gateway or a serial l
     struct backoff backoff;
     int64_t retry_ns;
     struct log_pace pace, busy_pace;
-    bool loss_said; /* true: the log says that the unit does not answer, and does not yet say that it answers again */
+    bool loss_said; /* true: the log says that the unit does not answer, but not yet that it answers again */
     /* true: a block (tags read by one request) failed on a new connection while the unit was up; the result of the next block decides
        whether the block or the unit is to blame */
     bool doubted;
@@ -39,8 +39,8 @@ struct modbus_manners {       /* the device's manners: how it handles connection
     /* true: a late first answer on this connection does not count against the unit, because the gateway may still be waiting for the
        unit `timed_out` */
     bool first_excused;
-    /* Number of connections since the device's last answer that the device refused or closed at once, shortly after that answer: it
-       needs a pause between connections. Each one doubles the time until the next try. */
+    /* Number of connections that the device, shortly after its last answer, refused or closed immediately: it needs a pause
+       between connections. Each such connection doubles the time until the next attempt. */
     int failed_connections;
     bool ends_said;
     struct log_pace late_pace; /* rate limit of the log line about answers that come later than timeout_ms */
@@ -64,21 +64,22 @@ struct modbus_source {
     struct modbus_manners manners;
     struct log_pace pace;      /* rate limit of the log line that says that the source has no readings */
     bool loss_said;            /* true: the log says that the source has no readings, and does not yet say that they are back */
-    struct log_pace unit_pace; /* rate limit of the log line about answers that state another unit than requested */
+    struct log_pace unit_pace; /* rate limit of the log line about answers from a unit other than the one requested */
     bool *refused;             /* by index in plant->tags: true if the device refuses to read this tag */
     struct sample *samples;    /* buffer for samples on their way to the store, with room for one sample of each tag */
     int *lost;                 /* buffer for the indices of tags whose readings are lost, with room for all tags */
 };
 
-/* If so many units stop answering one after the other, without an answer of any unit in between, the gateway counts as lost. */
+/* The gateway counts as lost if this many units stop answering one after the other, without an answer from any unit in between. */
 enum { GATEWAY_UNITS = 3 };
 
 /* Returns the Modbus unit (slave address) from which a block of the read plan is read. */
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
 /* Records that a unit answered. Logs this if the log said before that the unit does not answer. */
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
-/* Records that a unit does not answer: the readings of its tags are lost (store_tags_lost()), and the unit gets no request before a
-   backoff delay has passed. If that makes GATEWAY_UNITS such units, the readings of all units of the source are lost at once. */
+/* Records that a unit does not answer: the readings of its tags are lost (store_tags_lost()), and the unit gets no request
+   before a backoff delay has passed. If GATEWAY_UNITS units have now failed without an answer in between, the readings of all
+   units of the source are lost immediately. */
 void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why);
 /* Opens the link if it is closed. Returns false if it is closed and cannot be opened now; modbus->connect_ns is then the time of the next
  * attempt. */
@@ -97,19 +98,19 @@ void modbus_manners_late(struct modbus_source *modbus);
 /* Learns from a failed read (status < 0) how the device handles connections. Returns true if its way of handling them explains the
    failure: the block is then requested again on a new connection, from modbus->connect_ns on. */
 bool modbus_manners_excuse_read(struct modbus_source *modbus, int status, bool unit_up);
-/* Returns true if the way in which the device handles connections explains a failed connection attempt; the next attempt is then made at
+/* Returns true if the way the device handles connections explains a failed connection attempt; the next attempt is then made at
  * modbus->connect_ns. */
 bool modbus_manners_excuse_connect(struct modbus_source *modbus, int status);
 /* Called when a block (tags read by one request) failed on a new connection while its unit was up. Returns true if another block of the
    unit is requested next, whose result tells whether the block or the whole unit is to blame. */
 bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, size_t block);
-/* Called when a block of the unit was answered. If another block had failed before (modbus_unit_doubt()), that block and not the unit is
-   to blame: the readings of its tags are lost. */
+/* Called when a block of the unit was answered. If another block had failed before (modbus_unit_doubt()), that block is to
+   blame rather than the unit: the readings of its tags are lost. */
 void modbus_unit_settle(struct modbus_source *modbus, struct modbus_unit *unit, const struct read_plan_block *answered);
 
 /* Decodes the response to a block (tags read by one request) and writes the readings of its tags to the store. */
 void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words);
-/* Returns true for exceptions by which a gateway says that it cannot reach a unit. */
+/* Returns true for exceptions with which a gateway reports that it cannot reach a unit. */
 bool modbus_is_gateway_exception(int code);
 /* Handles a Modbus exception (error response) to a block: retries a busy device, splits a refused block in two, and marks refused tags
    as Bad. */

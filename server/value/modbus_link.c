@@ -24,8 +24,8 @@
 
 static const int64_t SETTLE_NS = 50 * NS_PER_MS;
 enum {
-    /* Multiples of the source's timeout. LATEST: a device hardly answers an abandoned request after this time. QUIET: if late answers
-       come even then, the line counts as cleared after this time without an answer. */
+    /* Multiples of the source's timeout. LATEST: after this time, a device is unlikely to answer an abandoned request. QUIET:
+       if late answers come even then, the line counts as cleared after this time without an answer. */
     LATEST_TIMEOUTS = 10,
     QUIET_TIMEOUTS = 5,
     DRAINED_ANSWERS = 10, /* when this many stray answers have been discarded, the line counts as noisy */
@@ -37,14 +37,16 @@ struct modbus_link {
     uint16_t number;  /* transaction identifier of the last request, for TCP frames */
     int stop_fd;
     int null_fd;
-    /* A low file descriptor that is reserved when the link is created. Each connection is moved into it by dup3(), because the daemon may
-       have more than FD_SETSIZE files open, and select(), which libmodbus calls, cannot handle descriptors from FD_SETSIZE on. */
+    /* A low file descriptor that is reserved when the link is created. Each connection is moved into it with dup3(), because
+       the daemon may have more than FD_SETSIZE files open, and select(), which libmodbus calls, cannot handle descriptors of
+       FD_SETSIZE or higher. */
     int slot_fd;
     bool open;
     /* true (RTU frames only): the device may still answer an abandoned request, so the next answer may belong to that request */
     bool suspect;
-    /* For RTU frames. asked_ns: monotonic time when the last request was sent; abandoned_ns: the same of the oldest request that may
-       still be answered, 0: none; late_ns: how long the device took to answer an abandoned request, 0: it answers in time */
+    /* For RTU frames. asked_ns: monotonic time when the last request was sent; abandoned_ns: when the oldest request that may
+       still be answered was sent, 0: none; late_ns: how long the device took to answer an abandoned request, 0: it answers in
+       time */
     int64_t asked_ns, abandoned_ns, late_ns;
     int host;     /* index in source->hosts of the host that is used now */
     int answers;  /* number of answers on this connection */

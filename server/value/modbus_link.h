@@ -23,11 +23,11 @@ const char *modbus_link_name(const struct modbus_link *link);
 int modbus_link_host(const struct modbus_link *link);
 /* Connects within the source's timeout_ms. Returns 0 or -errno; -ECANCELED: stop_fd became readable. */
 int modbus_link_open(struct modbus_link *link);
-/* Switches to the next of the source's hosts. Returns true if that was a switch from the last host back to the first. */
+/* Switches to the next of the source's hosts. Returns true if it switched from the last host back to the first. */
 bool modbus_link_next_host(struct modbus_link *link);
-/* Reads `count` registers, or bits as 0 and 1, into `words`, within the source's timeout_ms however slowly the device sends. Returns 0;
-   a Modbus exception code (> 0; the connection stays open); or -errno with the connection closed, so that a late or foreign response is
-   never taken for the response to the next request. */
+/* Reads `count` registers, or bits as 0 and 1, into `words`, within the source's timeout_ms however slowly the device sends.
+   Returns 0; a Modbus exception code (> 0; the connection stays open); or -errno with the connection closed, so that a late or
+   foreign response is never mistaken for the response to the next request. */
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words);
 /* Closes the connection; modbus_link_open() makes a new one. */
 void modbus_link_close(struct modbus_link *link);

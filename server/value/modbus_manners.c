@@ -7,14 +7,17 @@
 #include "base/clock.h"
 #include "value/modbus_impl.h"
 
-/* LISTEN_TIMEOUTS: how long to wait for a late answer in RTU frames, in multiples of the source's timeout, while no unit answers */
+/* LISTEN_TIMEOUTS: how long to wait for a late answer in RTU frames while no unit answers, in multiples of the source's timeout.
+   SHORT_CONNECTIONS: number of consecutive connections closed after one answer that makes the source send one request per
+   connection. REFUSED_CONNECTIONS, CLOSED_CONNECTIONS: maximum number of failed connections, when connecting and when reading, that
+   are blamed on reconnecting too early. */
 enum { LISTEN_TIMEOUTS = 4, SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
 /* first delay before reconnecting to a device that refuses connections. It doubles each time, because some devices take a while to
    release a closed connection */
 static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* if the device's last answer is longer ago, the device counts as lost */
-/* time limit for the first answer on a connection if the previous connection had no answer at all; twice as long after more such
-   connections */
+/* a failed connection is blamed on reconnecting too early only if the device's last answer is at most this old */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S;
+/* time limit for the first answer on a connection if the previous connection had no answer at all; doubled after more such connections */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
 /* first delay that is tried between connecting and the first request. Used for RTU over TCP, whose frames have no transaction numbers,
    so that requests must not be repeated */
@@ -100,9 +103,9 @@ static void learn_start(struct modbus_source *modbus)
     log_found(modbus, found);
 }
 
-/* Logs the delay after connecting with which a device with RTU frames over TCP answers. Its frames have no transaction numbers, so
-   requests must not be repeated. Instead, after each connection without an answer, the next connection waits longer before its first
-   request. */
+/* Logs the delay that a device with RTU frames over TCP needs between connecting and the first request. Its frames have no
+   transaction numbers, so requests must not be repeated. Instead, after each connection without an answer, the next connection
+   waits longer before its first request. */
 static void learn_rtu_delay(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -178,8 +181,8 @@ static void log_one_per_connection(struct modbus_source *modbus, int status)
                             "do so from the start");
 }
 
-/* Counts a connection that the device closed after a single answer. After SHORT_CONNECTIONS consecutive ones, switches to one request per
- * connection. Logs once that the device closes connections after several answers. */
+/* Counts connections that the device closed after one answer; after SHORT_CONNECTIONS in a row, switches to one request per
+ * connection. If the device closes a connection after more than one answer, only logs that, once. */
 static void learn_end(struct modbus_source *modbus, int answers, int status)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -194,8 +197,8 @@ static void learn_end(struct modbus_source *modbus, int answers, int status)
     }
 }
 
-/* Returns true, and sets the time of the next try, if the device refused or closed a connection soon after one on which it answered: it
-   may take a while to release the earlier connection. */
+/* Returns true, and sets the time of the next attempt, if the device refused or closed a connection soon after its last answer
+   on an earlier one: it may take a while to release the earlier connection. */
 static bool may_be_early(struct modbus_source *modbus, int status, int most)
 {
     struct modbus_manners *manners = &modbus->manners;

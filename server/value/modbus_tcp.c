@@ -80,8 +80,9 @@ static int value_bytes(const struct modbus_question *question)
     return is_bits(question->table) ? (question->count + 7) / 8 : 2 * question->count;
 }
 
-/* Returns true if a response may state this unit. Unit identifiers 0 and 255 mean the device at the IP address itself (MODBUS Messaging
-   on TCP/IP V1.0b, 4.4.1.2). Many devices that are not gateways answer with one of these, whatever unit was requested. */
+/* Returns true if a response may state this unit. Unit identifiers 0 and 255 mean the device at the IP address itself (MODBUS
+   Messaging on TCP/IP V1.0b, 4.4.1.2). Many devices that are not gateways answer with one of these, regardless of the unit
+   requested. */
 static bool fits_unit(const struct modbus_question *question, uint8_t unit)
 {
     bool itself = unit == 0 || unit == 255 || question->unit == 0 || question->unit == 255;

@@ -78,7 +78,7 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
         return;
     modbus->link_up = true;
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
-        /* a unit answers, so the gateway may be back: lets the other units be requested again at once */
+        /* a unit answers, so the gateway may be back: lets the other units be requested again immediately */
         modbus->units[i].retry_ns = clock_mono_ns();
     counter_set(modbus->up, 1);
     counter_set(modbus->host, 1 + modbus_link_host(modbus->link));
@@ -107,8 +107,8 @@ static void lose_tags_of(struct modbus_source *modbus, const struct modbus_unit 
     store_tags_lost(modbus->base.store, modbus->lost, count, clock_mono_ns());
 }
 
-/* Switches to the source's next host and connects to it without a delay; once all hosts were tried, waits with backoff before the first
-   one is tried again. */
+/* Switches to the source's next host and connects to it without a delay; once all hosts were tried, backs off before trying the
+   first one again. */
 static void try_elsewhere(struct modbus_source *modbus)
 {
     int64_t now_ns = clock_mono_ns();
@@ -118,7 +118,7 @@ static void try_elsewhere(struct modbus_source *modbus)
         modbus->units[i].retry_ns = now_ns;
 }
 
-/* Marks all units of a gateway as down. Units that were up before are requested again at once. */
+/* Marks all units of a gateway as down. Units that were up before are requested again immediately. */
 static void lose_gateway(struct modbus_source *modbus)
 {
     for (size_t i = 0; i < modbus->plan.unit_count; i++) {
@@ -184,8 +184,8 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
     return true;
 }
 
-/* Records that a block and not its unit is to blame for a missing answer: splits the block in two or, if it has a single tag, requests
-   it again after growing delays. */
+/* Records that a block rather than its unit is to blame for a missing answer: splits the block in two or, if it has a single
+   tag, requests it again after growing delays. */
 static void blame(struct modbus_source *modbus, size_t index)
 {
     struct read_plan_block *block = &modbus->plan.blocks[index];

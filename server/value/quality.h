@@ -50,7 +50,7 @@ static inline bool quality_is_worse(uint32_t q, uint32_t than)
 /* Returns the name of a status code, such as "Bad_CommunicationError". For a code that is not in the table, returns the name of its
  * severity, such as "Bad". */
 const char *quality_name(uint32_t q);
-/* Returns the severity of a status code as in JSON messages: "good", "uncertain" or "bad". */
+/* Returns the severity of a status code as used in JSON messages: "good", "uncertain" or "bad". */
 const char *quality_class(uint32_t q);
 
 #endif

@@ -20,8 +20,8 @@ struct read_plan_block {
     /* monotonic time when the block is read next. modbus.c sets it; 0 in a new plan; read_plan_split() copies it */
     int64_t due_ns;
     /* modbus.c sets the following members, too. They are 0 in a new plan, and read_plan_split() copies them. */
-    int busy_count; /* number of consecutive responses of the device that it is busy */
-    /* number of consecutive responses by which the device refuses the block; counted only for blocks with a single tag */
+    int busy_count; /* number of consecutive responses in which the device reports that it is busy */
+    /* number of consecutive responses in which the device refuses the block; counted only for blocks with a single tag */
     int refused_count;
     int silent_count; /* number of consecutive requests without an answer while other blocks of the unit were answered */
     bool answered;    /* the last request was answered */

@@ -150,7 +150,7 @@ struct clock {     /* state for converting the time column of a file to seconds 
     bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
     int64_t first_us, last_us;
-    size_t ticks; /* number of different times in the column */
+    size_t ticks; /* number of distinct times in the column */
 };
 
 static bool instant_of(const struct series_cell *cell, int64_t after_us, int64_t *t_us)
@@ -265,8 +265,8 @@ struct header {              /* indices of columns in a CSV file; the index of a
     bool of_values;
 };
 
-/* Finds the first and the last time of a file, and its number of different times. Times need not ascend through the file, because the
-   lines of one tag may follow those of another. */
+/* Finds the first and the last time of a file, and its number of distinct times. Times need not ascend through the file,
+   because the lines of one tag may follow those of another. */
 static void scan_values(struct series_lines lines, const struct header *header, struct clock *clock)
 {
     int64_t t_us;
@@ -283,8 +283,8 @@ static void scan_values(struct series_lines lines, const struct header *header, 
     mem_free(lines.cells);
 }
 
-/* Reads a file in the values form: each line has a tag and a value, as `plantcast history export` writes. A blank value means that the
-   quality was Bad. */
+/* Reads a file in the values form: each line has a tag and a value, as written by `plantcast history export`. A blank value
+   means that the quality was Bad. */
 static bool read_values(struct series *series, struct series_lines *lines, const struct header *header, struct clock *file, char why[200])
 {
     double time_s, value;
@@ -322,7 +322,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
     return true;
 }
 
-/* Returns true if the first line below the header has a date and time in this column, whatever the header names it. */
+/* Returns true if the first line below the header has a date and time in this column, regardless of the column's name in the header. */
 static bool begins_with_instant(const struct series_lines *header, size_t column)
 {
     struct series_lines next = { .at = header->at, .separator = header->separator };

@@ -60,7 +60,7 @@ static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, 
     return NULL;
 }
 
-/* Returns the lowest slot number that none of the snapshots in use has. Call with the lock held. */
+/* Returns the lowest slot number that no snapshot in use has. Call with the lock held. */
 static int free_slot(const struct snapshot_cache *snapshot_cache)
 {
     for (int slot = 1;; slot++) {
@@ -72,7 +72,7 @@ static int free_slot(const struct snapshot_cache *snapshot_cache)
     }
 }
 
-/* If more than SNAPSHOT_CACHE_SPARE snapshots have no user, frees the one that was used least recently. Call with the lock held. */
+/* If more than SNAPSHOT_CACHE_SPARE snapshots have no user, frees the least recently used one. Call with the lock held. */
 static void drop_spare(struct snapshot_cache *snapshot_cache)
 {
     size_t spare = 0, oldest = 0;

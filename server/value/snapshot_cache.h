@@ -5,7 +5,7 @@
 #define VALUE_SNAPSHOT_CACHE_H
 #include "value/snapshot.h"
 
-enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of snapshots that stay in the cache although nobody uses them: those used last */
+enum { SNAPSHOT_CACHE_SPARE = 16 }; /* maximum number of snapshots without a user that stay in the cache: the most recently used ones */
 
 struct historical_snapshot { /* the readings of all tags at one past time; immutable while a user holds the snapshot */
     struct snapshot snapshot;
@@ -16,7 +16,7 @@ struct historical_snapshot { /* the readings of all tags at one past time; immut
 
 struct snapshot_cache;
 struct snapshot_cache *snapshot_cache_create(void);
-/* Frees the cache and sets *snapshot_cache to NULL. *snapshot_cache may be NULL. No snapshot may be in use any more. */
+/* Frees the cache and sets *snapshot_cache to NULL. *snapshot_cache may be NULL. No snapshot may still be in use. */
 void snapshot_cache_destroy(struct snapshot_cache **snapshot_cache);
 
 /* Adds the snapshot of a past time and takes ownership of its readings, which leaves `snapshot` empty; the caller still frees the

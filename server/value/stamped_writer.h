@@ -19,7 +19,7 @@ struct stamped_writer {
        difference */
     int64_t worst_skew_ns;
     size_t written; /* number of samples of this message that were written to the store so far */
-    /* samples of the present batch, which are not written yet and all have the same time; room for as many as there are tags */
+    /* samples of the current batch, which are not written yet and all have the same time; room for as many as there are tags */
     struct sample *samples;
     size_t count;
     int64_t at_utc_ns, at_mono_ns; /* time, UTC and monotonic, that all samples of the batch have */

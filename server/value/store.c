@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores the newest reading of every tag, and computes the reading's present quality. */
+/* Stores the newest reading of every tag, and computes the reading's current quality. */
 #include "value/store.h"
 
 #include <assert.h>
@@ -14,7 +14,7 @@ struct held {
     double value;                              /* last usable value */
     uint32_t quality;                          /* quality that the tag's last sample states */
     bool has_value, lost;                      /* has_value: `value` is set; lost: the tag could not be read since its last sample */
-    bool dead;                                 /* true: the tag is lost, and its last value must not be used any more */
+    bool dead;                                 /* true: the tag is lost, and its last value must no longer be used */
     int64_t sampled_mono_ns;                   /* monotonic time of the tag's last sample, whether Good or Bad */
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value */
     int64_t changed_mono_ns;                   /* monotonic time at which a usable value last differed from the one before */
@@ -257,7 +257,7 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     const struct held *word = &store->tags[by->tag];
     bool readable =
         quality_is_good(own_quality(word, now_mono_ns)) && quality_is_good(heartbeat_quality(store, (size_t)by->tag, now_mono_ns));
-    /* the quality tag's value is a double with 53 bits, so of a larger number the lowest bits, which the mask may select, are lost */
+    /* the quality tag's value is a double with 53 bits, so a larger number lacks its lowest bits, which the mask may select */
     if (!readable || !(fabs(word->value) <= 0x1p53))
         return QUALITY_UNCERTAIN;
     bool good = (((uint64_t)(int64_t)word->value & by->mask) == by->want) != by->negate;
@@ -275,7 +275,7 @@ static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_m
     return quality;
 }
 
-/* Increments the tag's change counter if its value or quality changed. Returns true if so. */
+/* If the tag's value or quality changed, increments its change counter and returns true. */
 static bool count_change(struct store *store, size_t tag, bool value_changed, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
@@ -506,8 +506,9 @@ static int64_t next_change_ns(const struct store *store, int64_t now_mono_ns)
     return next_ns;
 }
 
-/* Lists the monotonic times at which time alone changes a tag's quality: its reading becomes stale, the heartbeat of its source counts as
-   stopped; INT64_MAX: never. A value counts as unchanged for too long only from its next sample on, so that is no such time. */
+/* Lists the monotonic times at which time alone changes a tag's quality: its reading becomes stale, the heartbeat of its source
+   counts as stopped; INT64_MAX: never. The time at which a value has been unchanged for too long is not listed, because that
+   takes effect only with the tag's next sample. */
 static void list_ageing(const struct store *store, size_t tag, int64_t at_ns[2])
 {
     const struct held *held = &store->tags[tag];

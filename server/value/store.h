@@ -41,17 +41,19 @@ void store_adopt(struct store *store, struct store *before);
 void store_listen(struct store *store, store_listener *listener, void *arg);
 /* Adds a listener that is called for samples and, by store_tell_aged(), when time alone changed the quality of a tag. */
 void store_listen_all(struct store *store, store_listener *listener, void *arg);
-/* Calls the listeners of store_listen_all(), because time alone changed the quality of a tag; for example, its reading became stale.
-   Returns false, without a call, if a sample of the tag has arrived since event->mono_ns: that sample has told the quality. */
+/* Calls the listeners of store_listen_all(), because time alone changed the quality of a tag; for example, its reading became
+   stale. Returns false, without a call, if a sample of the tag has arrived since event->mono_ns: that sample has already
+   reported the quality. */
 bool store_tell_aged(struct store *store, const struct sample_event *event);
-/* Returns the monotonic time since which a tag has had its present quality because of time alone: its reading, or that of its quality
-   tag, became stale, or a heartbeat stopped. Returns now if there is no such time since the tag's newest sample. */
+/* Returns the monotonic time at which time alone gave a tag its current quality: its reading, or that of its quality tag,
+   became stale, or a heartbeat stopped. Returns now if there is no such time since the tag's newest sample. */
 int64_t store_aged_ns(struct store *store, int tag, int64_t now_mono_ns);
 /* Removes a listener; the store no longer calls it once this function has returned. */
 void store_unlisten(struct store *store, store_listener *listener, void *arg);
-/* Sets the function that is called when a reading, an alarm or a link has changed. The thread that makes the change calls it under the
-   store's lock: once, and not again before store_take(). It is not called when time alone makes a reading stale; store_take() returns
-   when that will be. NULL removes the callback, which is not called any more after this function has returned. */
+/* Sets the function that is called when a reading, an alarm or a link has changed. The thread that makes the change calls it
+   under the store's lock: once, and not again before store_take(). It is not called when time alone makes a reading stale;
+   store_take() returns when that will be. NULL removes the callback, which is no longer called once this function has returned.
+   */
 void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
 /* Writes samples that arrived at this time. If reading the device failed, call store_link_lost() or store_tags_lost() instead. */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);

@@ -28,9 +28,9 @@ struct kept_list {
     bool unreadable;
 };
 
-/* Reads the list. folder: the history's folder, which need not exist; NULL: none. An unreadable file counts as empty (logged) and is not
-   overwritten. writer: the thread that writes changes; NULL: changes are written at once. `folder`, `kind` and `writer` must outlive the
-   list. */
+/* Reads the list. folder: the history's folder, which need not exist; NULL: none. An unreadable file counts as empty (logged)
+   and is not overwritten. writer: the thread that writes changes; NULL: changes are written immediately. `folder`, `kind` and
+   `writer` must outlive the list. */
 void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind,
                     struct file_writer *writer);
 void kept_list_close(struct kept_list *kept);
@@ -38,14 +38,14 @@ void kept_list_close(struct kept_list *kept);
 json_t *kept_list_newest(const struct kept_list *kept);
 /* Returns the index of the entry with this id, or the length of the list if no entry has it. */
 size_t kept_list_find(const json_t *list, const char *id);
-/* Returns REFUSAL_NONE if the list can be changed, else the reason why not. */
+/* Returns REFUSAL_NONE if the list can be changed, else the reason why it cannot. */
 enum refusal_code kept_list_refusal(const struct kept_list *kept);
 /* Queues the new list for writing to disk; once it is written, file_writer_collect() replaces `list`. Without a folder or a writer the list
    is replaced before this function returns. Takes ownership of `list`. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code kept_list_put(struct kept_list *kept, json_t *list);
 
-/* Replaces the list by that of another daemon. Only a standby core also writes it to disk; the list is replaced even if that fails
-   (logged). Returns false, with nothing changed, if the list is invalid. */
+/* Replaces the list with that of another daemon. Only a standby core also writes it to disk; the list is replaced even if that
+   fails (logged). Returns false, with nothing changed, if the list is invalid. */
 bool kept_list_mirror(struct kept_list *kept, json_t *list);
 
 #endif

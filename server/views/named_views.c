@@ -75,7 +75,7 @@ static enum refusal_code refusal(const struct named_views *views, const char *id
     return why ? why : find_fixed(views->plant, id) ? REFUSAL_FIXED : REFUSAL_NONE;
 }
 
-/* Returns the earlier versions that a view has after a change: its current version, then its current earlier versions. */
+/* Returns the earlier versions that a view has after a change: its current version, then the earlier ones that it has already. */
 static json_t *versions(const json_t *view)
 {
     json_t *all = json_copy(json_object_get(view, "before"));

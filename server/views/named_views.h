@@ -40,7 +40,8 @@ uint64_t named_views_number(const struct named_views *views);
  * caller releases it. */
 json_t *named_views_message(const struct named_views *views, const char *id);
 /* For the connection between a core and its renderers. named_views_list() returns the list of saved views, owned by `views`.
-   named_views_mirror() replaces the list by that of the other daemon; it returns false, with nothing changed, if that list is invalid. */
+   named_views_mirror() replaces the list with that of the other daemon; it returns false, with nothing changed, if that list is
+   invalid. */
 json_t *named_views_list(const struct named_views *views);
 bool named_views_mirror(struct named_views *views, json_t *list);
 

@@ -10,7 +10,7 @@
 #include "base/files/file_writer.h"
 #include "base/refusal.h"
 
-/* maximum number of ended notes that are stored: the newest ones */
+/* NOTES: maximum number of active notes; NOTES_ENDED: maximum number of ended notes that are stored, the newest ones */
 enum { NOTES = 100, NOTES_ENDED = 400, NOTE_TEXT_BYTES = 401, NOTE_ID_BYTES = 24 };
 #define NOTES_FILE "notes.json"
 
@@ -19,7 +19,7 @@ struct note {
     /* place of the note: at most one of a tag, the id of an asset, and a position; all NULL: the whole plant */
     const char *tag, *asset;
     const double *position_m;
-    /* id of the note that this note replaces, a note of the same user: it ends, and the new note gets its place; NULL: none */
+    /* id of an earlier note of the same user that this note replaces: the earlier note ends, and the new note gets its place; NULL: none */
     const char *replaces;
     int64_t until_us; /* time at which the note ends, UTC in microseconds; 0: it has no end */
 };
@@ -42,10 +42,10 @@ uint64_t notes_number(const struct notes *notes);
  * between two instants, and how they ended. The caller frees the text (mem_free()). */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
-/* Returns whether the notes valid at one instant are others than those valid at another instant. */
+/* Returns whether the notes valid at one instant differ from those valid at the other. */
 bool notes_differ(const struct notes *notes, int64_t one_us, int64_t other_us);
-/* For the connection between a core and its renderers. notes_list() returns the list of notes, owned by `notes`. notes_mirror() replaces
-   the list by that of the other daemon; it returns false, with nothing changed, if that list is invalid. */
+/* For the connection between a core and its renderers. notes_list() returns the list of notes, owned by `notes`. notes_mirror()
+   replaces the list with that of the other daemon; it returns false, with nothing changed, if that list is invalid. */
 json_t *notes_list(const struct notes *notes);
 bool notes_mirror(struct notes *notes, json_t *list);
 

@@ -48,8 +48,8 @@ struct other {
     size_t bytes;
     /* time of the request that returned the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
     int64_t asked_ns, asked_us;
-    /* time, by the clock of the plant shown here, of the request that returned the last good picture. Before there is one: time since when
-       displays have wanted the picture */
+    /* time, by the clock of the plant shown here, of the request that returned the last good picture. Before there is one: time
+       at which displays began to want the picture */
     int64_t since_us;
     enum why why; /* reason why there is no picture; WHY_NONE: there is one */
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores short links as JSON, in the same form in memory and in the file. The list is sorted by last use: the link that was unused for
-   longest comes first. */
+/* Stores short links as JSON, in the same form in memory and in the file. The list is sorted by last use: the least recently
+   used link comes first. */
 #include "views/short_links.h"
 
 #include <openssl/evp.h>

@@ -40,8 +40,8 @@ enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wal
 /* Shows in a pane the position at which a user points. position_m NULL: removes the pointer from the pane. */
 void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
                        const char *desk);
-/* Replaces all pointers by those of another daemon. pointed: the result of wall_remote_pointers_text() there. Returns false if it is
- * invalid. */
+/* Replaces all pointers with those of another daemon. pointed: the result of wall_remote_pointers_text() there. Returns false
+ * if it is invalid. */
 bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *pointed);
 /* Records whether a wall display is connected now. */
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there);
@@ -53,7 +53,8 @@ uint64_t wall_remote_pointer_number(const struct wall_remote *remote);
 char *wall_remote_text(const struct wall_remote *remote);
 char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after);
 /* For the connection between a core and its renderers. wall_remote_list() returns the list of orders, owned by `remote`.
-   wall_remote_mirror() replaces the list by that of the other daemon; it returns false, with nothing changed, if that list is invalid. */
+   wall_remote_mirror() replaces the list with that of the other daemon; it returns false, with nothing changed, if that list is
+   invalid. */
 json_t *wall_remote_list(const struct wall_remote *remote);
 bool wall_remote_mirror(struct wall_remote *remote, json_t *list);
 

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* largest number of neighbours that is requested for a point */
+/* maximum number of neighbours requested per point */
 #define POINT_CLOUD_MAX_K 256
 /* Calls visit(arg, point, other, distance_m) for every ordered pair of points within radius_m of each other, for each point the nearest
  * first. Requests k neighbours of each point from FLANN and doubles k until the farthest lies beyond the radius, all points are found, or k

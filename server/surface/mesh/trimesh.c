@@ -250,8 +250,8 @@ static void sort3(uint32_t v[3])
             }
 }
 
-/* Returns the index of a triangle's three points, counted from 0 in the order in which they first occur. Finds duplicate triangles:
- * triangles with the same three points, in any order, get the same index. */
+/* Returns a number for a triangle's set of three points, counted from 0 in the order in which the sets first occur. Triangles
+ * with the same three points, in any order, get the same number, which reveals duplicates. */
 static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
 {
     uint32_t v[3] = { tri[0], tri[1], tri[2] };
@@ -397,7 +397,7 @@ static void cut_edge(struct trimesh *mesh, struct cuts *cuts, uint32_t a, uint32
     }
 }
 
-/* Lists the points along the edge from a to b, inserted ones included, with a but without b. Returns their number. */
+/* Lists the points along the edge from a to b: a and the inserted ones, but not b. Returns their number. */
 static size_t side_points(const struct cuts *cuts, uint32_t a, uint32_t b, uint32_t *out)
 {
     uint32_t e = edge_table_find(&cuts->edges, a, b);

@@ -20,8 +20,8 @@ void borders_finish(struct borders *b)
     mem_free(b->reach_m);
 }
 
-/* Finds border edges (edges with one face). hidden: the hidden triangles; then only those border edges are found that hidden triangles also
-   have. NULL: all border edges. */
+/* Finds border edges (edges with one face). hidden: the hidden triangles; then only border edges that hidden triangles also
+   have are found. NULL: all border edges. */
 static void find_open_edges(struct borders *b, const struct trimesh *mesh, const struct trimesh *hidden)
 {
     struct edge_table edges;

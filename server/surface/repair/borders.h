@@ -13,8 +13,7 @@ struct borders {
     uint32_t *slot; /* by mesh point: its index in `points`; TRIMESH_NONE: it is on no border */
     /* by border point: length of the shortest edge of any triangle at it, which limits the gaps that are closed there */
     double *shortest_m;
-    /* edges at the border points. The indices in `edges` of those at border point i are at[first[i]] up to, but without, at[first[i +
-       1]] */
+    /* edges at the border points: those at border point i have the indices at[first[i]] to at[first[i + 1] - 1] in `edges` */
     uint32_t *first, *at;
     /* by border point: smallest reach (distance up to which a part counts as touching, parts.h) of the parts at it; NULL: not computed */
     double *reach_m;

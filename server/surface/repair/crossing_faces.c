@@ -54,8 +54,8 @@ static bool lies_to_one_side(const struct crossing_face *plane, const struct cro
     return high_m <= clear_m || low_m >= -clear_m;
 }
 
-/* Returns how far a point in the plane of a face is outside of the face's side from corner i to the next; negative: the point is inside of
- * that side. */
+/* Returns how far a point in the plane of a face is outside the face's side from corner i to the next; negative: the point is
+ * inside that side. */
 static double beyond_side(const struct crossing_face *face, int i, const double place[3])
 {
     double along[3], out[3], from[3];

@@ -121,7 +121,7 @@ static size_t find_side(const struct face_triangulation *face, uint32_t a, uint3
     return face->tri_count;
 }
 
-/* Returns whether a point lies on the straight line from u to v between both, or is v. */
+/* Returns whether a point lies on the straight segment from u to v, excluding u but including v. */
 static bool is_passed(const struct face_triangulation *face, uint32_t u, uint32_t v, uint32_t point)
 {
     const double *p = face->at[u], *q = face->at[v], *r = face->at[point];
@@ -161,8 +161,8 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
     return u;
 }
 
-/* Flips the side from a to b to the other diagonal of its two triangles, whose ends turned[] receives. Returns false if the triangles do
- * not form a convex quadrilateral. */
+/* Flips the side from a to b to the other diagonal of its two triangles. turned[] receives the ends of that diagonal. Returns
+ * false if the triangles do not form a convex quadrilateral. */
 static bool flip_side(struct face_triangulation *face, const uint32_t side[2], uint32_t turned[2])
 {
     uint32_t a = side[0], b = side[1], c = a, d = a;

@@ -33,7 +33,7 @@ struct solid { /* closed part of the surface, in its state before surface sampli
     bool winds; /* true: the body intersects itself, so the winding number decides which points are inside */
     double low[3], high[3];
     struct trimesh mesh;     /* triangles of the part; their arrays belong to struct solids */
-    const signed char *side; /* by triangle: orientation, as body_parts.side */
+    const signed char *side; /* by triangle: orientation, like body_parts.side */
     struct bvh *bvh;
 };
 
@@ -126,7 +126,7 @@ struct hits { /* intersections of one ray */
     const struct solid *solid;
     const double *direction;
     double same_m;
-    int count, turns; /* intersections of a ray with the part. count: number of all; turns: number of exits minus number of entries */
+    int count, turns; /* intersections of a ray with the part. count: total number; turns: number of exits minus number of entries */
     struct ray_hits { /* the first points hit */
         double t;
         int faces;
@@ -313,7 +313,7 @@ static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const
     mem_free(faces);
 }
 
-/* Returns by point its region: the set of points that are connected with it without passing a marked point (`mixed`). A region is
+/* Returns the region of each point: the set of points connected to it without passing a marked point (`mixed`). A region is
  * identified by its lowest point index. The caller frees the array. */
 static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
 {

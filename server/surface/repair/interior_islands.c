@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides about visible triangles that are left among hidden ones: hides small groups (interior_islands), and resolves INTERIOR_ACROSS. */
+/* Decides which visible triangles among hidden ones stay visible: hides small groups (interior_islands), and resolves INTERIOR_ACROSS. */
 #include <math.h>
 
 #include "base/math/vec.h"

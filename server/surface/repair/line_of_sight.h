@@ -11,8 +11,8 @@ struct line_of_sight {
     const struct body_parts *parts;
     const uint32_t *body; /* per triangle of the mesh */
     const struct bvh *bvh;
-    /* lists of the triangles at each point: those of a point are at[first[point]] up to, but without, at[first[point + 1]]; NULL: no part
-       is thin, so no part is searched beyond its reach (distance up to which it counts as touching) */
+    /* lists of the triangles at each point: those of a point are at[first[point]] to at[first[point + 1] - 1]; NULL: no part is
+       thin, so no part is searched beyond its reach (distance up to which it counts as touching) */
     uint32_t *first, *at;
 };
 

@@ -92,7 +92,7 @@ static int by_t(const void *a, const void *b)
     return p->t < q->t ? -1 : p->t > q->t;
 }
 
-/* Lists by point the points with which it is to be connected (edit->joins), in both directions, after replacement of merged points. */
+/* Lists, for each point, the points to connect it to (edit->joins), in both directions, after replacement of merged points. */
 static void lists_partners(struct crossing_lists *lists, const struct mesh_edit_pair *joins, size_t count, size_t point_count)
 {
     if (!count)
@@ -166,8 +166,8 @@ static bool is_corner(const uint32_t corners[3], uint32_t point)
     return point == corners[0] || point == corners[1] || point == corners[2];
 }
 
-/* Lists the points inserted on the side from a to b, in this order, without a and b, as indices in the face's triangulation. Returns their
- * number. */
+/* Lists the points inserted on the side from a to b, in this order, excluding a and b, as indices in the face's triangulation.
+ * Returns their number. */
 static size_t side(struct face_triangulation *face, const struct crossing_lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b,
                    uint32_t *out)
 {
@@ -193,8 +193,8 @@ static double distance2(const struct face_triangulation *face, uint32_t a, uint3
     return x * x + y * y;
 }
 
-/* Triangulates a face between two chains of points on its sides, as a zip closes: `low`, along a-b, the side with most points, and the
-   chain a-c-b. trimesh_sample() uses the same method. */
+/* Triangulates a face between two chains of points on its sides, the way a zip closes: `low`, along a-b, the side with most
+   points, and the chain a-c-b. trimesh_sample() uses the same method. */
 static void zip(struct face_triangulation *face, const uint32_t *low, size_t low_count, const uint32_t *high, size_t high_count)
 {
     size_t i = 1, j = 1, ab = low_count - 1, acb = high_count - 1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A batch of edits by which mesh repair joins parts of one mesh: points to merge, points to insert into edges or faces, edges to add. Edits
-   are collected first, and mesh_edit_apply() applies them together. */
+/* A batch of edits with which mesh repair joins parts of one mesh: points to merge, points to insert into edges or faces, edges
+   to add. Edits are collected first, and mesh_edit_apply() applies them together. */
 #ifndef SURFACE_REPAIR_MESH_EDIT_H
 #define SURFACE_REPAIR_MESH_EDIT_H
 #include "surface/mesh/trimesh.h"
@@ -28,7 +28,7 @@ void mesh_edit_merge_points(struct mesh_edit *edit, uint32_t a, uint32_t b, doub
 void mesh_edit_insert_in_edge(struct mesh_edit *edit, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m);
 /* Requests that a point, distance_m away from the triangle, is inserted into the triangle. */
 void mesh_edit_insert_in_tri(struct mesh_edit *edit, uint32_t point, uint32_t tri, double distance_m);
-/* Requests an edge between both points, in each edited triangle that contains both. */
+/* Requests an edge between the two points, in each edited triangle that contains both. */
 void mesh_edit_connect(struct mesh_edit *edit, uint32_t a, uint32_t b);
 
 /* Applies the batch to the mesh: triangles with an inserted or merged point are triangulated again. target[point] receives the point's new

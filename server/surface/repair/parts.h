@@ -13,8 +13,8 @@ struct body_parts {
     /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed; 0: the triangle bounds nothing (a wall between two bodies,
      * or a fin: a sheet that stands on a body) */
     signed char *side;
-    /* by model triangle: number of its part, and number of its body. Part and body differ only where a few edges join two bodies to one
-       part by mistake of the model */
+    /* by model triangle: number of its part, and number of its body. Part and body differ only where an error in the model
+       joins two bodies into one part by a few edges */
     uint32_t *of_source, *body_of_source;
     signed char *side_of_source; /* per model triangle: side */
     char *closed;                /* by part: 1 if it is closed, which means that its open edges are short compared with its size */

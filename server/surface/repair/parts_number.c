@@ -127,8 +127,8 @@ static void join_patches(struct parts_finding *f, const struct branches *b, uint
 {
     size_t tri_count = f->parts->solid.tri_count;
     struct core *cores = mem_array(tri_count, sizeof(*cores));
-    /* by lowest triangle of a part: 1 if the part contains patches (triangles connected by edges with two faces) that are closed
-     * together */
+    /* by lowest triangle of a part: 1 if the part contains patches (triangles connected by edges with two faces) that together
+     * are closed */
     char *holds = mem_array(tri_count, 1);
     for (size_t i = 1; i < b->count; i++)
         if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
@@ -197,8 +197,8 @@ static void find_closed(struct parts_finding *f)
     mem_free(open_m);
 }
 
-/* Assigns bodies: usually the parts. A patch (triangles connected by edges with two faces) that is nearly closed by itself is a body of its
- * own: only a few edges join it to its part, by mistake of the model. */
+/* Assigns bodies: usually the parts. A patch (triangles connected by edges with two faces) that is nearly closed by itself is a
+ * body of its own: only a few edges join it to its part, because of an error in the model. */
 static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 {
     struct body_parts *parts = f->parts;

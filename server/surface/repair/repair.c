@@ -21,8 +21,8 @@
 /* a border counts as straight if it deviates from a line by at most this, in multiples of the tolerance; welding may cause such deviations,
    and different points of a border are farther apart */
 #define STRAIGHT 0.1
-/* minimum cosine between the directions of two faces for them to count as lying on each other, and of two edges to count as running along
-   each other */
+/* minimum cosine between the directions of two faces for them to count as lying on each other, and of two edges to count as
+   running alongside each other */
 #define FLUSH 0.99
 
 /* --- seams (gaps between border edges): rounds that merge points alternate with rounds that insert points into edges --- */
@@ -65,9 +65,9 @@ static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
     return vec_dot(side[0], side[1]) > FLUSH * sqrt(vec_dot(side[0], side[0]) * vec_dot(side[1], side[1]));
 }
 
-/* Returns whether merging border points i and j would join an edge of one with an edge of the other although their faces lie on each other.
-   Such faces belong to two bodies that touch. If they were joined, their edges would be no borders any more, so that neither body could be
-   joined to the surface on the other side of the gap. */
+/* Returns whether merging border points i and j would join an edge of one with an edge of the other although their faces lie on
+   each other. Such faces belong to two bodies that touch. If they were joined, their edges would no longer be borders, so that
+   neither body could be joined to the surface on the other side of the gap. */
 static bool would_fold(const struct seams *s, size_t i, size_t j)
 {
     const struct borders *b = s->borders;
@@ -244,9 +244,9 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* Rounds 0 and 1 close exact fits only (points within a hundredth of the tolerance). Their edges are then no borders any more when
-     * rounds 2 and 3 close gaps, and are not pulled to a neighbour. In round 1, a point that is on an edge by chance is not inserted: it
-     * would split the edge into pieces too short to be closed. */
+    /* Rounds 0 and 1 close exact fits only (points within a hundredth of the tolerance). Their edges are then no longer borders
+     * when rounds 2 and 3 close gaps, and are not pulled to a neighbour. In round 1, a point that is on an edge by chance is
+     * not inserted: it would split the edge into pieces too short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);

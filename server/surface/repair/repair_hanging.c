@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inserts hanging vertices (vertices that lie inside an edge, not at its end) into edges that have several faces and so are no borders: one
-   of the bodies that meet there has a slit along the edge. */
+/* Inserts hanging vertices (vertices that lie inside an edge, not at its end) into edges that have several faces and so are not
+   borders: one of the bodies that meet there has a slit along the edge. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static double place_on(const struct hanging *h, uint32_t p, uint32_t a, uint32_t
     return *distance_m <= h->within_m ? t : -1;
 }
 
-/* Returns whether the border that comes from a to p continues behind p in the same direction. */
+/* Returns whether the border that comes from a to p continues beyond p in the same direction. */
 static bool runs_straight(const struct hanging *h, uint32_t p, uint32_t a)
 {
     const struct borders *b = h->borders;
@@ -74,8 +74,8 @@ static bool is_at_border(const struct hanging *h, uint32_t a, uint32_t b)
     return h->borders->slot[a] != TRIMESH_NONE || h->borders->slot[b] != TRIMESH_NONE;
 }
 
-/* Returns a flag by edge index: 1 for edges with an end on a border, and an odd number of faces above one. A body has a slit at such an
- * edge. Edges with an even number of faces are closed, and edges with one face are closed as seams. */
+/* Returns a flag for each edge index: 1 if the edge has an end on a border, and an odd number of faces greater than one. A body
+ * has a slit at such an edge. Edges with an even number of faces are closed, and edges with one face are closed as seams. */
 static char *find_odd(const struct hanging *h, struct edge_table *edges)
 {
     const struct trimesh *mesh = h->mesh;

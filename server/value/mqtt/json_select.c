@@ -29,8 +29,8 @@ static bool names_its_object(const char *key)
     return false;
 }
 
-/* Returns true if the name that an array item states is the tag's name, or ends in the tag's name after a separator, as `A.T1` for the
-   tag T1. */
+/* Returns true if the name that an array item states is the tag's name, or ends in the tag's name after a separator, such as
+   `A.T1` for the tag T1. */
 static bool is_name_of(const json_t *name, const char *tag)
 {
     const char *text = json_string_value(name);
@@ -40,8 +40,8 @@ static bool is_name_of(const json_t *name, const char *tag)
     return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
 }
 
-/* Returns true if the rest of a path selects the member `key` of an array item. That member then holds the tag's value, and not a name
-   of the item. */
+/* Returns true if the rest of a path selects the member `key` of an array item. That member then holds the tag's value rather
+   than a name of the item. */
 static bool is_selected(const char *key, const char *rest)
 {
     struct json_path_step step;
@@ -49,8 +49,8 @@ static bool is_selected(const char *key, const char *rest)
     return *rest && json_path_next(&rest, &step, why) && step.kind == JSON_PATH_NAME && !strcmp(step.name, key);
 }
 
-/* Returns a name that an array item states for itself, if none of its names fits the tag; NULL if one fits or the item states none.
-   rest: path below the item. */
+/* Returns a name that an array item states for itself, if none of its names matches the tag; NULL if one matches or the item
+   states none. rest: path below the item. */
 static const json_t *foreign_name(const json_t *item, const char *tag, const char *rest)
 {
     const char *key;
@@ -124,8 +124,8 @@ static void walk_matches(const json_t *holder, const struct json_path_step *step
     }
 }
 
-/* Selects the values below `value` by the path from `at` on. Recursive: the depth is the number of steps of the path, which the maximum
- * length of a tag's address limits. */
+/* Selects the values below `value` by the path from `at` on. Recursive: the depth is the number of steps in the path, which the
+ * maximum length of a tag's address limits. */
 static void walk(const json_t *value, const json_t *holder, const char *at, const char *tag, struct json_selected *out)
 {
     struct json_path_step step;

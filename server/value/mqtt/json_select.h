@@ -9,8 +9,8 @@ struct json_selected {
     size_t count;         /* number of values that the path selects */
     const json_t *value;  /* last selected value; NULL: none */
     const json_t *holder; /* object or array that contains `value`; NULL: `value` is the root */
-    /* If the path addresses an array item by position: a name that the item states for itself and that does not fit the tag; NULL: there
-       is no such name. */
+    /* If the path addresses an array item by position: a name that the item states for itself and that does not match the tag;
+       NULL: there is no such name. */
     const json_t *foreign;
 };
 

@@ -253,7 +253,7 @@ void mqtt_client_destroy(struct mqtt_client **client)
 
 /* --- serving ---------------------------------------------------------------------------------------------------------------- */
 
-/* Writes to `why` why a connection to the broker ended. Returns the code that mqtt_client_serve() must return. */
+/* Writes the reason why a connection to the broker ended to `why`. Returns the code that mqtt_client_serve() must return. */
 static int explain(const struct mqtt_client *client, int status, int errno_then, char why[200])
 {
     bool is_5 = client->source->mqtt.protocol == 5;

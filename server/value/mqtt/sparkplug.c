@@ -214,7 +214,8 @@ static void drop_aliases(struct sparkplug_node *node, size_t topic)
     node->alias_count = kept;
 }
 
-/* Finds the tags that take their values from a metric, by its name or else its alias. Returns their number, which is 0 for most metrics. */
+/* Finds the tags that take their values from a metric, by its name or, if it states none, by its alias. Returns their number, which
+   is 0 for most metrics. */
 static size_t tags_of(const struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                       const struct sparkplug_metric *metric, size_t *first)
 {

@@ -43,7 +43,7 @@ void sparkplug_payload_finish(struct sparkplug_payload *payload);
 /* Reads a metric's value as a number. type: the type that the metric states, or else the one in its birth certificate. Returns false if
    the value is not a number. */
 bool sparkplug_number(const struct sparkplug_metric *metric, uint32_t type, double *out);
-/* Returns the name of a Sparkplug data type, such as "Int32"; "an unknown type" for a number that is no type. */
+/* Returns the name of a Sparkplug data type, such as "Int32"; "an unknown type" for a number that is not a type. */
 const char *sparkplug_type_name(uint32_t type);
 /* Returns the session number (bdSeq) in a birth or death certificate; -1: it has none. */
 int64_t sparkplug_bd_seq(const struct sparkplug_payload *payload);

@@ -14,12 +14,12 @@
 
 /* time limit for opening a session, and for subscribing to all nodes */
 static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
-/* RETRY_NS: interval at which nodes that the server refused are requested again */
+/* SERVE_NS: longest wait for new values at a time; RETRY_NS: interval at which nodes that the server refused are requested again */
 static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;
-/* minimum time between two reads of all nodes after notifications of the server were lost */
+/* minimum time between two reads of all nodes after notifications from the server were lost */
 static const int64_t READ_NS = 10 * NS_PER_S;
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
-enum { REFUSALS_SAID = 8 }; /* maximum number of log lines per session about refused nodes, and of those about refused deadbands */
+enum { REFUSALS_SAID = 8 }; /* maximum number of log lines per session about refused nodes; the same for refused deadbands */
 
 struct opcua_source {
     struct source base;

@@ -6,7 +6,7 @@
 
 struct opcua_variable {
     const char *path;        /* browse names of the nodes from the folder Objects to the variable, joined by dots */
-    const char *address;     /* address of the variable's node, nsu=URI;s=NAME, as a tag list states it */
+    const char *address;     /* address of the variable's node, nsu=URI;s=NAME, as written in a tag list */
     const char *description; /* the server's description of the variable; may be "" */
     bool is_bit;
     size_t elements; /* number of elements if the variable is an array; 0: it is not an array */

@@ -259,7 +259,7 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
     if (status == 0) {
         UA_ClientConfig *config = UA_Client_getConfig(client->library);
         config->noReconnect = true; /* open62541 must not reconnect by itself, because a new client replaces a lost session */
-        /* interval in milliseconds of checks by which a server that stopped answering is noticed, even if it rarely has new values */
+        /* interval in milliseconds of the checks that detect a server that stopped answering, even if it rarely has new values */
         config->connectivityCheckInterval = TIMEOUT_MS;
         *client->said = 0;
     }

@@ -9,7 +9,7 @@
 
 struct opcua_client;
 
-/* functions that the client calls during a session, from any function with a deadline */
+/* callbacks invoked during a session, by any function that takes a deadline */
 struct opcua_events {
     void *arg;
     void (*value)(void *arg, size_t node, const UA_DataValue *value); /* `node`: index in opcua_nodes */

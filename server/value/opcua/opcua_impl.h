@@ -23,7 +23,7 @@ struct opcua_client {
     UA_EndpointDescription endpoint; /* endpoint that was chosen, whose certificate has been checked */
     bool lost;                       /* the subscription has ended, so a new session is needed */
     bool missed;                     /* notifications were lost since all nodes were last read */
-    uint32_t max_items, max_reads;   /* maximum number of nodes in one request: to monitor nodes, to read them; 0: not known yet */
+    uint32_t max_items, max_reads;   /* maximum number of nodes per request, when monitoring and when reading; 0: not known yet */
     UA_UInt32 subscription;
     double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */
     char **namespaces;    /* namespace URIs of the server, by namespace index */
@@ -51,8 +51,8 @@ struct opcua_exchange {
 /* Sends a request and waits for its response. Returns the codes of opcua_wait(), or -EPROTO if the server refuses the request. The
    caller must clear the response with UA_clear() in all cases. */
 int opcua_call(struct opcua_client *client, const struct opcua_exchange *exchange, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Sends a request by a function of open62541 and waits for its response: call opcua_call_begin() before the library's function, and
-   opcua_call_end() with its result. Pass opcua_on_answer as the callback, with the client as userdata. */
+/* Sends a request with a function of open62541 and waits for its response: call opcua_call_begin() before the library's
+   function, and opcua_call_end() with its result. Pass opcua_on_answer as the callback, with the client as userdata. */
 void opcua_call_begin(struct opcua_client *client, void *response, const UA_DataType *type);
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 void opcua_on_answer(UA_Client *library, void *client, UA_UInt32 id, void *response);

@@ -305,8 +305,8 @@ static UA_StatusCode verify_uri(const UA_CertificateVerification *verification, 
     return UA_STATUSCODE_GOOD;
 }
 
-/* Adds all security policies that we support to a client's configuration. with_none: also the policy None, as the first one. Returns
-   false if out of memory. */
+/* Adds all security policies that we support to a client's configuration. with_none: also adds the policy None, before the
+   others. Returns false if out of memory. */
 static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString certificate, UA_ByteString key, bool with_none,
                          const UA_Logger *logger)
 {

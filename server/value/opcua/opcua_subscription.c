@@ -37,7 +37,7 @@ static UA_UInt16 number_of(const struct opcua_client *client, const char *uri)
     return NO_NAMESPACE;
 }
 
-/* Returns how many nodes one request may name, from a limit that the server states; 0, or no number: the server states none. */
+/* Returns the maximum number of nodes in one request. stated: the server's limit; no number, or 0: the server has no limit. */
 static uint32_t batch_limit(const UA_Variant *stated)
 {
     uint32_t limit = UA_Variant_hasScalarType(stated, &UA_TYPES[UA_TYPES_UINT32]) ? *(const UA_UInt32 *)stated->data : 0;
