@@ -24,7 +24,7 @@ struct supervision {
     struct {
         counter *reload_good, *reloaded_s;
     } counters;
-    struct service_patience *patience; /* true: the daemon asked the service manager to wait until it is ready */
+    struct service_patience *patience; /* not NULL while the service manager is asked to wait until the daemon is ready */
     char *runtime;                     /* runtime folder of the service; NULL: there is none */
     int64_t watchdog_ns;               /* interval in nanoseconds at which the service manager expects watchdog messages; 0: off */
     /* refused: the last reload failed; reloaded: a reload has ended and its result is still to be reported */

@@ -12,12 +12,12 @@ static const int64_t LIGHT_NS = 4 * NS_PER_MS;
 static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time that each frame may spend on computing a field that takes long */
 /* REBUILD_NS: delay between attempts to create a new GL context; it doubles up to REBUILD_MAX_NS */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
-/* longest time that changed readings wait for a refined frame, if the view has had one before; after it a preview is drawn */
+/* how long changed readings wait at most for a refined frame, if the view has had one before; then a preview is drawn */
 static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S;
-/* time to wait, after a driver restart, for a GPU of the same kind as before; after it any renderer is used */
+/* how long to wait after a driver restart for a GPU of the same kind as before; then any renderer is used */
 static const int64_t DRIVER_RESTART_TIMEOUT_NS = 60 * NS_PER_S;
 
-/* Puts the ticket's request back among the waiting ones. Returns true if that is not needed: the client has gone, or has a newer request.
+/* Puts the ticket's request back into the queue. Returns true if there is no need: the client has gone, or has a newer request.
    The caller holds the lock. */
 static bool request_again(const struct request_ticket *ticket, void *arg)
 {
@@ -46,8 +46,8 @@ static void fail(struct render_thread *thread, struct request_group *group)
     group->count = 0;
 }
 
-/* Returns whether the frame's pixels are valid: they are not if the GL context was lost before they were read back. Frees an invalid
-   frame. */
+/* Returns whether the frame's pixels are valid; frees an invalid frame. The pixels are invalid if the GL context was lost
+   before they were read back. */
 static bool is_good(struct render_thread *thread, struct frame *frame)
 {
     bool good = frame && !gl_lost(thread->gl);
@@ -145,8 +145,8 @@ static void finish_complete(struct render_thread *thread)
 
 /* --- long jobs: frames drawn in steps ------------------------------------------------------------------------------------- */
 
-/* Clears the flag `left` of the group's clients, which says that a client withdrew from the last long job (a frame drawn in steps), because
-   they now wait for a new one. */
+/* The group's clients now wait for a new long job (a frame drawn in steps), so clears their flag `left`, which says that a
+   client withdrew from the last one. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -250,8 +250,8 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-/* Limits how long changed readings wait before they get a preview to MAX_READINGS_DELAY_NS, for clients that just got a refined frame. The
-   limit had doubled with each refined frame that was given up before. */
+/* Caps the time that changed readings wait for a preview at MAX_READINGS_DELAY_NS, for clients that just got a refined frame.
+   That time had doubled with each refined frame that was given up before. */
 static void calm(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -305,8 +305,9 @@ static bool has_left(const struct request_ticket *ticket, void *arg)
     return !client || client->left || (client->pending && client->request.urgency == URGENCY_INPUT);
 }
 
-/* Removes from the long job (a frame drawn in steps) the clients that no longer want its frame, and abandons the job once it has no
-   clients. Its drawing time is charged nevertheless: otherwise an address that gives up each of its frames would always be served first. */
+/* Removes from the long job (a frame drawn in steps) the clients that no longer want its frame, and abandons the job once it
+   has no clients. Its drawing time is charged nevertheless: otherwise an address whose clients withdraw from each frame would
+   always be served first. */
 static void long_job_leave(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -431,8 +432,8 @@ static bool draw(struct render_thread *thread, struct request_group *group)
 
 /* --- start, main loop and end of the render thread -------------------------------------------------------------------- */
 
-/* Creates the GL context and everything that depends on it. kind: GL_AUTO, or the kind of the lost context. hardware true: does not accept
-   a software renderer. Returns false on failure, logged. */
+/* Creates the GL context and everything that depends on it. kind: GL_AUTO, or the kind of the lost context. hardware: true:
+   rejects a software renderer. Returns false on failure, logged. */
 static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardware)
 {
     const struct render_service_params *params = &thread->service->params;
@@ -521,8 +522,8 @@ static bool pause_for(struct render_service *service, int64_t pause_ns)
     return running;
 }
 
-/* Rebuilds a lost GL context. Attempts are repeated, because a restarting driver takes some seconds. Meanwhile nothing is drawn; all else
-   in the daemon continues. The long job (a frame drawn in steps) in progress is requested again. */
+/* Rebuilds a lost GL context. Attempts are repeated, because a driver takes some seconds to restart. Meanwhile nothing is
+   drawn, but the rest of the daemon continues. The long job (a frame drawn in steps) in progress is requested again. */
 static void rebuild(struct render_thread *thread)
 {
     struct render_service *service = thread->service;

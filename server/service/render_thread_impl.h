@@ -13,7 +13,7 @@ struct thread_memory { /* memory limit of the renderer's caches, and when to rel
     size_t other;           /* peak, in bytes, of the memory that the process used besides models and caches; decays slowly */
     int64_t looked_ns;      /* monotonic time when the size of the caches was last measured */
     int64_t trimmed_ns;     /* monotonic time when free heap memory was last returned to the system */
-    int64_t alone_since_ns; /* monotonic time since when the service has had no client; 0: there are clients */
+    int64_t alone_since_ns; /* monotonic time since which the service has had no client; 0: there are clients */
     bool released;          /* true: the caches were released, and no frame was drawn since */
 };
 
@@ -45,7 +45,7 @@ struct render_thread {
        overtake it, is drawn */
     struct long_job parked;
     bool warm;             /* the warm-up is complete */
-    int64_t turn_began_ns; /* monotonic time since when the thread draws without having waited or done other work */
+    int64_t turn_began_ns; /* monotonic time since which the thread has drawn without waiting or doing other work */
     struct pending_readbacks in_flight;
     /* groups of requests that wait until their field (interpolated values) is computed; each time such a group is served, a part of the
        field is computed */

@@ -8,11 +8,11 @@
 
 static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements of memory use */
 static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which the renderer's caches are released */
-static const double FIELD_SHARE = 0.3; /* part of the caches' memory that interpolated values and weights of all fields together may take */
+static const double FIELD_SHARE = 0.3; /* maximum fraction of the caches' memory for interpolated values and weights of all fields */
 /* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory for drawing a frame or baking
    a light. */
 static const size_t OTHER_BYTES = (size_t)576 << 20;
-/* number of bytes, free in the heap but still resident, above which the heap is trimmed (free memory is returned to the system) */
+/* bytes of free but still resident heap above which the heap is trimmed (free memory is returned to the system) */
 static const size_t FREE_BYTES = (size_t)64 << 20;
 static const int64_t TRIM_NS = 5 * NS_PER_S; /* minimum time between two trims */
 /* speed at which the recorded peak of other memory decays: at each measurement it loses 1 / FADES of its excess over the present value */
@@ -60,8 +60,8 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }
 
-/* Returns the bytes that the caches may take: `all` (the limit of the process) less models and other memory, but at least a quarter of
-   `all`. */
+/* Returns the bytes that the caches may take: `all` (the limit of the process) minus models and other memory, but at least a
+   quarter of `all`. */
 static size_t bound_of(size_t all, size_t models, size_t other)
 {
     return models + other < all - all / 4 ? all - models - other : all / 4;
@@ -77,7 +77,7 @@ void render_thread_bound_memory(struct render_thread *thread)
         counted += bytes[i];
     all = all ? all : memory_default_bytes();
     size_t bound = bound_of(all, bytes[STORE_MODELS], other_bytes(memory, all, counted));
-    /* the memory of frames cannot be limited, because the number of frames follows from the number of sessions; so it is subtracted */
+    /* the memory of frames is subtracted, because it cannot be limited: their number follows from the number of sessions */
     size_t caches = bound > 2 * frames ? bound - frames : bound / 2;
     field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
     renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));

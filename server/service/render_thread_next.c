@@ -3,11 +3,10 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* Time for which a client's changed readings wait for the refined frame that is being drawn for the client. After that time, that frame is
-   given up for a preview with the new readings, and the time doubles, so that a refined frame is finished eventually. */
+/* How long a client's changed readings wait for the refined frame that is being drawn for the client. Then that frame is given
+   up for a preview with the new readings, and the time doubles, so that a refined frame is finished eventually. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
-/* minimum ratio of pixels between a long job (a frame drawn in steps) and a frame that may overtake it: memory suffices for another frame
-   if that is small, but not for two large ones */
+/* minimum ratio of pixels between a long job (a frame drawn in steps) and a frame that may overtake it: memory suffices for a large and a small frame, but not for two large ones */
 enum { OVERTAKE_SMALLER = 4 };
 
 static bool long_job_is_for(const struct long_job *long_job, const struct render_client *client)
@@ -67,9 +66,9 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* If one client waits for a refined frame and another for a snapshot over HTTP, keeps only the one to be served first, because both kinds
-   of frames are charged together. Otherwise the refined frames of an address, one after the other, would keep its snapshots waiting as
-   long as another address's large frame is drawn. The caller holds the lock. */
+/* If one client waits for a refined frame and another for a snapshot over HTTP, keeps only the one to be served first. Both
+   kinds of frames are charged together. Otherwise the refined frames of an address, one after the other, would keep its
+   snapshots waiting as long as another address's large frame is drawn. The caller holds the lock. */
 static void choose_long(struct render_client **first)
 {
     struct render_client **refined = &first[URGENCY_REFINE], **snapshot = &first[URGENCY_SNAPSHOT];
@@ -104,8 +103,8 @@ static struct render_turn next_turn(const struct render_thread *thread, const st
     return turn;
 }
 
-/* Adjusts the time for which changed readings wait for the client's refined frame that is being drawn. An input of the user resets it to
-   its initial value; giving up a refined frame for readings doubles it. The caller holds the lock. */
+/* Adjusts how long changed readings wait for the refined frame that is being drawn for the client. A user's input resets this
+   time to its initial value; giving up a refined frame for readings doubles it. The caller holds the lock. */
 static void change_patience(const struct render_thread *thread, struct render_client *client)
 {
     int64_t twice_ns = 2 * (client->patience_ns ? client->patience_ns : OWN_DATA_NS);
@@ -115,8 +114,8 @@ static void change_patience(const struct render_thread *thread, struct render_cl
         client->patience_ns = twice_ns < OWN_DATA_MAX_NS ? twice_ns : OWN_DATA_MAX_NS;
 }
 
-/* Moves the client's request to the group of requests that are drawn now. The long job (a frame drawn in steps) that runs for the client is
-   then no longer wanted, unless it will show the new readings, too. The caller holds the lock. */
+/* Moves the client's request to the group of requests that are drawn now. The client then no longer wants the long job (a frame
+   drawn in steps) that runs for it, unless that frame will show the new readings too. The caller holds the lock. */
 static void begin(const struct render_thread *thread, struct render_client *client, struct request_group *group, int64_t now_ns)
 {
     enum urgency urgency = client->request.urgency;

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-static const int64_t IDLE_NS = 5 * NS_PER_MS; /* time that one piece of the warm-up takes; afterwards the thread checks for requests */
+static const int64_t IDLE_NS = 5 * NS_PER_MS; /* duration of one piece of the warm-up, after which the thread checks for requests */
 
 /* Draws a frame and discards it, to fill caches and compile shaders. */
 static void draw_for_nobody(struct render_thread *thread, const struct view *view)

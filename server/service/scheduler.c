@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses which class of frame request is drawn next: for inputs, changed readings, refined frames or snapshots. */
+/* Chooses the class of frame requests to draw next: inputs, changed readings, refined frames or snapshots. */
 #include "service/scheduler.h"
 
 #include "base/clock.h"
 
-/* pause after a frame for a session whose camera moves, in which the scheduler waits for that camera's next position before it draws
-   anything else */
+/* how long after a frame for a moving camera the scheduler waits for that camera's next position before it draws anything else */
 static const int64_t INPUT_PAUSE_NS = 150 * NS_PER_MS;
-/* maximum time for which long-running frames (refined ones, snapshots over HTTP) are put off while cameras move */
+/* how long long-running frames (refined ones, snapshots over HTTP) are postponed at most while cameras move */
 static const int64_t LONG_TURN_NS = 3 * NS_PER_S;
-/* maximum time for which snapshots over HTTP are put off while cameras move; shorter, because their clients have no frame to look at yet */
+/* how long snapshots over HTTP are postponed at most while cameras move; shorter, because their clients have no frame to look at yet */
 static const int64_t SNAPSHOT_TURN_NS = 1 * NS_PER_S;
 
 int scheduler_share(enum urgency urgency)

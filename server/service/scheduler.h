@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scheduler: chooses which class of request is drawn next. Inputs go first; changed readings get every second frame besides them.
-   Long-running frames (refined frames, snapshots over HTTP) wait for a pause, or after a while get one step after each other frame.
-   Within a class, the client that was charged the least drawing time goes first; unused time is not saved up. Pure: the caller passes
-   the time. */
+/* The scheduler: chooses which class of request is drawn next. Inputs go first, but changed readings get every second frame.
+   Long-running frames (refined frames, snapshots over HTTP) wait for a pause, or after a while get one step after each other
+   frame. Within a class, the client that was charged the least drawing time goes first; unused time is not saved up. Pure: the
+   caller passes the time. */
 #ifndef SERVICE_SCHEDULER_H
 #define SERVICE_SCHEDULER_H
 #include <stdbool.h>
@@ -11,23 +11,23 @@
 enum urgency { URGENCY_INPUT, URGENCY_DATA, URGENCY_REFINE, URGENCY_SNAPSHOT, URGENCY_COUNT };
 
 struct scheduler {             /* zero-initialise */
-    int64_t input_ns, long_ns; /* monotonic times when frames were last finished: a frame for an input; a long-running frame */
+    int64_t input_ns, long_ns; /* monotonic times when the last frame for an input, and the last long-running frame, were finished */
     /* data_next: the next frame is for changed readings; step_next: a step of a long-running frame is drawn next */
     bool data_next, step_next;
 };
 
 /* Kinds of frames whose drawing time is charged separately: previews for inputs and readings; long-running frames. */
 enum { SCHEDULER_MOVING, SCHEDULER_LONG, SCHEDULER_SHARES };
-/* Returns the kind of frames (SCHEDULER_MOVING or SCHEDULER_LONG) under which the drawing time of such a request is charged. */
+/* Returns the kind of frames (SCHEDULER_MOVING or SCHEDULER_LONG) to which the drawing time of such a request is charged. */
 int scheduler_share(enum urgency urgency);
 /* Returns the charge with which a client enters the queue: its own drawing time charged so far, but no less than that of the client served
    last. Time that the client left unused earlier thus gives it no advantage. */
 int64_t scheduler_asked(int64_t spent_ns, int64_t served_ns);
-/* Returns whether client a goes before b: it was charged less; or it was charged the same and its request is older. */
+/* Returns whether client a goes before client b: a was charged less, or both were charged the same and a's request is older. */
 bool scheduler_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns, int64_t b_asked_ns);
 
-/* Returns the class (urgency) of request to draw now. asked_ns, by class: when its oldest request was made; INT64_MAX: it has none. Returns
-   URGENCY_COUNT if nothing is due before *wait_until_ns (INT64_MAX: nothing waits). */
+/* Returns the class (urgency) of the request to draw now. asked_ns: by class: when the oldest request of the class was made;
+   INT64_MAX: it has none. Returns URGENCY_COUNT if nothing is due before *wait_until_ns (INT64_MAX: nothing waits). */
 enum urgency scheduler_choose(const struct scheduler *scheduler, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns,
                               int64_t *wait_until_ns);
 /* Records that a frame of that class is complete. */

@@ -35,14 +35,14 @@ void time_accounts_served(struct time_accounts *accounts, const struct time_acco
    frame was drawn. */
 void time_accounts_charge(struct time_accounts *accounts, uint64_t id, int share, int64_t ns);
 
-struct time_claim { /* how much drawing time a client was charged and how long its request waits: decides which client is served first */
+struct time_claim { /* claim of a client to be served: how much drawing time the client was charged, and how long its request has waited */
     const struct time_account *account;
     /* spent_ns: drawing time charged to the client itself, not to its address; asked_ns: when the client made the request */
     int64_t spent_ns, asked_ns;
 };
-/* Returns whether `a` is served before `b`. First decides which address was charged less; within one address, which client was charged
-   less; if both are equal, which request is older. Only drawing is charged, not waiting. So each other address, and each other client of
-   the same address, can go before a request only until it was charged as much. */
+/* Returns whether `a` is served before `b`. The address that was charged less goes first; within one address, the client that
+   was charged less; if these are equal, the older request. Only drawing is charged, not waiting. So other addresses, and other
+   clients of the same address, can go before a request only until they were charged as much. */
 bool time_claim_before(const struct time_claim *a, const struct time_claim *b, int share);
 /* Frees all accounts; they must have no clients. */
 void time_accounts_finish(struct time_accounts *accounts);

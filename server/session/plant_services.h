@@ -6,7 +6,7 @@
 struct plant_services {
     struct scene *scene;
     struct store *store;
-    struct plant_clock *clock; /* clock that dates readings, alarms, notes and actions; NULL: this machine's UTC clock */
+    struct plant_clock *clock; /* clock that timestamps readings, alarms, notes and actions; NULL: this machine's UTC clock */
     struct render_service *render_service;
     struct baselines *baselines;
     /* cache of readings of past instants; the event loop's copy of this struct has NULL here if nothing is recorded */

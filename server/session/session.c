@@ -113,8 +113,8 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    /* a view of the plant file is set again after the picture changed its size, because the camera depends on the size if the file states
-       none */
+    /* a view of the plant file is set again after the picture changed its size, because its camera depends on the size if the
+       file states no camera */
     if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
@@ -244,8 +244,8 @@ static void on_send_to_wall(struct session *session, const struct message *messa
     session_kept_reply(session, &action, "wall", session_wall_what(message), answer);
 }
 
-/* Makes the session a wall display. From now on it is also sent the mouse pointers that users at desks show on the wall. Returns false with
-   *error if the client may not be that display. */
+/* Makes the session a wall display. From now on it is also sent the mouse pointers that users at desks show on the wall.
+ * Returns false with error if the client may not act as that display. */
 static bool on_display(struct session *session, const struct message *message, struct message_error *error)
 {
     if (!session_may_be(session, &message->wall.place, error))
@@ -337,7 +337,7 @@ static bool in_order(const struct session *session, const struct message *messag
         message_fail(error, "hello_first", "the first message must be hello");
         return false;
     }
-    /* hello is not checked, because its token, which decides what the client may do, is checked by session_hello() */
+    /* hello passes unchecked: session_hello() checks its token, which decides what the client may do */
     return message->type == MESSAGE_HELLO ||
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
@@ -454,7 +454,7 @@ static void tell_token(struct session *session, int64_t now_ns)
     mem_free(token);
 }
 
-/* Returns whether a newer picture is due to the client: one is wanted, requested, in flight or ready to send. */
+/* Returns whether a newer picture is outstanding: wanted, requested, in flight or ready to send. */
 static bool is_owed(const struct session *session)
 {
     const struct frame_demand *demand = &session->demand;

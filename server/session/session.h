@@ -15,7 +15,7 @@
 
 /* --- life cycle ------------------------------------------------------------------------------------------------------ */
 
-/* Makes the session of a new connection. Never NULL. */
+/* Makes the session of a new connection. Never returns NULL. */
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns);
 void session_destroy(struct session **session); /* destroys the session and sets *session to NULL; accepts a pointer to NULL */
 /* Tells the session who connected. Copies `client`; client->share must outlive the session. If this function is not called, the session has
@@ -38,8 +38,9 @@ void session_settle_gone(struct kept_answers *answers);
 /* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
    counts. */
 void session_close(struct session *session, int code, const char *text);
-/* Returns whether the user has been inactive for longer than --lock-after allows; if so, *error says it. Always false for tokens of walls
-   and programs (unattended), and for a person who signed in with OpenID Connect: access/openid watches that person across several pages. */
+/* Returns true with *error if the user has been inactive for longer than --lock-after allows. Always false for tokens of walls
+   and programs (unattended), and for a person who signed in with OpenID Connect: access/openid watches that person across
+   several pages. */
 bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error);
 /* Closes the session if its token was revoked or has expired, or if its user was inactive for too long; otherwise updates the session's
    role from the token. */
@@ -91,7 +92,7 @@ bool session_moves(const struct session *session, int64_t now_ns);
 bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *request);
 /* Notes that the render service accepted a frame request of this session. replaced: it replaced an earlier request of this session. */
 void session_requested(struct session *session, const struct frame_request *request, bool replaced);
-/* Sends the client, once, the reason why a frame that it wants signed comes unsigned. */
+/* Tells the client once why its frame, which it wants signed, comes unsigned. */
 void session_not_signed(struct session *session, const struct message_error *why);
 /* Takes ownership of an encoded frame, or of the answer that there is no frame (nothing new, or failed). */
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
@@ -111,8 +112,8 @@ void session_wrote(struct session *session, bool all, int64_t now_ns);
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns);
 /* Notes that the frame being sent was cut short. */
 void session_gave_up(struct session *session);
-/* Takes the first bandwidth measurement: `bytes` bytes of texts had arrived took_ns after they were sent. Chooses the quality of the first
-   frame by it. */
+/* Records the first bandwidth measurement: `bytes` bytes of texts had arrived took_ns after they were sent. Chooses the quality
+   of the first frame from this measurement. */
 void session_begin(struct session *session, size_t bytes, int64_t took_ns);
 /* Returns the pacer, with the frame in pacer->acked, if the client acknowledged a frame since the last call; otherwise NULL. */
 const struct pacer *session_take_shown(struct session *session);
@@ -182,14 +183,14 @@ void session_say_followers(struct session *session, const struct session *const 
 /* --- tiles of a picture over many displays (tile_sync.h) -------------------------------------------------------------- */
 
 bool session_is_tile(const struct session *session);
-/* Shifts the part of the picture that this display shows, as burn-in protection. The shift takes effect with the next picture, which is
-   requested for it. */
+/* Shifts the part of the picture that this display shows, as burn-in protection. Requests a new picture, with which the shift
+   takes effect. */
 void session_tile_move(struct session *session, struct burn_shift shift, int64_t now_ns);
 /* Drops the tile (one display's part of a wall's picture) from its wall if it has delayed the others for too long, and readmits it after a
    pause. Returns true if the tile was dropped or readmitted. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
-/* Tells the client which displays of its wall are connected, if that changed. there, late_us: arrays indexed by display - 1. late_us:
-   UTC microseconds since when that tile is dropped; 0: it takes part. leads: this session leads the wall. */
+/* Tells the client which displays of its wall are connected, if that changed. there, late_us: arrays indexed by display - 1.
+   late_us: UTC microseconds when that tile was dropped; 0: it takes part. leads: this session leads the wall. */
 void session_tile_tell(struct session *session, const bool *there, const int64_t *late_us, bool leads);
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */

@@ -30,8 +30,8 @@ struct session_context {
     int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts for all sessions; NULL: no caching */
     bool saving;                           /* true: a reload is activating a saved tag list */
-    /* On a renderer (daemon that draws for a core): forwards a session's message to the core, which answers later. Returns false if the
-       core is not connected. NULL: this daemon is no renderer and acts on messages itself. */
+    /* On a renderer (daemon that draws for a core): forwards a session's message to the core, which answers later. Returns
+       false if the core is not connected. NULL: this daemon is not a renderer and acts on messages itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
     bool core_up; /* on a renderer (daemon that draws for a core): true: the core sends readings */
@@ -42,8 +42,8 @@ struct session_context {
     const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
     bool live;                                /* true: at least one data source is connected */
     struct clock_state clock;                 /* state of the wall clock: whether it is set, and its estimated error */
-    /* monotonic time until which some session's camera counts as moving; refined frames of other sessions wait until then, because they
-       would make its pictures stutter */
+    /* monotonic time until which a session's camera counts as moving; refined frames of other sessions wait until then, because
+       they would make that session's pictures stutter */
     int64_t moving_until_ns;
     bool overloaded;  /* true: drawing is too slow to send all sessions a refined frame after each change of readings */
     unsigned codecs;  /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */

@@ -10,8 +10,8 @@
 static const int64_t STILL_NS = 200 * NS_PER_MS; /* time without movement of the camera after which a refined frame is due */
 /* time without a requested preview after which a refined frame is due while the render thread is overloaded or the network is slow */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
-/* age of the last refined frame at which another one is requested although previews continue; applies while the render thread is overloaded
-   or the network is slow */
+/* while the render thread is overloaded or the network is slow: age of the last refined frame at which another one is requested
+   although previews continue */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
 /* maximum time for which a refined frame is postponed while other sessions' cameras move */
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
@@ -180,9 +180,10 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Requests a refined frame for changed readings. Sets or_moving, with which the render service draws a preview instead, unless refining is
-   as quick; set while the render thread cannot refine the frames of all sessions, or a frame is requested already. A refined frame can take
-   a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have waited too long. */
+/* Requests a refined frame for changed readings. Sets or_moving while the render thread cannot refine the frames of all
+   sessions, or a frame is requested already: the render service then draws a preview instead, unless refining is as quick. A
+   refined frame can take a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have
+   waited too long. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
@@ -192,8 +193,8 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
 }
 
-/* Returns whether a moving camera will soon need a frame anyway, which shows the new readings, too, so that the readings need no frame of
-   their own. */
+/* Returns whether a moving camera will soon need a frame anyway. That frame shows the new readings too, so they need no frame
+   of their own. */
 static bool next_camera_brings(const struct session *session, int64_t now_ns)
 {
     return session->demand.refined == REFINED_NOT && now_ns - session->demand.input_ns < CAMERA_INTERVAL_NS;
@@ -439,8 +440,8 @@ bool session_gives_up(const struct session *session, const struct encoded_frame 
     return moved && pacer_is_slower(&session->delivery.pacer, (double)bytes_left, GIVE_UP_NS);
 }
 
-/* Requests the frame again that was cut short. The render service counts that frame as shown, so the new one must be drawn even if its
-   content is the same. */
+/* Requests again the frame that was cut short. The render service counts that frame as shown, so the new one must be drawn even
+   if its content is the same. */
 void session_gave_up(struct session *session)
 {
     pacer_gave_up(&session->delivery.pacer);

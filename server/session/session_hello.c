@@ -173,7 +173,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     struct view view;
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
-    /* time of the user's last activity, as the page states it: a hello that an automatic reconnection sends is not a sign of activity */
+    /* time of the user's last activity, from the page: a hello sent by an automatic reconnection is not a sign of activity */
     if (message->hello.idle_ms >= 0)
         session->identity.active_ns = now_ns - (int64_t)(message->hello.idle_ms * 1e6);
     if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))

@@ -49,7 +49,7 @@ struct kept_action session_kept_begin(const struct session *session);
    be written, or are not written within a second, the answer says so: `not_kept` for an action on alarms, otherwise `kept` false, and
    `unaudited`. Takes ownership of `answer` and `what`. event: as in session_record_action(); static. */
 void session_kept_reply(struct session *session, const struct kept_action *action, const char *event, char *what, char *answer);
-/* Returns whether it is not known yet whether an action is on disk. */
+/* Returns whether an action is still pending: not known yet to be on disk, or to have failed. */
 bool session_kept_waits(const struct session *session);
 /* Frees answers that still wait for the disk. */
 void session_kept_drop(struct session *session);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moves a session to a reloaded plant: its view continues by names, as far as the new plant has them. */
+/* Moves a session to a reloaded plant: carries its view over by names, and drops what the new plant lacks. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -85,7 +85,7 @@ struct frame_demand {
        minute */
     bool refining;
     double refined_bytes; /* size in bytes of the last frame of full quality; 0: none was acknowledged */
-    bool starting;        /* true: the first frame waits for session_begin(), which brings the measured bandwidth, for a second at most */
+    bool starting;        /* true: the first frame waits, for a second at most, for session_begin(), which brings the measured bandwidth */
     int64_t starting_ns;
     bool failure_said; /* true: the client was told that the present view cannot be drawn */
     int64_t failed_ns; /* monotonic time of the newest request whose frame was lost, or failed for lack of memory; 0: none */
@@ -176,7 +176,7 @@ struct session_pick { /* pick: a query for what is at a pixel */
 /* One display's part of a picture that spans a wall of displays (tiles/tile_sync.h). */
 enum { TILE_HELD = 8 };
 struct session_tile {
-    struct wall_place place; /* the wall's display for which this tile is; display 0: the session is no tile */
+    struct wall_place place; /* display whose part of the wall's picture this tile shows; display 0: the session is not a tile */
     /* layout of the wall's picture, computed from the size of this session's display; only the leading session's layout is used */
     struct tile_layout layout;
     struct tile_held {
@@ -190,9 +190,9 @@ struct session_tile {
     uint64_t unchanged;
     uint32_t presented_seq;
     int64_t made_ns; /* time from the request for a preview to the encoded frame, smoothed, in nanoseconds; 0: not known */
-    int64_t late_us; /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
-    /* out_ns: time for which the tile is dropped. in_ns: monotonic time when it is readmitted at the earliest; while it takes part: when it
-       was readmitted last */
+    int64_t late_us; /* UTC microseconds when the tile was dropped from the wall; 0: it takes part */
+    /* out_ns: how long the tile stays dropped. in_ns: monotonic; of a dropped tile: the earliest time of its readmission; of a
+       tile that takes part: the time of its last readmission */
     int64_t out_ns, in_ns;
     char *told; /* last `tiles` message sent to the client; NULL: none */
 };
@@ -240,7 +240,7 @@ struct session {
     struct message_rate rate;
     struct session_stats stats;
     struct session_scope scope;
-    struct wall_place display; /* wall display as which the client has introduced itself; display 0: none */
+    struct wall_place display; /* wall display that the client has introduced itself as; display 0: none */
     struct session_tile tile;
     int64_t heard_ns;   /* monotonic time when the client's last message arrived */
     int64_t settled_ns; /* value of heard_ns at the last tick at which the client showed the newest picture (none was owed to it) */

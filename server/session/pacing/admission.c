@@ -7,8 +7,8 @@
 #include "base/clock.h"
 
 static const int64_t WINDOW_NS = NS_PER_S;
-/* longest time that a changed reading may wait for its frame. Readings arrive once a second, so with a longer wait some would never be
-   drawn */
+/* longest permitted delay from a changed reading to its frame. Readings arrive once a second, so with a longer delay some would
+   never be drawn */
 static const int64_t LONGEST_DATA_WAIT_NS = NS_PER_S;
 enum { BUSY_PERCENT = 85 };
 

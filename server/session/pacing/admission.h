@@ -18,7 +18,7 @@ struct admission_window { /* statistics of one second of drawing */
     int64_t data_wait_ns;
 };
 
-struct address_share {  /* use that one client address makes of the server; zero-initialise */
+struct address_share {  /* one client address's use of the server; zero-initialise */
     uint64_t account;   /* id of the address; equals frame_request.account in the requests of its sessions */
     bool exempt_pixels; /* true: the quota on pixels per address does not apply to this address */
     int64_t pixels;     /* number of pixels of all views of the address */

@@ -5,15 +5,15 @@
 #include "base/clock.h"
 
 static const int64_t RTT_WINDOW_NS =
-    /* length of a window for which the minimum round-trip time is kept; a round trip counts in the window in which it was measured and in
-       the next one */
+    /* length of a window for which the minimum round-trip time is kept; a round trip counts in the window in which it was
+       measured and in the next one */
     15 * NS_PER_S;
 /* upper limit of a measured round trip; a longer one is caused by a queue somewhere, not by the network's delay */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
 /* lower limit of a measured transfer time; a faster transfer only shows that bandwidth is plentiful */
 static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4;
-/* maximum time between the acknowledgement of a frame and the start of decoding the next one, for the next one to count as having waited
-   for the decoder */
+/* longest time from the acknowledgement of a frame to the start of decoding the next one for which that next frame counts as
+   having waited for the decoder */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
 /* size in bytes of a frame below which its measurement may only raise the bandwidth estimate, not lower it */
 static const size_t SMALL_BYTES = 4096;

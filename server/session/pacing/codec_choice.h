@@ -15,7 +15,7 @@ struct codec_facts {
 
 struct codec_choice { /* zero-initialise, which chooses H.264 */
     bool jpeg;
-    int64_t against_ns; /* monotonic time since when codec_facts favour the codec that is not in use; 0: they favour the current one */
+    int64_t against_ns; /* monotonic time since which codec_facts have favoured the unused codec; 0: they favour the one in use */
 };
 
 /* Switches to the other codec once the facts have favoured it for long enough. */

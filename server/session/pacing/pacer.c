@@ -9,7 +9,7 @@
 
 /* time, in addition to one round trip, within which the bytes in flight to a client must be able to arrive */
 static const int64_t AHEAD_NS = 33 * NS_PER_MS;
-/* times without acknowledgement and progress after which the client is stalled, or is disconnected (PROTOCOL.md) */
+/* time without acknowledgement and progress after which a client is stalled (STALL_NS) or disconnected (DEAD_NS); see PROTOCOL.md */
 static const int64_t STALL_NS = PACER_STALL_S * NS_PER_S, DEAD_NS = 15 * NS_PER_S;
 
 void pacer_init(struct pacer *pacer)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pacer: limits how many frames may be under way to one client (requested, waiting, sent and not acknowledged), and owns the
-   client's channel estimate and quality ladder. Unacknowledged frames together may take the bytes that the bandwidth carries in 33 ms
-   plus one round trip, or be one frame; nothing queues behind them. Pure; the caller passes the time. Thread: the event loop. */
+/* The pacer: limits how many frames may be under way to one client (requested, waiting, sent and not acknowledged), and owns
+   the client's channel estimate and quality ladder. Unacknowledged frames together may have as many bytes as the bandwidth
+   carries in 33 ms plus one round trip; one frame may always be sent. Nothing queues behind them. Pure; the caller passes the
+   time. Thread: the event loop. */
 #ifndef SESSION_PACING_PACER_H
 #define SESSION_PACING_PACER_H
 #include "session/pacing/quality_ladder.h"

@@ -6,10 +6,10 @@
 
 /* transfer time of a frame above which the frame is too large for the network, so the ladder steps down */
 static const int64_t SLOW_NS = 80 * NS_PER_MS;
-/* expected transfer time of a frame below which the ladder steps up to the quality of that frame */
+/* the ladder steps up to a better step if its frames are expected to transfer faster than this */
 static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
-static const int64_t LASTED_NS = 5 * NS_PER_S; /* time without a step down after which the last step up counts as right */
+static const int64_t LASTED_NS = 5 * NS_PER_S; /* time without a step down after which the last step up counts as successful */
 /* minimum time between two steps down: the measured lag falls only some frames after a step */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 /* decoding time of a frame above which the client cannot keep up with 25 frames a second */
@@ -21,8 +21,7 @@ static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
-/* limit on the bytes of all copies of a frame that is sent to all viewers of a view: the event loop needs some tens of ms to send this
-   many */
+/* limit on the bytes of all copies of a frame for the viewers of a view: the event loop needs some tens of ms to send this many */
 static const double CROWD_BYTES = 30e6;
 /* MIN_VIEWERS: minimum number of viewers of a view for which a common step is chosen; MAX_STEPS_WORSE: a viewer whose own step is worse
    than the common one by more than this uses its own */
@@ -74,9 +73,9 @@ double quality_ladder_bytes(const struct quality_ladder *ladder)
     return ladder->unit_bytes * steps[ladder->step].bytes;
 }
 
-/* Returns the factor by which the limit on a frame's transfer time grows at this step. A step whose next one has fewer pixels gets twice
-   the time: viewers at different picture sizes can no longer share frames. A client that reprojects gets 120 ms (1.5 * SLOW_NS) for a
-   frame, which still is 8 frames a second. */
+/* Returns the factor by which the limit on a frame's transfer time grows at this step. A step whose next one has fewer pixels
+   gets twice the time: viewers at different picture sizes can no longer share frames. A client that reprojects gets 120 ms (1.5
+   * SLOW_NS) for a frame, which still allows 8 frames a second. */
 static double slack_factor(const struct quality_ladder *ladder, int step)
 {
     double usual = ladder->reprojects ? 1.5 : 1;

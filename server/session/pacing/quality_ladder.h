@@ -11,7 +11,7 @@ enum { QUALITY_LADDER_STEPS = 9, QUALITY_LADDER_FIRST = 3 /* index of the initia
 
 struct rung {
     int quality;
-    double scale; /* factor on the width and on the height of the picture */
+    double scale; /* factor for the picture's width and height */
 };
 
 struct quality_ladder { /* chooses the quality and size of one client's frames; initialise with quality_ladder_init() */
@@ -29,7 +29,7 @@ struct quality_ladder { /* chooses the quality and size of one client's frames; 
 
 /* Initialises the ladder at QUALITY_LADDER_FIRST. */
 void quality_ladder_init(struct quality_ladder *ladder);
-/* Chooses the step of the first frame, of `pixels` pixels, from what the channel has measured so far. */
+/* Chooses the step of the first frame, which has `pixels` pixels, from what the channel has measured so far. */
 void quality_ladder_begin(struct quality_ladder *ladder, const struct channel *channel, double pixels);
 /* Returns the quality and scale of a step, at the ladder's own picture size. */
 struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
@@ -43,8 +43,8 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that a preview of that step and size in bytes was acknowledged, and adjusts the step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
-/* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. Used for the ladder of a
-   picture over many displays: such a picture has more pixels than any client's picture, so making it may be the bottleneck. */
+/* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. Used for the
+   ladder of a picture over many displays: it has more pixels than any client's picture, so making it may be the bottleneck. */
 void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int64_t now_ns);
 /* Returns the expected size in bytes of a preview at the ladder's own step; 0: not known. */
 double quality_ladder_bytes(const struct quality_ladder *ladder);

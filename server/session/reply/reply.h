@@ -20,10 +20,10 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
 char *reply_status_text(const struct session_context *context, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);
-/* reply_present_text tells a tile (one display of a wall's picture) at which instant, UTC microseconds, to show its frame with the number
-   seq; `picture`: id of the wall's picture. reply_tiles_text lists which displays of the wall are connected, since when some are dropped,
-   and which part of the picture this display shows. there, late_us: arrays indexed by display - 1; there: the display is connected;
-   late_us: UTC microseconds since when it is dropped, 0: not dropped. */
+/* reply_present_text() tells a tile (one display of a wall's picture) at which instant, UTC microseconds, to show its frame
+   `seq`; `picture`: id of the wall's picture. reply_tiles_text() lists which displays of the wall are connected, since when
+   some are dropped, and which part of the picture this display shows. there, late_us: arrays indexed by display - 1; there: the
+   display is connected; late_us: UTC microseconds when it was dropped, 0: not dropped. */
 char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us);
 char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const struct tile_layout *layout, const bool *there,
                        const int64_t *late_us, bool leads);

@@ -22,7 +22,7 @@ const char *reply_environment_name(const struct plant *plant, int environment);
 
 /* --- reply_plant.c --- */
 
-/* Returns a new JSON object with what does not change about a tag: name, description, unit, source, group, asset and limits. */
+/* Returns a new JSON object with the constant properties of a tag: name, description, unit, source, group, asset and limits. */
 json_t *reply_tag(const struct plant *plant, const struct plant_tag *t);
 
 #endif

@@ -29,8 +29,7 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    /* The gaps between tiles and the margin shrink by the factor by which the tiles really shrank, which a minimum size of tiles may
-       limit. */
+    /* gaps and margin shrink by `scale`, or with the tiles if rounding shrank these more */
     double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);

@@ -7,11 +7,11 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* time for which the wall waits for a tile to acknowledge its frame; then that tile is dropped */
+/* how long the wall waits for a tile to acknowledge its frame before the tile is dropped */
 static const int64_t MAX_LATE_NS = 3 * NS_PER_S;
-/* time for which a slow tile is dropped; it doubles each time, up to the maximum */
+/* OUT_NS: how long a slow tile is dropped; doubled each time up to MAX_OUT_NS */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
-static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* time of keeping up after which a tile that is slow again is dropped for only OUT_NS */
+static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* a slow tile that has kept up for this long before is dropped for OUT_NS only */
 
 bool session_is_tile(const struct session *session)
 {

@@ -39,7 +39,7 @@ const char *session_scope_find_view(const struct plant_services *services, enum 
 static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    /* bare: gives no readings, because opening a view must not save a baseline, which needs the role operator */
+    /* bare: omits the readings: with them, opening a view would save a baseline, for which a user needs the role operator */
     const struct params_context params = { .scene = context->services->scene, .baselines = context->services->baselines, .bare = true };
     struct view read;
     const char *address = session_scope_find_view(context->services, session->identity.role, &session->identity.holder, id, "named", error);
@@ -189,7 +189,7 @@ static bool shows_note(const struct session *session, const json_t *item)
 static const struct {
     const char *type, *list;
     bool (*keeps)(const struct session *session, const json_t *item);
-    bool of_tags; /* true: only for a display without pictures is the list filtered, by the tags that it shows */
+    bool of_tags; /* true: the list is filtered only for a display without pictures, which gets the entries for the tags that it shows */
 } filters[] = {
     { "tags", "values", shows_row, true },  { "alarms", "alarms", shows_alarm, true }, { "views", "list", shows_view, false },
     { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_own, false },

@@ -119,7 +119,7 @@ bool session_on_time(struct session *session, const struct time_request *request
     return true;
 }
 
-/* Moves playback on to the instant that is due now. Returns false if it has reached the present. */
+/* Advances playback to the instant that is due now. Returns false if playback has reached the present. */
 static bool step(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {
     struct travel *travel = &session->travel;

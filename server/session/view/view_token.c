@@ -16,8 +16,8 @@
 #include "session/session_impl.h"
 
 enum { MAC_BYTES = 32, DIGITS = 17 };
-/* lifetime of a view token; also the largest time by which a token may be from the future, because the clock of the daemon that made it may
-   be ahead */
+/* KEPT_NS: lifetime of a view token. SKEW_NS: how far in the future a token may be dated, because the clock of the daemon that
+   made it may be ahead */
 static const int64_t KEPT_NS = 86400 * NS_PER_S, SKEW_NS = 7200 * NS_PER_S;
 
 void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOKEN_KEY_BYTES])
@@ -87,7 +87,7 @@ char *view_token_make(const struct view_token_keys *keys, const struct session *
     return token;
 }
 
-/* Returns the length of the part of a view token that its MAC covers; 0: no key of `keys` has made that MAC. */
+/* Returns the length of the part of a view token that its MAC covers; 0: the MAC was made with none of `keys`. */
 static size_t find_signed(const struct view_token_keys *keys, const char *token)
 {
     const char *end = strrchr(token, '.');
