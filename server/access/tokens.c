@@ -124,7 +124,7 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
     while (n > 0 && strchr(" \t", line[n - 1]))
         line[--n] = 0;
     for (char *next = line; (next = strstr(next, key)); next++)
-        /* searches for the keyword only after the hash, because the holder's name in front of it may contain the keyword */
+        /* searches for the keyword only after the hash, because the holder's name may contain it */
         at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at;
     if (!at)
         return true;

@@ -20,7 +20,7 @@ struct audit_file {
    is extended anyway; the caller frees the description with mem_free. */
 int audit_file_open(struct audit_file *file, const char *path, size_t most_bytes, char **finding);
 void audit_file_close(struct audit_file *file); /* closes the file; accepts a zeroed struct that was never opened */
-/* Appends an entry. On success the whole entry is on disk; on failure no part of it is, and the chain is unchanged. The entry's
+/* Appends an entry. On success the whole entry is on disk; on failure nothing is, and the chain is unchanged. The entry's
    line is also appended to `line`. *finding receives NULL, or a description of changes that another program made to the file.
    */
 int audit_file_append(struct audit_file *file, const struct audit_entry *entry, int64_t utc_us, struct text *line, char **finding);

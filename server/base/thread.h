@@ -20,13 +20,13 @@ struct thread {
 void thread_init(struct thread *thread);
 /* Starts run(arg). Returns false if the thread cannot be created, logged as `NAME: no thread`. */
 bool thread_start(struct thread *thread, struct log *log, const char *name, void *(*run)(void *arg), void *arg);
-/* Sets `stopping`, wakes the thread and waits until it has ended. If the thread was never started, only sets `stopping`. */
+/* Sets `stopping`, wakes the thread and waits until it has ended. If the thread was never started, it only sets `stopping`. */
 void thread_stop(struct thread *thread);
 void thread_finish(struct thread *thread);
-/* Returns true if the thread must end. Takes the lock. */
+/* Returns true if the thread must end. Locks the thread's lock. */
 bool thread_is_stopping(struct thread *thread);
-/* Waits until *next_ns plus the period, or not at all if that time has passed, and stores it in *next_ns. Returns false once the thread
-   must end. Takes the lock. Thread: the thread itself. */
+/* Waits until *next_ns plus the period, or not at all if that time has passed, and stores that time in *next_ns. Returns false
+   once the thread must end. Locks the thread's lock. Thread: the thread itself. */
 bool thread_wait_for_tick(struct thread *thread, int64_t period_ns, int64_t *next_ns);
 
 #endif

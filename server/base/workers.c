@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fixed pool of threads fed from one list of jobs. */
+/* A fixed pool of threads that take jobs from one list. */
 #include "base/workers.h"
 
 #include <pthread.h>
@@ -101,7 +101,7 @@ void workers_submit(struct workers *workers, void (*run)(void *arg), void *arg)
     pthread_mutex_unlock(&workers->lock);
 }
 
-/* One call of workers_for() in progress. The caller and its helper jobs share it; the last one to finish frees it. */
+/* A call of workers_for() in progress. The caller and its helper jobs share the struct; the last to finish frees it. */
 struct loop {
     size_t count, grain;
     void (*body)(void *arg, size_t begin, size_t end);
@@ -148,7 +148,7 @@ static void loop_help(void *arg)
     loop_unref(arg);
 }
 
-/* Starts a parallel loop: queues one helper job for each worker thread that shall help the caller. */
+/* Starts a parallel loop: queues a helper job for each worker thread that is to help the caller. */
 static struct loop *loop_begin(struct workers *workers, const struct loop *like)
 {
     struct loop *loop = mem_new(sizeof(*loop));

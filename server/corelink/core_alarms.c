@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts alarms to JSON and back; alarms are named by tag or device name and kind. Times are sent as ages as well, so that the clocks of
-   the daemons' machines need not agree. */
+/* Converts alarms to JSON and back; an alarm is identified by its kind and the name of its tag or device. Times are also sent
+   as ages, so that the daemons' machines need no common clock. */
 #include "corelink/core_alarms.h"
 
 #include <math.h>
@@ -116,7 +116,7 @@ static bool read_row(const json_t *one, struct journal_entry *out)
                 get_number(one, "before", 0, ALARM_STATUSES - 1, &before) && get_number(one, "after", 0, ALARM_STATUSES - 1, &after) &&
                 get_number(one, "priority", 1, ALARM_PRIORITIES, &out->alarm.priority);
     if (good) {
-        out->has_unit = get_text(one, "unit", out->unit, sizeof(out->unit)); /* programs of earlier versions do not send the unit */
+        out->has_unit = get_text(one, "unit", out->unit, sizeof(out->unit)); /* earlier versions of the program do not send the unit */
         out->event = (enum alarm_event)event;
         out->before = (enum alarm_status)before;
         out->after = (enum alarm_status)after;
@@ -124,8 +124,8 @@ static bool read_row(const json_t *one, struct journal_entry *out)
     return good;
 }
 
-/* Writes the rows that the core's alarm journal got (`rows`) to this daemon's journal. Call it before the alarm states that result from
-   these rows are stored in the same file. Returns NULL, or what is wrong with the rows (static). */
+/* Copies the core's new alarm journal rows (`rows`) to this daemon's journal. Call it before the alarm states that result from
+   these rows are stored in the same file. Returns NULL, or what is wrong with the rows (static text). */
 static const char *take_rows(struct alarm_service *service, const json_t *rows)
 {
     const json_t *one;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asks the core for recorded data over HTTP, by libcurl. */
+/* Queries the core for recorded data over HTTP, with libcurl. */
 #include "corelink/core_history.h"
 
 #include <stdatomic.h>
@@ -18,7 +18,7 @@ struct core_history {
     struct core_link *link;
     const _Atomic bool *stop;
     struct http_request request;
-    /* text of the last error that was logged, so that a repeated error is not logged again; empty: the last query succeeded */
+    /* text of the last logged error, so that a repeated error is not logged again; empty: the last query succeeded */
     char said[CURL_ERROR_SIZE + 100];
 };
 
@@ -65,7 +65,7 @@ static bool fail(struct core_history *history, const char *path, const char *why
     return false;
 }
 
-/* Logs a query that the core refused, with the first line of the core's answer. */
+/* Logs that the core refused a query, with the first line of the core's answer. */
 static bool refused(struct core_history *history, const char *path, long status, const char *text)
 {
     char why[120];
@@ -85,7 +85,7 @@ bool core_history_get(struct core_history *history, const char *path, struct tex
     curl_easy_setopt(request->handle, CURLOPT_URL, url);
     if (peer.ca_path)
         curl_easy_setopt(request->handle, CURLOPT_CAINFO, peer.ca_path);
-    size_t begin = out->length; /* the HTTP answer is appended to the text that *out already has */
+    size_t begin = out->length; /* appends the HTTP answer to the text already in *out */
     request->answer = *out;
     request->most_bytes = begin + MAX_ANSWER_BYTES;
     request->error[0] = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the readings of a past instant to bytes and back, little-endian: "PCI1", number of readings, start of the history; then for each
-   tag in the plant's order: quality, alarm and its state, value, age, source time. */
+/* Converts the readings at a past instant to bytes and back, little-endian: "PCI1", number of readings, start of the history;
+   then for each tag in the plant's order: quality, alarm and its state, value, age, source time. */
 #include "corelink/core_instant.h"
 
 #include <endian.h>

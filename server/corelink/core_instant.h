@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the readings of a past instant, as a core recorded them, to bytes for a renderer and back. Pure. Thread: any. */
+/* Serialises the readings at a past instant, as recorded by a core, for a renderer, and parses them. Pure. Thread: any. */
 #ifndef CORELINK_CORE_INSTANT_H
 #define CORELINK_CORE_INSTANT_H
 #include "base/text/text.h"
@@ -10,8 +10,8 @@ enum { CORE_INSTANT_HEAD_BYTES = 16, CORE_INSTANT_READING_BYTES = 32 };
 
 /* Appends the message with the readings. first_us: start of the core's history, 0: none. snapshot NULL: the message has only first_us. */
 void core_instant_write(struct text *out, int64_t first_us, const struct snapshot *snapshot);
-/* Reads a message into *snapshot, which has a reading for each tag; the snapshot's clocks stay unchanged. snapshot NULL: reads only
-   *first_us. Returns NULL, or what is wrong with the message (static). */
+/* Parses a message into *snapshot, which has a reading for each tag; the snapshot's clocks stay unchanged. snapshot NULL:
+ * parses only first_us. Returns NULL, or what is wrong with the message (static text). */
 const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us, struct snapshot *snapshot);
 
 #endif

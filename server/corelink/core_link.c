@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread of a renderer or standby that connects to a core, handles the core's messages and sends queued messages. */
+/* The thread on a renderer or standby that connects to a core, handles the core's messages and sends queued ones. */
 #include "corelink/core_link.h"
 
 #include <arpa/inet.h>
@@ -27,13 +27,13 @@
 
 enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length in bytes of an act (a user's action that a renderer forwards to the core); below the
                                       core's own limit */ };
-/* MAX_MESSAGE_BYTES: largest message that is accepted from the core */
+/* MAX_MESSAGE_BYTES: largest message accepted from the core */
 enum { MAX_MESSAGE_BYTES = 64 << 20, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* CLOCKS_NS: clock difference between core and renderer above
                                                                             which a warning is logged */;
-/* differences between this machine's clock and the core's below this are not corrected, so that the clock that pages show does not jump */
+/* smaller differences between this machine's clock and the core's are not corrected, so that the clock on the pages does not jump */
 static const int64_t STEP_NS = 500 * NS_PER_MS;
-/* messages that the network delayed by more than this are not used to compare the clocks */
+/* messages delayed by the network for longer than this are not used to compare the clocks */
 static const int64_t QUICK_NS = 100 * NS_PER_MS;
 
 struct pending_request {
@@ -42,26 +42,27 @@ struct pending_request {
 
 struct core_link {
     struct core_link_params params;
-    char authorization[TOKEN_BYTES + 16]; /* value of the HTTP header `Authorization`; empty: none */
+    char authorization[TOKEN_BYTES + 16]; /* value of the HTTP header `Authorization`; empty: not sent */
     int stop_fd;
     counter *up[CORE_URLS], *connects, *refused, *behind;
     /* --- below: used only by the link's thread */
-    struct mirrored *readings; /* memory for one reading of each tag, into which messages are read */
+    struct mirrored *readings; /* buffer with room for one reading of each tag, into which messages are parsed */
     struct text in;
     struct lws *wsi;
     struct host_turn turn;
     struct {
         /* count: number of addresses of the core's host name, at most ADDRESSES; index: the address to try next */
         int count, index;
-        char said[ADDRESSES][WHY_BYTES]; /* for each address: the last logged reason why there was no connection */
+        char said[ADDRESSES][WHY_BYTES]; /* by address: last logged reason for failing to connect */
     } hosts[CORE_URLS];
-    int address;                                       /* index of the core's address that the link tries now */
-    /* heard_ns: time of the core's newest message. least_ns: smallest difference of the two machines' monotonic clocks on this connection.
-       readings_ns: arrival time of the previous message with readings. core_readings_read() takes and updates both */
+    int address;                                       /* index of the core's address that the link is trying */
+    /* heard_ns: time of the core's newest message. least_ns: smallest difference between the two machines' monotonic clocks on
+       this connection. readings_ns: arrival time of the previous message with readings. core_readings_read() uses and updates
+       the last two */
     int64_t heard_ns, begun_ns, least_ns, readings_ns;
-    /* votes: this standby gets no readings over the connection, but answers the leader's questions whether it promises not to take over */
+    /* votes: this standby gets no readings over the connection, but promises the leader, when asked, not to take over */
     bool ended, taken, votes, introduced, clock_said;
-    /* true: the connection failed because this node or the core is configured wrongly; false: the connection was lost */
+    /* true: the connection failed because this node or the core is misconfigured; false: the connection was lost */
     bool at_fault;
     char why[WHY_BYTES]; /* why this connection ended */
     struct thread thread;
@@ -69,8 +70,8 @@ struct core_link {
     struct lws_context *context; /* libwebsockets context of the connection to the core; NULL: not connected */
     bool is_up;
     uint64_t session; /* number of the connection over which readings arrive, unique among all links of this process */
-    int up_index;     /* index in params.urls of the core that sends readings */
-    struct text *out; /* messages that wait to be sent to the core */
+    int up_index;     /* index in params.urls of the core that is sending readings */
+    struct text *out; /* messages queued for sending to the core */
     size_t out_count, out_capacity;
     struct pending_request waiting[CORE_ACTS];
     uint64_t last_id;
@@ -129,13 +130,13 @@ static void queue(struct core_link *link, char *text)
     struct text *out = &link->out[link->out_count++];
     const char room[LWS_PRE] = { 0 };
     *out = (struct text){ 0 };
-    text_add_bytes(out, room, sizeof(room)); /* libwebsockets writes the frame header into this room, before the text */
+    text_add_bytes(out, room, sizeof(room)); /* libwebsockets writes the frame header to this space in front of the text */
     text_add_bytes(out, text, strlen(text));
     mem_free(text);
 }
 
-/* Packs an act (a user's forwarded action) into a message. Returns NULL if the message would be too long, because the core would then close
-   the connection. */
+/* Packs a forwarded user action into a message. Returns NULL if the message would be too long, because the core would then
+   close the connection. */
 static char *pack_act(const struct core_act *act, uint64_t id)
 {
     json_t *message = json_loads(act->text, 0, NULL);
@@ -189,7 +190,7 @@ static void end(struct core_link *link, const char *why)
     link->ended = true;
 }
 
-/* Ends the connection because of a fault that the core reported, or because the core's messages are faulty. */
+/* Ends the connection because the core reported a fault or sent faulty messages. */
 static void refuse(struct core_link *link, const char *why)
 {
     counter_inc(link->refused, 1);
@@ -197,7 +198,7 @@ static void refuse(struct core_link *link, const char *why)
     end(link, why);
 }
 
-/* Uses the connection from now on only for promises not to take the lead, which the leader needs. The leader's configuration differs from
+/* Restricts the connection to promises not to take the lead, which the leader needs. The leader's configuration differs from
    this daemon's, so its readings cannot be used here. */
 static void stay_to_vote(struct core_link *link, const char *why)
 {
@@ -261,7 +262,7 @@ static void on_links(struct core_link *link, const json_t *message)
             store_link_down(link->params.store, (int)i, now_ns);
 }
 
-/* Frees the entry of an act that was answered. Returns the id of the client that waits for the answer; 0: no client waits any more. */
+/* Frees the entry of an answered action. Returns the id of the client that waits for the answer; 0: none does any more. */
 static uint64_t take_waiting(struct core_link *link, uint64_t id)
 {
     uint64_t client = 0;
@@ -287,7 +288,7 @@ static void on_answer(struct core_link *link, const json_t *message)
     }
 }
 
-/* Answers the leader's request for a promise not to take the lead. Sends nothing if this core cannot promise that. */
+/* Answers the leader's request for a promise not to take the lead; sends nothing if this core cannot promise it. */
 static void on_lease(struct core_link *link, const json_t *message)
 {
     const json_t *number = json_object_get(message, "number"), *sent = json_object_get(message, "sent_age_ms");
@@ -301,8 +302,8 @@ static void on_lease(struct core_link *link, const json_t *message)
     lws_callback_on_writable(link->wsi);
 }
 
-/* Stores which recipients were notified of which alarms, as the leader reports it, so that alarms are not announced twice if this core
-   takes the lead. */
+/* Stores the leader's record of which recipients were notified of which alarms, so that no alarm is announced twice if this
+   core takes the lead. */
 static void on_told(struct core_link *link, const json_t *message)
 {
     const char *kept = json_string_value(json_object_get(message, "kept"));
@@ -342,7 +343,7 @@ static void on_text(struct core_link *link)
     json_decref(message);
 }
 
-/* Adjusts the clock that pages show to the core's clock. Readings are sent with their ages and need no common clock. */
+/* Adjusts the clock on the pages to the core's clock. Readings are sent with their ages and need no common clock. */
 static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t late_ns)
 {
     int64_t ahead_ns = core_utc_ns - clock_utc_ns();
@@ -396,7 +397,7 @@ static void on_bytes(struct core_link *link)
     }
     link->least_ns = readings.least_ns;
     link->readings_ns = readings.at_ns;
-    /* rejects readings that a slow network delayed, or that arrived while this machine slept: they are too old */
+    /* rejects readings that are too old: a slow network delayed them, or this machine slept when they arrived */
     if (readings.late_ns > CORE_SILENT_NS) {
         end(link, "readings arrive more than 2 s late");
         return;
@@ -501,7 +502,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: on_failure(link, in); break;
     case LWS_CALLBACK_CLIENT_RECEIVE: on_receive(link, in, len); return link->ended ? -1 : 0;
     case LWS_CALLBACK_CLIENT_WRITEABLE: return send_next(link);
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* another thread interrupted lws_service(): a message is queued, or this thread must end */
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* another thread interrupted lws_service(): a message is queued or this thread must end */
         if (link->wsi)
             lws_callback_on_writable(link->wsi);
         break;
@@ -522,7 +523,7 @@ struct link_wakeup {
     struct core_link *link;
 };
 
-/* Callback of a timer that does nothing: the timer makes lws_service() return regularly, so that the link's loop can do its work. */
+/* Does nothing. The timer makes lws_service() return regularly, so that the link's loop can do its work. */
 static void on_look(lws_sorted_usec_list_t *sul)
 {
     struct link_wakeup *look = lws_container_of(sul, struct link_wakeup, sul);
@@ -574,8 +575,8 @@ bool core_link_peer(struct core_link *link, struct core_peer *out)
     return true;
 }
 
-/* Resolves the host name of a core with a timeout, which the system's resolver and libwebsockets lack. Each call returns the next of the
-   host's addresses. Returns false with the reason in link->why. */
+/* Resolves a core's host name with a timeout, which the system's resolver and libwebsockets lack. Each call returns the next of
+   the host's addresses. Returns false with the reason in link->why. */
 static bool resolve(struct core_link *link, const struct core_url *url, char address[INET6_ADDRSTRLEN])
 {
     struct lookup *lookup = lookup_start(url->host, url->port);
@@ -652,7 +653,7 @@ static void watch_silence(struct core_link *link)
         end(link, "no readings received for 2 s");
 }
 
-/* Runs one connection to a core until it ends; link->why then has the reason. */
+/* Runs one connection to a core until it ends, and leaves the reason in link->why. */
 static void run_connection(struct core_link *link)
 {
     struct core_url url;
@@ -675,7 +676,7 @@ static void run_connection(struct core_link *link)
 
 /* --- the thread --------------------------------------------------------------------------------------------------------------- */
 
-/* Tells all clients that wait for the result of a forwarded action that the outcome is unknown. */
+/* Tells all clients that wait for the result of a forwarded action that its outcome is unknown. */
 static void answer_waiting(struct core_link *link)
 {
     for (size_t i = 0; i < CORE_ACTS; i++) {
@@ -690,7 +691,7 @@ static void answer_waiting(struct core_link *link)
     }
 }
 
-/* Makes all readings Bad after the loss of the core. */
+/* Makes all readings Bad because the core is lost. */
 static void lost(struct core_link *link)
 {
     const struct plant *plant = link->params.plant;
@@ -711,15 +712,15 @@ static void lost(struct core_link *link)
     memcpy(said, link->why, WHY_BYTES);
 }
 
-/* Selects the address to connect to next: the next address of this core's host name or, after the last one, the next core. Returns the
-   monotonic time at which to try it. */
+/* Selects the next address to connect to: the next one of this core's host name or, after its last one, of the next core.
+   Returns the monotonic time at which to try it. */
 static int64_t take_turn(struct core_link *link)
 {
     int *index = &link->hosts[link->turn.index].index, count = link->hosts[link->turn.index].count;
     *index = count ? (link->address + 1) % count : 0;
     if (*index)
         return clock_mono_ns();
-    if (link->turn.backoff.failures > 1) /* keeps the reconnect delay at about a second at most, because operators are waiting */
+    if (link->turn.backoff.failures > 1) /* limits the reconnect delay to about a second, because operators are waiting */
         link->turn.backoff.failures = 1;
     return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }
@@ -779,9 +780,9 @@ struct core_link *core_link_start(const struct core_link_params *params)
                      "Connections to a core given up: the core differs in version, plant or configuration, or refuses this node.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
                                         "Seconds by which the core's clock is ahead of this machine's.");
-    /* libwebsockets logs only errors and warnings, because the link's own loop logs its connections */
+    /* lets libwebsockets log only errors and warnings; the link's own loop logs its connections */
     lws_set_log_level(LLL_ERR | LLL_WARN, NULL);
-    /* this node has just loaded its plant, so an earlier refusal by the leader no longer prevents it from taking the lead */
+    /* this node has just loaded its plant, so an earlier refusal by the leader no longer keeps it from taking the lead */
     if (params->keeper)
         lease_keeper_set_refused(params->keeper, NULL);
     thread_init(&link->thread);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the present readings to bytes and back, little-endian: "PCR1", number of readings, the core's UTC and monotonic clocks; then for
-   each reading: tag, quality, value, age, source time. */
+/* Converts the current readings to bytes and back, little-endian: "PCR1", number of readings, the core's UTC and monotonic
+   clocks; then for each reading: tag, quality, value, age, source time. */
 #include "corelink/core_readings.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings from a core to its renderers, as bytes: value, quality, source time and age of each tag as the core has them. Pure. Thread:
-   any. */
+/* Readings sent by a core to its renderers, as bytes: value, quality, source time and age of each tag, as the core has them.
+   Pure. Thread: any. */
 #ifndef CORELINK_CORE_READINGS_H
 #define CORELINK_CORE_READINGS_H
 #include "base/text/text.h"
@@ -9,7 +9,7 @@
 
 enum { CORE_READINGS_HEAD_BYTES = 24, CORE_READING_BYTES = 32 };
 
-/* For each tag, the reading that one renderer was sent last. */
+/* The last reading of each tag that was sent to one renderer. */
 struct core_sent {
     size_t count;
     struct core_sent_reading {
@@ -21,24 +21,24 @@ struct core_sent {
 
 void core_sent_init(struct core_sent *sent, size_t tag_count);
 void core_sent_finish(struct core_sent *sent);
-/* Appends a message with the readings that differ from those in *sent, and stores them there. If no reading differs, the message only shows
-   that the core is alive. */
+/* Appends a message with the readings that differ from those in *sent, and updates *sent. If no reading differs, the message
+   only shows that the core is alive. */
 void core_readings_write(struct text *out, const struct snapshot *snapshot, struct core_sent *sent);
 
 struct core_readings {
     int64_t utc_ns; /* the core's UTC clock when it took the readings */
-    /* smallest difference between this machine's monotonic clock and the core's clock in a message, over all messages of this connection;
-       the caller sets it to INT64_MAX for a new connection */
+    /* smallest difference between this machine's monotonic clock and the core's over all messages of this connection; the
+       caller sets it to INT64_MAX for a new connection */
     int64_t least_ns;
     int64_t at_ns;   /* arrival time of this connection's previous message; the caller sets it to 0 for a new connection */
-    /* time by which this message was slower than the connection's fastest message; the ages of the readings already include it */
+    /* extra delay of this message, compared with the fastest message of the connection; already included in the ages of the readings */
     int64_t late_ns;
     size_t count;
-    struct mirrored *at; /* array for one reading of each tag, which the caller provides */
+    struct mirrored *at; /* array with room for one reading of each tag, provided by the caller */
 };
 
-/* Reads a message that arrived at now_mono_ns into out->at, which has room for tag_count readings. Returns NULL, or what is wrong with
-   the message (static). */
+/* Parses a message that arrived at now_mono_ns into out->at, which has room for tag_count readings. Returns NULL, or what is
+   wrong with the message (static text). */
 const char *core_readings_read(struct core_readings *out, size_t tag_count, const void *bytes, size_t count, int64_t now_mono_ns);
 
 #endif

@@ -14,7 +14,7 @@ static const char MAGIC[4] = { 'P', 'C', 'S', '1' };
 
 struct core_samples {
     struct store *store;
-    pthread_mutex_t lock; /* protects the queue of samples; may be taken while the lock of the store of readings is held */
+    pthread_mutex_t lock; /* protects the queue of samples; may be taken while holding the store's lock */
     /* --- below: under `lock` */
     struct sample_event *at;
     size_t count, capacity;
@@ -39,7 +39,7 @@ struct core_samples *core_samples_listen(struct store *store)
     struct core_samples *samples = mem_new(sizeof(*samples));
     samples->store = store;
     pthread_mutex_init(&samples->lock, NULL);
-    /* gets from the store the same samples that this daemon's historian gets, so that the standby records the same points */
+    /* receives the same samples from the store as this daemon's historian, so that the standby records the same points */
     store_listen_all(store, on_sample, samples);
     return samples;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Samples (readings in the order in which they arrived) from a core to its standby, as bytes. The standby records them as the core does.
+/* Samples (readings in order of arrival) sent by a core to its standby, as bytes. The standby records them as the core does.
    Thread: any. */
 #ifndef CORELINK_CORE_SAMPLES_H
 #define CORELINK_CORE_SAMPLES_H
@@ -13,19 +13,19 @@ enum {
     CORE_SAMPLES_MOST = 2000000   /* maximum number of queued samples */
 };
 
-/* Queue of samples that are to be sent to one standby. */
+/* Queue of samples to be sent to one standby. */
 struct core_samples;
-/* From now on, queues all samples that the store of readings gets. The store must outlive the queue. */
+/* Starts queueing all samples that the store receives. The store must outlive the queue. */
 struct core_samples *core_samples_listen(struct store *store);
 void core_samples_end(struct core_samples **samples); /* Frees the queue and sets *samples to NULL; accepts a pointer to NULL. */
-/* Appends a message with the oldest queued samples, at most CORE_SAMPLES_AT_ONCE, and removes them from the queue. Returns their number;
-   0: the queue is empty, nothing was appended; -1: the queue overflowed and samples are lost. */
+/* Moves the oldest queued samples, at most CORE_SAMPLES_AT_ONCE, to a message appended to `out`. Returns their number; 0: the
+   queue is empty and nothing was appended; -1: the queue overflowed and samples are lost. */
 int core_samples_write(struct core_samples *samples, struct text *out);
 
-/* Returns whether a message contains samples (core_samples_write()). */
+/* Returns true if a message contains samples (core_samples_write()). */
 bool core_samples_is(const void *bytes, size_t count);
-/* Reads a message with samples into *out (free with mem_free()), with times of this machine's monotonic clock. Returns NULL, or what is
-   wrong with the message (static). */
+/* Parses a message with samples into *out (free with mem_free()), with times of this machine's monotonic clock. Returns NULL,
+   or what is wrong with the message (static text). */
 const char *core_samples_read(struct sample_event **out, size_t *out_count, size_t tag_count, const void *bytes, size_t count,
                               int64_t now_mono_ns);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rule of the lease (lease.h) as a state machine: which core may lead until when, and which promise forbids which core to bid. */
+/* The rules of the lease (lease.h) as a state machine: which core may lead until when, and which promise keeps which core from bidding. */
 #include "corelink/lease.h"
 
 #include <stdio.h>
@@ -26,7 +26,7 @@ static bool is_same(const struct lease_row *a, const struct lease_row *b)
     return a->epoch == b->epoch && a->beat == b->beat;
 }
 
-/* Makes this node the leader. It must not act as leader before a renewal is confirmed. */
+/* Makes this node the leader. It must not act as leader until a renewal is confirmed. */
 static void lead(struct lease *lease)
 {
     lease->leads = true;
@@ -37,18 +37,18 @@ static void lead(struct lease *lease)
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
 {
     bool same = lease->known && is_same(row, &lease->row);
-    /* the row's offer of the lease to this node counts only if the row has the epoch that this node saw before: a row of another epoch may
-       be an old one, from a restored database */
+    /* an offer of the lease to this node counts only in a row of the epoch that this node has seen: a row of another epoch may
+       be an old one from a restored database */
     if (!same)
         lease->offered = lease->known && row->epoch == lease->row.epoch && !row->leader[0] && !strcmp(row->standby, lease->node);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
         lease->lost = true;
-    /* the row names this node as leader, so its bid succeeded, although the database's answer was lost */
+    /* the row names this node as leader, so its bid succeeded, although the database's answer got lost */
     else if (!lease->leads && lease->bids && is_ours(lease, row))
         lead(lease);
     else if (!same)
-        /* the row has changed since this node sent its bid. Even if the bid reaches the database late, it can no longer succeed, so this
-           node stops waiting for its outcome */
+        /* the row has changed since this node sent its bid: even if the bid reaches the database late, it can no longer
+           succeed, so this node stops waiting for its outcome */
         lease->bids = false;
     if (!same)
         lease->seen_ns = now_ns;
@@ -111,7 +111,7 @@ bool lease_promise(struct lease *lease, int64_t now_ns)
 
 void lease_renew(struct lease *lease, const char *standby)
 {
-    /* the renewal will write another standby into the row, so promises of the previous standby no longer count */
+    /* the renewal is about to name another standby in the row, so the previous standby's promises no longer count */
     if (strcmp(lease->counts, standby) != 0)
         lease->counts[0] = 0;
 }

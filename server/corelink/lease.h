@@ -1,31 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The lease: the rule by which two cores agree which core leads, that is, polls the devices and owns the alarms. Pure: time is an argument.
-   Thread: one at a time. Three parties vote: the leader, its standby, and a row in a database. The leader may act for LEASE_HOLD_NS from
-   when it sent the last confirmed request: either a renewal of the row, or a question to the standby that was answered by a promise not to
-   bid for LEASE_NS. A follower may bid for the row only if it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and
-   the row names it as standby or names no standby. A bid changes the row only if the row is still as the bidder saw it, so one of two bids
-   wins, and a leader that has renewed meanwhile stays. A leader that ends gives the lease: it stops acting, and then removes itself from
-   the row and names the node that may bid at once. A follower that saw the former leader in the row of the same epoch needs no wait,
-   because its promise bound it only to that leader. After LEASE_NS, any node may bid for a row that was given. The leader counts only
-   promises of the node that the row names as its standby, as confirmed by a renewal: no other node may bid. A leader whose standby is in
-   maintenance names itself as standby, and promises itself without a message. LEASE_HOLD_NS is shorter than LEASE_NS by more than the
-   clocks of two machines can drift apart in that time. Clocks of different machines are never compared. */
+/* The lease: the rule by which two cores agree which core leads, that is, polls the devices and owns the alarms. Pure: the
+   caller passes the time. Thread: one at a time. Three parties vote: the leader, its standby, and a row in a database. The
+   leader may act for LEASE_HOLD_NS from the time when it sent the last confirmed request. Such a request is a renewal of the
+   row, or a question that the standby answered with a promise not to bid for LEASE_NS. A follower may bid for the row only if
+   it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and the row names it as standby or names no
+   standby. A bid changes the row only if the row is still as the bidder saw it. So one of two bids wins, and a leader that has
+   renewed in the meantime stays leader. A leader that shuts down gives the lease: it stops acting, then removes itself from the
+   row and names the node that may bid at once. A follower that saw the former leader in the row of the same epoch need not
+   wait, because its promise bound it only to that leader. After LEASE_NS, any node may bid for a row that was given. The leader
+   counts only promises of the node that the row names as its standby, as confirmed by a renewal: no other node may bid. A
+   leader whose standby is in maintenance names itself as standby, and makes promises to itself without a message. LEASE_HOLD_NS
+   is shorter than LEASE_NS by more than the clocks of two machines can drift apart in that time. Clocks of different machines
+   are never compared. */
 #ifndef CORELINK_LEASE_H
 #define CORELINK_LEASE_H
 #include <stdbool.h>
 #include <stdint.h>
 
-/* time without a renewal after which a core that follows the leader may bid for the lease */
+/* time without a renewal after which a follower may bid for the lease */
 #define LEASE_NS (3 * INT64_C(1000000000))
-#define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* time for which a leader may act after a confirmed request was sent */
+#define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* how long a leader may act after sending a request that is confirmed */
 #define LEASE_RENEW_NS (500 * INT64_C(1000000)) /* interval between renewals */
-#define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval at which a core that does not lead reads the row in the database */
+#define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval at which a follower reads the row in the database */
 enum { LEASE_NODE_BYTES = 64 };
 
-struct lease_row {    /* row of the lease in the database */
+struct lease_row {    /* the lease's row in the database */
     int64_t epoch;    /* number that increases with each new leader */
-    int64_t beat;     /* number of the row's version; increases with each change of the row */
-    int64_t instance; /* random number of the leader's process, by which a restarted core differs from its former process */
+    int64_t beat;     /* version of the row; increases with each change of the row */
+    int64_t instance; /* random number of the leader's process; distinguishes a restarted core from its former process */
     /* unique names of the cores. leader empty: the last leader gave the lease, to `standby` if that is not empty. standby empty: there is
        no standby */
     char leader[LEASE_NODE_BYTES], standby[LEASE_NODE_BYTES];
@@ -37,47 +39,47 @@ struct lease {
     struct lease_row row; /* the row of the database as this core last read or wrote it */
     bool known;           /* true: `row` is valid */
     bool leads;
-    bool lost;                     /* true: this node was the leader, and another node leads now */
-    bool bids;                     /* true: a bid of this node is being sent, or its outcome is unknown */
-    bool gave;                     /* true: this node was the leader and gave the lease; it never bids again */
-    /* while another core leads: true: that core refused this node as its standby, so this node does not bid */
+    bool lost;                     /* true: this node was the leader, but another node leads now */
+    bool bids;                     /* true: a bid of this node is in flight, or its outcome is unknown */
+    bool gave;                     /* true: this node was the leader and gave the lease away; it never bids again */
+    /* while another core leads: true: that core refused this node as its standby, so this node must not bid */
     bool refused;
-    bool offered;                  /* while another core leads: true: that core has just given the lease to this node */
-    int64_t seen_ns;               /* while another core leads: time since which the row has not changed */
+    bool offered;                  /* while another core leads: true: that core has just offered the lease to this node */
+    int64_t seen_ns;               /* while another core leads: time when the row last changed */
     int64_t bound_ns;              /* while another core leads: time until which a promise forbids this node to bid */
     int64_t until_ns;              /* while this node leads: time until which it may act as leader */
-    char counts[LEASE_NODE_BYTES]; /* while this node leads: name of the standby whose promises extend the lease; empty: none */
+    char counts[LEASE_NODE_BYTES]; /* while this node leads: name of the standby whose promises count; empty: none */
 };
 
-/* Initialises a lease that this node does not hold. node: name of this node, shorter than LEASE_NODE_BYTES. instance: random number of
-   this process. */
+/* Initialises a lease that this node does not hold. node: name of this node, shorter than LEASE_NODE_BYTES. instance: random
+   number of this process. */
 void lease_init(struct lease *lease, const char *node, int64_t instance);
-/* Returns true if this node may act as the leader at this time. */
+/* Returns true if this node may act as the leader at now_ns. */
 bool lease_acts(const struct lease *lease, int64_t now_ns);
 
-/* Updates the lease from the row that the database returned at now_ns. A leader that finds another node in the row stops being the leader
-   (lease->lost). */
+/* Updates the lease with the row that the database returned at now_ns. A leader that finds another node in the row stops
+   leading (lease->lost). */
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns);
 
 /* --- for a follower --- */
 bool lease_may_bid(const struct lease *lease, int64_t now_ns);
-/* Call lease_bid() before sending a bid for the lease. Afterwards call lease_won() if the bid changed the row, or else lease_saw() with the
-   present row. */
+/* Call lease_bid() before sending a bid for the lease. Afterwards call lease_won() if the bid changed the row, or else
+   lease_saw() with the current row. */
 void lease_bid(struct lease *lease);
 void lease_won(struct lease *lease, int64_t sent_ns);
-/* Returns whether this node does not bid only because the leader refused it (lease->refused). */
+/* Returns true if this node could bid, were it not for the leader's refusal (lease->refused). */
 bool lease_is_barred(const struct lease *lease, int64_t now_ns);
-/* Promises the leader not to bid for the lease for LEASE_NS from now. Returns false if this node cannot promise that. */
+/* Makes the promise not to bid for the lease for LEASE_NS from now. Returns false if this node cannot promise that. */
 bool lease_promise(struct lease *lease, int64_t now_ns);
 
 /* --- for a leader --- */
-/* Call lease_renew() before sending a renewal that names `standby` ("": none) in the row. Afterwards call lease_renewed() if the renewal
-   changed the row. */
+/* Call lease_renew() before sending a renewal that names `standby` ("": none) in the row. Afterwards call lease_renewed() if
+   the renewal changed the row. */
 void lease_renew(struct lease *lease, const char *standby);
 void lease_renewed(struct lease *lease, const char *standby, int64_t sent_ns);
-/* Extends the lease, because the standby promised not to bid, in answer to a question sent at sent_ns. */
+/* Extends the lease because the standby answered a question sent at sent_ns with a promise not to bid. */
 void lease_promised(struct lease *lease, const char *standby, int64_t sent_ns);
-/* Ends this node's lead for ever. Call it before writing the row that gives the lease to another core. */
+/* Ends this node's leadership for good. Call it before writing the row that gives the lease to another core. */
 void lease_give(struct lease *lease);
 
 #endif

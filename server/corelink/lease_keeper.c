@@ -18,9 +18,9 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t MAX_TIMEOUT_NS = NS_PER_S, MIN_TIMEOUT_NS = 50 * NS_PER_MS;
-/* time for which the lease's row still names a standby after its connection ended, because during a reload the standby only reconnects */
+/* how long the row still names a standby after its connection ended: during a reload, the standby reconnects within this time */
 static const int64_t STANDBY_GRACE_NS = 10 * NS_PER_S;
-/* time before the kernel ends the process in which it can log the reason and shut down in order */
+/* time left for logging the reason and shutting down in order before the kernel kills the process */
 static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS;
 
 struct lease_keeper {
@@ -28,29 +28,29 @@ struct lease_keeper {
     struct plant_postgres postgres;
     char *plant, *node;
     int stop_fd;
-    timer_t timer; /* kernel timer that ends the process when the lease expires */
+    timer_t timer; /* kernel timer that kills the process when the lease expires */
     bool has_timer;
     struct {
         counter *active, *here, *epoch, *age, *database, *standby, *differs, *maintenance;
     } counters;
     /* --- below: used by the keeper's thread only */
-    struct postgres_link *link; /* connection to the database that has the lease's row; NULL: none */
-    bool looks;                 /* true: the present row is unknown and must be read from the database */
-    /* true: the last change of the row failed, so a successful read does not mean that the database works again */
+    struct postgres_link *link; /* connection to the database with the lease's row; NULL: none */
+    bool looks;                 /* true: the current row is unknown and must be read from the database */
+    /* true: the last change of the row failed, so a successful read does not prove that the database works again */
     bool refuses_changes;
     bool told_won, told_lost, told_alone, told_barred;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
-    /* version (`beat`) of the row when it first named another core with this core's name; -1: that core is alive, which was logged; 0: the
-       row has never named such a core */
+    /* version (`beat`) of the row when it first named another core with this core's name; -1: that core is alive, already
+       logged; 0: no such core seen */
     int64_t namesake_beat;
     struct thread thread;
     /* --- below: under thread.lock */
     struct lease lease;
-    char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was connected until gone_ns */
+    char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was until gone_ns */
     int64_t gone_ns;                /* time when the standby disconnected; 0: it is connected */
-    bool follows;                   /* true: the standby has this core's version and configuration */
-    char *refusal;                  /* why the leader refused this node; NULL: it did not */
-    bool gives;                     /* true: the row must still be changed, to give the lease to `standby` */
+    bool follows;                   /* true: the standby has the same version and configuration as this core */
+    char *refusal;                  /* why the leader refused this node; NULL: not refused */
+    bool gives;                     /* true: the row has yet to be changed to give the lease to `standby` */
     uint64_t asked;
     struct {
         uint64_t number;
@@ -58,7 +58,7 @@ struct lease_keeper {
     } questions[ASKED];
 };
 
-/* Returns the time by the clock that the lease uses: it continues while the machine sleeps, and nobody sets it. */
+/* Returns the time on the clock used for the lease: it keeps running while the machine sleeps, and nobody can set it. */
 static int64_t now_of_lease(void)
 {
     struct timespec now;
@@ -66,8 +66,8 @@ static int64_t now_of_lease(void)
     return (int64_t)now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/* Sets the kernel timer that ends this process to the time at which the lease ends. The kernel then ends the process even if it is stopped,
-   swapped out or in an endless loop. Call with the lock held. */
+/* Sets the kernel timer to end this process when the lease ends: even if it is stopped, swapped out or in an endless loop. Call
+   with the lock held. */
 static void set_timer(struct lease_keeper *keeper)
 {
     const struct lease *lease = &keeper->lease;
@@ -102,8 +102,7 @@ static void set_well(struct lease_keeper *keeper)
     counter_set(keeper->counters.database, 1);
 }
 
-/* Returns the time limit for database requests: for a leader the remaining time of its lease, at least MIN_TIMEOUT_NS; at most
-   MAX_TIMEOUT_NS. */
+/* Returns the timeout for database requests: a leader's remaining lease time, but at least MIN_TIMEOUT_NS; at most MAX_TIMEOUT_NS. */
 static int64_t request_timeout_ns(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -171,8 +170,8 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     return there;
 }
 
-/* Changes the lease's row in the database by the statement `sql`, if the row still equals `seen`. Returns 1 if it was changed, 0 if the row
-   differs, -1 if the outcome is unknown. */
+/* Changes the lease's row in the database with the statement `sql`, if the row still equals `seen`. Returns 1 if it was
+   changed, 0 if the row differs, -1 if the outcome is unknown. */
 static int change_row(struct lease_keeper *keeper, const char *sql, const struct lease_row *seen, const char *name, int64_t instance)
 {
     char epoch[NUMBER_BYTES], beat[NUMBER_BYTES], own[NUMBER_BYTES];
@@ -212,7 +211,7 @@ static int name_bytes(const char *node)
     return id ? (int)(id - node) : (int)strlen(node);
 }
 
-/* Logs a warning if another core with this node's name is alive. A dead one, which may be this node before its disk was replaced, no
+/* Logs an error if another core with this node's name is alive. A dead one (perhaps this node before its disk was replaced) no
    longer changes the row and is not reported. */
 static void look_for_namesake(struct lease_keeper *keeper, const struct lease_row *row)
 {
@@ -252,7 +251,7 @@ static void look(struct lease_keeper *keeper)
     memcpy(keeper->led_by, row.leader, sizeof(keeper->led_by));
 }
 
-/* Logs once that this node does not take over although nobody leads, because the leader had refused it as standby. */
+/* Logs once that this node does not take over, although nobody leads, because the leader refused it as standby. */
 static void tell_barred(struct lease_keeper *keeper, bool barred, char *refusal)
 {
     if (barred && !keeper->told_barred)
@@ -289,7 +288,7 @@ static void bid(struct lease_keeper *keeper)
     }
 }
 
-/* Extends the lease without the database while the row names this core itself as its standby: then no other core may bid. */
+/* Extends the lease without the database while the row names this core as its own standby, because no other core may bid then. */
 static void promise_itself(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -308,7 +307,7 @@ static void tell_maintenance(struct lease_keeper *keeper, bool alone)
     keeper->told_alone = alone;
 }
 
-/* Sends a renewal that names `standby` in the row. Returns whether the database confirmed it. */
+/* Sends a renewal that names `standby` in the row. Returns true if the database confirmed it. */
 static bool renew_for(struct lease_keeper *keeper, const char *standby)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -339,9 +338,9 @@ static void renew(struct lease_keeper *keeper)
     snprintf(standby, sizeof(standby), "%s", alone ? keeper->node : keeper->standby);
     memcpy(counts, keeper->lease.counts, sizeof(counts));
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* While the database does not confirm that the row names another standby, no promise extends the lease. So names another one only if
-       the database has just confirmed a renewal: otherwise the order to leave maintenance would end a leader whose database refuses
-       changes. */
+    /* Until the database confirms that the row names another standby, no promise extends the lease. So the row changes its
+       standby only right after the database has confirmed a renewal. Otherwise, the order to leave maintenance would end a
+       leader whose database refuses changes. */
     if (counts[0] && strcmp(counts, standby) != 0 && !renew_for(keeper, counts))
         return;
     if (!renew_for(keeper, standby))
@@ -351,8 +350,8 @@ static void renew(struct lease_keeper *keeper)
     tell_maintenance(keeper, alone);
 }
 
-/* Changes the row so that it gives the lease to another core. If that fails, the next turn reads the row and tries again, because a renewal
-   whose answer was lost may have changed the row. */
+/* Changes the row to give the lease to another core. If that fails, the next turn reads the row and tries again, because a
+   renewal whose answer was lost may have changed the row. */
 static void give(struct lease_keeper *keeper)
 {
     char standby[LEASE_NODE_BYTES];
@@ -371,7 +370,7 @@ static void give(struct lease_keeper *keeper)
         log_info(keeper->params.log, "lease: released");
 }
 
-/* Reports the changes of one turn of the keeper's thread: updates metrics, writes log lines, and calls won() and lost(). */
+/* Reports the changes after one turn of the keeper's thread: updates metrics, writes log lines, and calls won() and lost(). */
 static void tell(struct lease_keeper *keeper)
 {
     int64_t now_ns = now_of_lease();
@@ -409,7 +408,7 @@ static bool gives(struct lease_keeper *keeper)
     return gives;
 }
 
-/* Does one turn of the keeper's work: connects, reads the row, renews the lease or bids for it. Returns the time of the next turn. */
+/* Runs one turn of the keeper's work: connects, reads the row, renews the lease or bids for it. Returns the time of the next turn. */
 static int64_t take_turn(struct lease_keeper *keeper)
 {
     int64_t began_ns = now_of_lease();
@@ -427,12 +426,12 @@ static int64_t take_turn(struct lease_keeper *keeper)
         else if (keeper->link && !leads)
             bid(keeper);
     }
-    promise_itself(keeper); /* extends the lease a second time in this turn, because connecting to the database may have taken a second */
+    promise_itself(keeper); /* extends the lease once more in this turn, because connecting to the database may have taken a second */
     tell(keeper);
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* a leader wakes at the latest when its lease ends, because it must report that */
+    /* a leader wakes no later than the end of its lease, because it must report it */
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 

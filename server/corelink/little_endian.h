@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes little-endian numbers in messages between daemons, at any alignment. Pure. */
+/* Reads and writes little-endian numbers, at any alignment, in messages between daemons. Pure. */
 #ifndef CORELINK_LITTLE_ENDIAN_H
 #define CORELINK_LITTLE_ENDIAN_H
 #include <endian.h>

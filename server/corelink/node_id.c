@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the file FOLDER/node, which has the core's random number, the file's inode number, and the machine's id. */
+/* Reads and writes the file FOLDER/node, which contains the core's random number, the file's inode number, and the machine's id. */
 #include "corelink/node_id.h"
 
 #include <errno.h>
@@ -26,8 +26,8 @@ static void read_machine(char out[MACHINE_BYTES])
     mem_free(text);
 }
 
-/* Reads the core's random number from the file. Returns false if the folder was copied: the inode, or the machine's id, then differs from
-   the one in the file. */
+/* Reads the core's random number from the file. Returns false if the folder is a copy: the inode or the machine's id then
+   differs from the one in the file. */
 static bool read_id(struct node_id *id, unsigned long long inode, const char *machine)
 {
     char line[LINE_BYTES] = "", of[MACHINE_BYTES] = "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two frames tile by tile and encloses the differing tiles in rectangles. */
+/* Compares two frames tile by tile and covers the differing tiles with rectangles. */
 #include "encode/dirty_rects.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-/* cost of one additional rectangle (its header and tables), expressed as the number of pixels whose encoding takes as many bytes */
+/* cost of an additional rectangle (its header and tables), as the number of pixels whose encoding takes as many bytes */
 static const long PART_COST_PX = 4096;
 
 static const uint8_t *row(const struct frame *frame, int x_px, int y_px)
@@ -63,8 +63,7 @@ static bool overlap(const struct dirty_rect *a, const struct dirty_rect *b)
            b->y_px < a->y_px + a->height_px;
 }
 
-/* Returns how many more pixels, as a cost, one enclosing rectangle takes than the two rectangles that it replaces; negative: one rectangle
-   is cheaper. */
+/* Returns the cost in pixels of replacing two rectangles by one that encloses both; negative: one rectangle is cheaper. */
 static long growth(const struct dirty_rect *a, const struct dirty_rect *b)
 {
     struct dirty_rect all = around(a, b);
@@ -109,7 +108,7 @@ static void find_runs(const struct frame *before, const struct frame *now, struc
     }
 }
 
-/* Finds the pair of rectangles that costs least to replace by one (growth()). *a and *b receive their indices. Returns that cost. */
+/* Finds the pair of rectangles that is cheapest to merge (growth()); *a and *b receive their indices. Returns the cost. */
 static long cheapest(const struct rect_list *list, size_t *a, size_t *b)
 {
     long best = 0;
@@ -132,8 +131,7 @@ static void merge(struct rect_list *list, size_t a, size_t b)
     list->at[b] = list->at[--list->count];
 }
 
-/* Merges rectangles that are neighbours in the list until at most `enough` remain, so that the quadratic search for the best pair stays
-   cheap. */
+/* Merges adjacent rectangles of the list until at most `enough` remain, so that the quadratic search for the best pair stays cheap. */
 static void thin(struct rect_list *list, size_t enough)
 {
     for (size_t i = 0; i + 1 < list->count && list->count > enough;)

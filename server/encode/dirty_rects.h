@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dirty rectangles: finds which parts of a frame differ from the previous one. Pure. Thread: any. */
+/* Dirty rectangles: the parts of a frame that differ from the previous one. Pure. Thread: any. */
 #ifndef ENCODE_DIRTY_RECTS_H
 #define ENCODE_DIRTY_RECTS_H
 #include <stdbool.h>
@@ -11,8 +11,8 @@ struct dirty_rect {
     int x_px, y_px, width_px, height_px;
 };
 
-/* Finds disjoint rectangles that cover every pixel that differs between two frames of equal size. Returns the number of rectangles; 0:
-   the frames are equal. Edges are at multiples of DIRTY_RECTS_TILE_PX or at the frame's right and lower edge. */
+/* Finds disjoint rectangles that cover every pixel that differs between two frames of equal size. Returns the number of
+   rectangles; 0: the frames are equal. Edges lie at multiples of DIRTY_RECTS_TILE_PX or at the frame's right or lower edge. */
 int dirty_rects_find(const struct frame *before, const struct frame *now, struct dirty_rect out[DIRTY_RECTS_MAX]);
 /* returns true if two frames are equal; faster than dirty_rects_find() */
 bool dirty_rects_none(const struct frame *before, const struct frame *now);

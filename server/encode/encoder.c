@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of codecs, and code common to all codecs. */
+/* The table of codecs, and code shared by all codecs. */
 #include "encode/encoder.h"
 
 #include <errno.h>
@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "encode/encoder_impl.h"
 
-/* if a larger fraction of a frame than this changed, the whole frame is encoded: that costs less than its rectangles */
+/* if more than this fraction of a frame changed, the whole frame is encoded, which is cheaper than its rectangles */
 static const double MAX_DIRTY_SHARE = 0.6;
 static const struct encoder_impl *const table[] = {
     &jpeg_impl,
@@ -51,7 +51,7 @@ bool encoder_is_stream(const char *name)
     return impl && impl->is_stream;
 }
 
-/* Finds the rectangles of a frame that changed since `before`, a frame of the same view. Returns false if nothing changed. */
+/* Finds the rectangles of a frame that changed since `before`, an earlier frame of the same view. Returns false if nothing changed. */
 static bool find_dirty_rects(const struct encoder *encoder, const struct frame *frame, const struct frame *before, struct dirty_rect *rects,
                              int *count)
 {
@@ -65,7 +65,7 @@ static bool find_dirty_rects(const struct encoder *encoder, const struct frame *
     return true;
 }
 
-/* Returns true if two frames have equal arrows. Arrows are not in the pixels but are sent with the frame, so a frame with changed arrows
+/* Returns true if two frames have equal arrows. Arrows are sent separately from the pixels, so a frame whose arrows changed
    must be sent even if no pixel changed. */
 static bool arrows_equal(const struct frame *a, const struct frame *b)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interface between encoder.c, which has the table of codecs, and each codec. Private to encode/. */
+/* Interface between encoder.c, which has the table of codecs, and the codecs. Private to encode/. */
 #ifndef ENCODE_ENCODER_IMPL_H
 #define ENCODE_ENCODER_IMPL_H
 #include "encode/dirty_rects.h"
@@ -10,7 +10,7 @@ struct encoder_impl {
     bool is_stream;
     struct encoder *(*create)(struct log *log, const char *library);
     /* Encodes a frame and stores the packet in encoder->ready. count 0: encodes the whole frame. Otherwise the rectangles cover
-       everything that differs from params->before, and the codec encodes at least these. */
+       everything that differs from params->before, and the codec encodes at least them. */
     int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                 int count);
     void (*destroy)(struct encoder *encoder);
@@ -19,7 +19,7 @@ struct encoder_impl {
 struct encoder { /* common part of all codecs; first member of each codec's own struct */
     const struct encoder_impl *impl;
     struct log *log;
-    struct packet *ready; /* packet that send() made and encoder_receive() has not returned yet; NULL: none */
+    struct packet *ready; /* packet from send() that encoder_receive() has not returned yet; NULL: none */
 };
 
 extern const struct encoder_impl jpeg_impl, png_impl;

@@ -75,7 +75,7 @@ static int h264_send(struct encoder *encoder, struct frame *frame, const struct 
     struct h264_access_unit unit;
     struct h264_planes planes;
     char why[H264_WHY_BYTES];
-    (void)rects; /* dirty rectangles are ignored, because the encoder itself skips unchanged blocks */
+    (void)rects; /* dirty rectangles are ignored, because the encoder skips unchanged blocks itself */
     (void)count;
     int status = h264->functions->begin(h264->codec, frame->width_px, frame->height_px, &planes, why);
     if (status == 0) {

@@ -11,11 +11,11 @@
 #include "base/mem.h"
 #include "encode/h264_upload.h"
 
-/* Options of libavcodec's encoders. For x264: qcomp=1 gives every frame the same quality, however little moves; ipratio=1 makes key
-   frames no finer than others, since finer ones would only cause a peak of the bit rate. */
+/* Options of libavcodec's encoders. For x264: qcomp=1 keeps the quality constant over all frames, however little moves;
+   ipratio=1 makes key frames no finer than others, because finer ones would only cause a peak in the bit rate. */
 struct library {
     const char *name, *options;
-    /* true: quality can change with each frame (constant rate factor); false: the encoder has the constant quality in `options` */
+    /* true: the quality can change from frame to frame (constant rate factor); false: `options` fixes it */
     bool has_crf;
 };
 static const struct library libraries[] = {
@@ -89,7 +89,7 @@ static int failed(const struct h264_codec *h264, const char *what, int status, c
     return status == AVERROR(ENOMEM) ? -ENOMEM : -EIO;
 }
 
-/* Returns the number of slices for encoding in parallel: several only for frames for which one core would be too slow; with many cores
+/* Returns the number of slices for encoding in parallel: more than one only for frames too large for one core; with many cores,
    one per SLICED_PX pixels. */
 static int thread_count(int width_px, int height_px)
 {
@@ -100,8 +100,8 @@ static int thread_count(int width_px, int height_px)
     return (int)(parts < most ? parts : most);
 }
 
-/* Describes the frames to libavcodec. Colours are BT.601 at full range, as in JPEG: that is libyuv's fastest conversion, and browsers
-   reproduce it most exactly (with BT.709 at limited range, chromium is off by up to 12 of 255). */
+/* Describes the frames to libavcodec. Colours are BT.601 at full range, as in JPEG, because libyuv converts to it fastest and
+   browsers reproduce it most exactly (with BT.709 at limited range, chromium is off by up to 12 of 255). */
 static void describe(AVCodecContext *context, const struct h264_codec *h264)
 {
     context->width = (h264->width_px + 1) & ~1;
@@ -164,9 +164,9 @@ static int codec_begin(struct h264_codec *h264, int width_px, int height_px, str
     return 0;
 }
 
-/* Maps JPEG quality to x264's rate factor: 92 looks like rate factor 18, and 78 like 25. Below 78, the bit rate falls as JPEG's does,
-   and the look gets worse more slowly: with rate factors of 40 and above, nearly all blocks of a moving picture would be skipped and
-   show outdated content. */
+/* Maps JPEG quality to x264's rate factor: 92 looks like rate factor 18, and 78 like 25. Below 78, the bit rate falls as JPEG's
+   does, but the look degrades more slowly. With rate factors of 40 and above, nearly all blocks of a moving picture would be
+   skipped and show outdated content. */
 static double rate_factor(int quality)
 {
     static const double fine = 18, moving = 25;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264 with libavcodec: planar frames in, access units (encoded frames) out. No other code for encoding uses libavcodec, so that
+/* H.264 with libavcodec: planar frames in, access units (encoded frames) out. No other encoding code uses libavcodec, so that
    h264_lazy.c can load this module and libavcodec together on first use. Thread: one at a time per codec. */
 #ifndef ENCODE_H264_CODEC_H
 #define ENCODE_H264_CODEC_H
@@ -10,7 +10,7 @@
 #define H264_WHY_BYTES 320
 
 struct h264_codec;
-struct h264_planes { /* planes of a frame in YUV 4:2:0 at full range, filled by the caller; width and height are even */
+struct h264_planes { /* planes of a full-range YUV 4:2:0 frame, filled by the caller; width and height are even */
     uint8_t *at[3];
     int pitches[3];
     int width_px, height_px;
@@ -22,14 +22,14 @@ struct h264_access_unit {
 };
 
 struct h264_codec_functions {
-    /* Creates a codec. library: name of the libavcodec encoder. Returns NULL, with the reason in `why`, if libavcodec has no H.264
-       encoder of that name. */
+    /* Creates a codec. library: name of the libavcodec encoder. Returns NULL, with the reason in `why`, if libavcodec has no
+       H.264 encoder with that name. */
     struct h264_codec *(*create)(const char *library, char why[H264_WHY_BYTES]);
     void (*destroy)(struct h264_codec **codec); /* frees the codec and sets *codec to NULL; accepts a pointer to NULL */
-    /* Begins a frame of this size: *planes receives the planes that the caller must fill. A change of size restarts the stream. Returns
-       0; < 0: failed, with the reason in `why`. */
+    /* Begins a frame of this size: *planes receives the planes that the caller must fill. Changing the size restarts the
+       stream. Returns 0; negative: failed, with the reason in `why`. */
     int (*begin)(struct h264_codec *codec, int width_px, int height_px, struct h264_planes *planes, char why[H264_WHY_BYTES]);
-    /* Encodes the frame begun. quality: 1..100. key: make a key frame. Returns 0; < 0: failed, with the reason in `why`. */
+    /* Encodes the frame begun. quality: 1..100. key: make a key frame. Returns 0; negative: failed, with the reason in `why`. */
     int (*encode)(struct h264_codec *codec, int quality, bool key, struct h264_access_unit *out, char why[H264_WHY_BYTES]);
 };
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads the H.264 module on first use. The 120 libraries behind libavcodec take as long to load as everything else at the start of a
-   program. */
+/* Loads the H.264 module on first use. libavcodec's 120 libraries take as long to load as everything else at program start. */
 #include "base/system/module.h"
 #include "encode/h264_codec.h"
 

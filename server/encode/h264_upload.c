@@ -14,7 +14,7 @@ struct h264_upload {
     bool device;          /* true: the encoder accepts only frames in its device's memory */
 };
 
-/* Returns the pixel formats that the encoder accepts, ended by AV_PIX_FMT_NONE. NULL: any format. */
+/* Returns the pixel formats that the encoder accepts, terminated by AV_PIX_FMT_NONE. NULL: any format. */
 static const enum AVPixelFormat *formats_of(const AVCodec *codec)
 {
 #if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(61, 13, 100)
@@ -34,7 +34,7 @@ static bool takes(const AVCodec *codec, enum AVPixelFormat format)
     return !formats;
 }
 
-/* Returns the type of device in whose memory frames of this pixel format are. */
+/* Returns the type of device whose memory holds frames of this pixel format. */
 static enum AVHWDeviceType device_type(enum AVPixelFormat format)
 {
     for (enum AVHWDeviceType type = AV_HWDEVICE_TYPE_NONE; (type = av_hwdevice_iterate_types(type)) != AV_HWDEVICE_TYPE_NONE;) {

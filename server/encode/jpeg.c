@@ -56,13 +56,13 @@ static int padded(int px)
     return (px + JPEG_PAD_PX - 1) / JPEG_PAD_PX * JPEG_PAD_PX;
 }
 
-/* Returns an upper bound in bytes of the size of a rectangle's JPEG, as large as TurboJPEG's own bound. */
+/* Returns an upper bound on the size in bytes of a rectangle's JPEG, the same as TurboJPEG's own. */
 static size_t max_bytes(const struct dirty_rect *part)
 {
     return (size_t)padded(part->width_px) * (size_t)padded(part->height_px) * 6 + 2048;
 }
 
-/* Repeats the last column of each plane into the padding at its right. */
+/* Repeats the last column of each plane into the padding on its right. */
 static void extend(const struct yuv_planes *planes)
 {
     for (int c = 0; c < 3; c++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes JPEG with libjpeg. Its errors end the call by longjmp. */
+/* Writes JPEG with libjpeg. Its errors end the call with longjmp. */
 #include "encode/jpeg_write.h"
 
 #include <setjmp.h>
@@ -27,7 +27,7 @@ static void fail(j_common_ptr codec)
     longjmp(writer->failed, 1);
 }
 
-static void start(j_compress_ptr codec) /* does nothing; set_room() has already set the output buffer */
+static void start(j_compress_ptr codec) /* no-op: set_room() has already set the output buffer */
 {
     (void)codec;
 }
@@ -55,7 +55,7 @@ struct jpeg_writer *jpeg_writer_create(void)
         mem_free(writer);
         return NULL;
     }
-    jpeg_create_compress(&writer->codec); /* jpeg_create_compress() keeps the members err and client_data */
+    jpeg_create_compress(&writer->codec); /* jpeg_create_compress() preserves the members err and client_data */
     writer->to = (struct jpeg_destination_mgr){ .init_destination = start, .empty_output_buffer = need_room, .term_destination = start };
     writer->codec.dest = &writer->to;
     return writer;

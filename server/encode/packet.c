@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packets: an encoded frame with the frame's metadata but without its pixels. */
+/* Packets: an encoded frame with the frame's metadata, but without its raw pixels. */
 #include "encode/packet.h"
 
 #include <string.h>
@@ -16,12 +16,12 @@ static void *copy_of(const void *list, size_t count, size_t bytes_each)
     return copy;
 }
 
-/* Copies a frame without its pixels, because a packet may wait for a slow client and must not hold megabytes while it waits. The copy needs
-   references of its own to the record and the depth grids, because frame_unref() drops them. */
+/* Copies a frame without its pixels, because a packet may wait for a slow client and must not hold megabytes meanwhile. The
+   copy needs its own references to the record and the depth grids, because frame_unref() drops them. */
 static struct frame *without_pixels(const struct frame *frame)
 {
     struct frame *copy = mem_new(sizeof(*copy));
-    /* copies only the members from `view` on: those before include the reference count, which other threads change meanwhile */
+    /* copies only the members from `view` on: the ones before it include the reference count, which other threads may be changing */
     size_t plain = offsetof(struct frame, view);
     memcpy((char *)copy + plain, (const char *)frame + plain, sizeof(*copy) - plain);
     atomic_init(&copy->refs, 1);

@@ -9,7 +9,7 @@
 #include "render/frame.h"
 
 enum { PACKET_PARTS = 8, PACKET_SHA256_BYTES = 32 };
-struct packet_part { /* a rectangle of the frame, and the range of the packet's bytes that encodes the rectangle */
+struct packet_part { /* a rectangle of the frame, and the range of the packet's bytes that encodes it */
     int x_px, y_px, width_px, height_px;
     size_t begin, count;
 };
@@ -18,7 +18,7 @@ struct packet {
     _Atomic int refs;
     struct frame *frame; /* metadata of the frame, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
-    bool key;       /* true: the packet can be decoded without the previous packet */
+    bool key;       /* true: the packet can be decoded without earlier packets */
     bool is_signed; /* true: the bytes are a signed PNG file (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;

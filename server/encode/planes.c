@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Subsamples chroma with sharp colour edges: computes the mean of four pixels by libyuv, and again with weights where a colour meets a
-   grey. */
+/* Subsamples chroma while keeping colour edges sharp: averages four pixels with libyuv, and again with weights where a colour
+   meets a grey. */
 #include "encode/planes.h"
 
 #include <libyuv.h>
@@ -10,8 +10,8 @@
 #include "base/math/simd.h"
 
 enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* width and height of a tile, in chroma samples */
-enum { COLOUR = 16 };                              /* smallest chroma, in 8-bit steps from grey, with which a pixel counts as coloured */
-static const float GREY = 4; /* weight of a grey pixel in the weighted mean; a coloured pixel weighs this plus the square of its chroma */
+enum { COLOUR = 16 };                              /* smallest chroma, in 8-bit steps from grey, at which a pixel counts as coloured */
+static const float GREY = 4; /* weight of a grey pixel in the mean; a coloured pixel's weight is this plus the square of its chroma */
 
 size_t planes_bands(int height_px)
 {
@@ -23,8 +23,8 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-/* Returns true if a tile contains both coloured and grey pixels, so that the weighted mean is needed. Between two colours the plain mean is
-   as good. */
+/* Returns true if a tile contains both coloured and grey pixels and thus needs the weighted mean. Between two colours the plain
+   mean is as good. */
 static bool has_rim(uint8_t *const at[2], const int pitch[2], int width, int height)
 {
     bool colour = false, grey = true;
@@ -66,8 +66,7 @@ SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
         v[0][i] += v[1][i];
         weight[0][i] += weight[1][i];
     }
-    for (int i = 0; i < TILE_W; i++) { /* the mean chroma is between -127.5 and 127.5; adding 128.5 shifts it to positive numbers and
-                                          rounds it */
+    for (int i = 0; i < TILE_W; i++) { /* the mean chroma lies between -127.5 and 127.5; adding 128.5 makes it positive and rounds it */
         float part = 1 / (weight[0][2 * i] + weight[0][2 * i + 1]);
         out[0][i] = (uint8_t)least((int)((u[0][2 * i] + u[0][2 * i + 1]) * part + 128.5f), 255);
         out[1][i] = (uint8_t)least((int)((v[0][2 * i] + v[0][2 * i + 1]) * part + 128.5f), 255);
@@ -84,7 +83,7 @@ SIMD_AVX2 static void weigh_wide(const uint32_t *pixels, uint8_t out[2][TILE_W])
     weigh_pair(pixels, out);
 }
 
-/* Copies the pixels of a tile; beyond the picture's edge, the edge pixel is repeated. */
+/* Copies the pixels of a tile; beyond the picture's edge, repeats the edge pixel. */
 static void gather(const struct yuv_planes *planes, int x, int y, uint32_t pixels[2][2 * TILE_W])
 {
     int width = least(2 * TILE_W, planes->width_px - x);

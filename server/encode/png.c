@@ -35,7 +35,7 @@ static uint8_t *pack_rgb(const struct frame *frame)
     return packed;
 }
 
-/* Computes the SHA-256 of the pixels. If the library fails, `out` becomes all zero, which is no frame's hash. */
+/* Computes the SHA-256 of the pixels. If the library fails, `out` becomes all zero, which matches no frame. */
 static void hash_pixels(const struct frame *frame, const uint8_t *packed, uint8_t out[PACKET_SHA256_BYTES])
 {
     size_t bytes = 3 * (size_t)frame->width_px * (size_t)frame->height_px;
@@ -46,7 +46,7 @@ static void hash_pixels(const struct frame *frame, const uint8_t *packed, uint8_
 static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                     int count)
 {
-    (void)params; /* parameters are ignored: PNG is lossless and always encodes the whole frame */
+    (void)params; /* ignores the parameters: PNG is lossless and always encodes the whole frame */
     (void)rects;
     (void)count;
     png_image image = {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interpolates directions (directions.h): converts the readings and directions of sensors to vectors, and sums the vectors at points of the
-   surface. */
+/* Interpolates directions (directions.h): converts the sensors' readings and directions to vectors, and sums the vectors at
+   points of the surface. */
 #include "field/directions.h"
 
 #include <math.h>
@@ -10,8 +10,8 @@
 #include "field/layout.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6 /* metres; a point nearer to a sensor than this counts as being at the sensor */
-/* smallest fraction of a vector's length that must lie along the surface; the direction of a steeper vector is unknown */
+#define AT_ONE_PLACE 1e-6 /* metres; a point nearer than this to a sensor counts as being at the sensor */
+/* smallest fraction of a vector's length that must lie in the surface; a steeper vector has no known direction */
 #define MIN_TANGENT_PART 0.1
 
 static const float *angles_of(const struct field_layout *layout)
@@ -23,8 +23,8 @@ static const float *angles_of(const struct field_layout *layout)
 
 /* --- readings --------------------------------------------------------------------------------------------------------------- */
 
-/* Converts a bearing (degrees clockwise from north, seen from above) to a unit vector of the plant. North is +Y; in a plant whose up
-   axis is Y, it is -Z. */
+/* Converts a bearing (degrees clockwise from north, seen from above) to a unit vector of the plant. North is +Y, or -Z in a
+   plant whose up axis is Y. */
 static void from_bearing(const struct plant *plant, double degrees, double out[3])
 {
     double east = sin(degrees * M_PI / 180), north = cos(degrees * M_PI / 180);
@@ -78,8 +78,8 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 
 /* --- finding directions at positions on the surface ------------------------------------------------------------------------- */
 
-/* A sensor's vector, projected to the surface: `turn` is its angle to the sensor's reference vector, which parallel transport moves along
-   the surface; `length` is its length. */
+/* A sensor's vector, projected onto the surface. `turn`: its angle to the sensor's reference vector, which parallel transport
+   moves along the surface; `length`: its length. */
 struct spread {
     double turn, length;
     bool configured, known, uncertain;
@@ -115,8 +115,8 @@ static double mean_m(const struct field_layout *layout, enum distance_mode mode,
     return max_of(sum_m, AT_ONE_PLACE);
 }
 
-/* Computes the sensor's reference unit vector after parallel transport along the surface to the point. Returns false if no path leads
-   there. */
+/* Computes the sensor's reference unit vector at the point, after parallel transport along the surface. Returns false if no
+   path leads to the point. */
 static bool carry(const struct field_layout *layout, const float *angles, double turn, const struct direction_place *place, double out[3])
 {
     double normal[3];

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vectors on a surface, for groups whose sensors have directions (column `Direction` of the tag list). A vector's length is the field's
-   value, interpolated as usual. Its direction is that of sum_i w_i v_i with w_i = s_i / D_i^p, where v_i are the sensors' vectors, moved
-   along the surface to the point by parallel transport (prepared: preprocess/influence/transport.h). So opposite vectors on two sides of a
-   sphere do not cancel in between just because they point to opposite sides in space.
-   A direction is unknown where no sensor with a direction reaches, where a sensor without a usable direction or reading is nearer than all
-   others, where vectors cancel (|sum| < DIRECTION_LEAST times the sum of their lengths), and where a vector is nearly perpendicular to the
-   surface. Thread: any that may read the scene. */
+/* Vectors on a surface, for groups whose sensors have directions (column `Direction` of the tag list). A vector's length is the
+   field's value, interpolated as usual. Its direction is that of sum_i w_i v_i with w_i = s_i / D_i^p, where v_i are the
+   sensors' vectors after parallel transport along the surface to the point (prepared: preprocess/influence/transport.h). So
+   vectors on two sides of a sphere do not cancel in between merely because they point in opposite directions in space. A
+   direction is unknown where no sensor with a direction reaches, where a sensor without a usable direction or reading is nearer
+   than all others, where vectors cancel (|sum| < DIRECTION_LEAST times the sum of their lengths), and where a vector is nearly
+   perpendicular to the surface. Thread: any that may read the scene. */
 #ifndef FIELD_DIRECTIONS_H
 #define FIELD_DIRECTIONS_H
 #include "field/params.h"
@@ -15,16 +15,16 @@
 #define DIRECTION_LEAST 0.2
 
 struct sensor_direction {
-    float vector[3]; /* vector in the axes of the asset file; its length is the reading */
+    float vector[3]; /* vector in the axes of the asset file; its length is the reading's value */
     bool configured; /* the sensor has a direction */
-    bool known;      /* true: both the reading and the direction are usable (quality Good or Uncertain) */
+    bool known;      /* true: reading and direction are usable (quality Good or Uncertain) */
     bool uncertain;
 };
-/* Reads the vectors of the group's sensors on the asset, in the order of the prepared sensors. Returns the number of vectors; 0: the asset
-   shows no directions. The caller frees *out (mem_free). */
+/* Reads the vectors of the group's sensors on the asset, in the order of the prepared sensors. Returns the number of vectors;
+   0: the asset has no directions to show. The caller frees *out (mem_free). */
 size_t directions_read(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct sensor_direction **out);
 
-struct direction_place { /* a point of a triangle of the asset file */
+struct direction_place { /* a point on a triangle of the asset file */
     uint32_t corners[3];
     float weights[3], normal[3];
     uint32_t triangle; /* index of the triangle, for the caller's use; directions_find() ignores it */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the error of linear interpolation within triangles: compares it with the field at sample points. Samples only triangles in which
-   weights may be curved, more densely near sensors. */
+/* Measures the error of linear interpolation within triangles by comparing it with the field at sample points. Samples only
+   triangles in which the weights may be noticeably nonlinear, more densely near sensors. */
 #include "field/drawn_error.h"
 
 #include <math.h>
@@ -16,24 +16,24 @@
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-#define MAX_POWER 2.0f /* for interpolation shepard: largest power (exponent of the distance) at which STEP samples finely enough */
-/* For shepard: L^2 K / (6 d^2) bounds the error in a triangle, with L its longest side, d its distance to the nearest sensor, and K /
-   d^2 a bound of the weights' second derivative. */
+#define MAX_POWER 2.0f /* for interpolation shepard: largest power (exponent of the distance) for which STEP samples finely enough */
+/* For shepard, the error in a triangle is at most L^2 K / (6 d^2), with L its longest side, d its distance to the nearest
+   sensor, and K / d^2 a bound on the second derivative of the weights. */
 #define SHEPARD_ACCEPTED 6.0f
-/* for interpolation paper: largest side of triangles that need no samples, as a fraction of the distance to the nearest sensor and of
-   the radius R */
+/* for interpolation paper: longest side of a triangle that needs no samples, as a fraction of the distance to the nearest
+   sensor and of the radius R */
 #define PAPER_ACCEPTED 0.015f
-/* smallest power of shepard whose errors of distances are measured; below it, they changed no value by a colour step in tests */
+/* smallest power of shepard for which errors of distances are measured; below it, they changed no value by a colour step */
 #define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
-/* tolerated displacement in the picture of the border between data and no data, in steps of the byte scalar.lacking */
+/* how far, in steps of the byte scalar.lacking, the border between data and no data may be displaced in the picture */
 #define BORDER_SLACK 4
-#define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, all its vertices get an error */
+#define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, all its vertices are given an error */
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
-struct triangle_piece {  /* part of a triangle; the error is sampled at the middle of the piece's longest side */
-    uint32_t tri;        /* index of the triangle in the group of triangles evaluated together */
-    float corners[3][3]; /* barycentric coordinates of its corners */
+struct triangle_piece {  /* part of a triangle; the error is sampled at the midpoint of the piece's longest side */
+    uint32_t tri;        /* index of the triangle in its group of triangles evaluated together */
+    float corners[3][3]; /* barycentric coordinates of the piece's corners */
 };
 
 struct sampler { /* working memory of one thread that samples triangles */
@@ -44,9 +44,9 @@ struct sampler { /* working memory of one thread that samples triangles */
     struct weights *weights; /* weights at the sample points */
     struct weights_terms terms;
     double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
-    float *corners;        /* weights at the corners of the triangles: [member of the sum (sensor)][3 corners of each of GROUP triangles] */
+    float *corners;        /* weights at the triangles' corners: [member of the sum (sensor)][3 corners of each of GROUP triangles] */
     uint32_t *tris[GROUP]; /* vertex numbers of each triangle */
-    float *errors[GROUP];  /* destination of each triangle's measured error */
+    float *errors[GROUP];  /* where each triangle's measured error is stored */
     int pieces[GROUP];
     size_t tri_count;
     struct triangle_piece *queue;
@@ -62,7 +62,7 @@ struct drawn_error_job {
     const double *ones;
     uint32_t first;       /* number of the first triangle */
     float *errors;        /* error of each triangle */
-    float *vertex_errors; /* error of each vertex's value that errors of geodesic distances cause; NULL: not measured */
+    float *vertex_errors; /* error of each vertex's value due to errors of geodesic distances; NULL: not measured */
 };
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
@@ -94,8 +94,8 @@ static void sampler_finish(struct sampler *sampler)
     mem_free(sampler->queue);
 }
 
-/* Evaluates all sensors' weights at the sampled points. A sensor's final weight at a point is its element in sampler->weights divided by
-   the point's element in `total`. */
+/* Evaluates all sensors' weights at the sample points. A sensor's final weight at a point is its element in sampler->weights
+   divided by the point's element in `total`. */
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
@@ -164,8 +164,7 @@ static void split(struct sampler *sampler, const struct triangle_piece *piece, i
     enqueue(sampler, &half);
 }
 
-/* Returns true if a frame would show data at this point although the field has none there, because it interpolates from the triangle's
-   corners. */
+/* Returns true if a frame would show data at this point, interpolated from the triangle's corners, although the field has none there. */
 static bool hides_rim(const struct sampler *sampler, size_t point, const struct triangle_piece *piece, const float parts[3], bool *shown)
 {
     const uint32_t *corners = sampler->tris[piece->tri];
@@ -230,14 +229,14 @@ static void sample_group(struct sampler *sampler, float step)
 
 /* --- errors of distances ---------------------------------------------------------------------------------------------------- */
 
-/* Returns whether errors of geodesic distances change the field's values noticeably, which a high power causes. */
+/* Returns true if errors of geodesic distances change the field's values noticeably, as they do with a high power. */
 static bool amplifies_distances(const struct weights *weights)
 {
     return weights->distance != DISTANCE_EUCLIDEAN && weights->interpolation == INTERPOLATION_SHEPARD && weights->power >= AMPLIFYING_POWER;
 }
 
-/* If each weight is multiplied by a factor between `least` and `most`, the weighted mean v of readings changes by at most the sum of weight
-   times |factor - (least + most) / 2| times |reading - v|, divided by the sum of the new weights. */
+/* If each weight is multiplied by a factor between `least` and `most`, the weighted mean v of readings changes by at most the
+   sum of weight times |factor - (least + most) / 2| times |reading - v|, divided by the sum of the new weights. */
 double drawn_error_of_distances(const struct weights *weights)
 {
     if (!amplifies_distances(weights))
@@ -246,10 +245,10 @@ double drawn_error_of_distances(const struct weights *weights)
     return (most - least) / (2 * least);
 }
 
-/* Writes the error that errors of distances cause at each vertex of some blocks, for the worst readings. If one sensor's share of the
-   weights is `a`, the mean deviation of the readings is at most 2 a (1 - a) times their spread. The nearest sensor's share gives the
-   largest deviation if it is at least 1/2, else a = 1/2. Errors below half a colour step are left out: added to errors of interpolation
-   just below a step, they would mark most of the surface. */
+/* Writes each vertex's error due to errors of distances, for the worst possible readings, for some blocks. If one sensor has
+   the fraction `a` of the weights, the mean deviation of the readings is at most 2 a (1 - a) times their spread. The worst `a`
+   is the nearest sensor's if that is at least 1/2, else 1/2. Errors below half a colour step are ignored: added to
+   interpolation errors just below a step, they would mark most of the surface. */
 static void amplify_some(void *arg, size_t begin, size_t end)
 {
     const struct drawn_error_job *job = arg;
@@ -269,8 +268,8 @@ static void amplify_some(void *arg, size_t begin, size_t end)
 
 /* --- measuring the errors of an asset's triangles --------------------------------------------------------------------------- */
 
-/* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level, smaller
-   than the pixels that the level is drawn with. */
+/* Returns true if a triangle needs no samples: it is small compared with the distance to the nearest sensor or, in a coarse
+   level, smaller than the pixels with which the level is drawn. */
 static bool is_straight(const struct drawn_error_job *job, const uint32_t corners[3])
 {
     const struct weights *weights = job->weights;
@@ -318,9 +317,9 @@ static void prepare_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Returns the largest size of triangles that need no samples, as a fraction of the distance d to the nearest sensor; 0: all need
-   samples. Shepard's weights have a second derivative of at most K / d^2: it follows from those of D^-p, with p the power, D the
-   distance and |grad D| = 1. */
+/* Returns the largest size of triangles that need no samples, as a fraction of the distance d to the nearest sensor; 0: all
+   need samples. Shepard's weights have a second derivative of at most K / d^2, which follows from that of D^-p, with p the
+   power, D the distance and |grad D| = 1. */
 static float accepted_of(const struct weights *weights)
 {
     float p = weights->power;
@@ -332,7 +331,7 @@ static float accepted_of(const struct weights *weights)
     return PAPER_ACCEPTED;
 }
 
-/* Writes the fraction of the level's area whose error is at least 1, 1/2, 1/4, ..., and returns the largest error. */
+/* Writes the fractions of the level's area whose error is at least 1, 1/2, 1/4, ..., and returns the largest error. */
 static float find_erring(const struct asset_view *file, const struct asset_level *level, const float *errors, float erring[WEIGHTS_ERRING])
 {
     double areas[WEIGHTS_ERRING] = { 0 }, all = 0;
@@ -355,11 +354,11 @@ static float find_erring(const struct asset_view *file, const struct asset_level
     return largest;
 }
 
-/* Returns the error with which all vertices of a level are marked if too much of the level has errors of interpolation; 0: it has not.
-   Distances along the surface are measured on the same triangles. If most triangles are too long for the field, the distances are wrong,
-   too, so triangles without an error of interpolation cannot be trusted either (tests/bench/notes/windows.md). The thresholds 1, 1/2, 1/4,
-   ... are tried in this order. If errors reach a threshold on the share MARK_ALL of the level's area, the result is twice this threshold,
-   but not more than the level's largest error. */
+/* Returns the error to give to all vertices of a level of which too large a part has interpolation errors; 0: the part is
+   small. Distances along the surface are measured on the same triangles. If most triangles are too long for the field, the
+   distances are wrong, too, so that even triangles without interpolation errors cannot be trusted
+   (tests/bench/notes/windows.md). Thresholds 1, 1/2, 1/4, ... are tried in this order. If errors reach a threshold on the
+   fraction MARK_ALL of the level's area, the result is twice that threshold, but at most the level's largest error. */
 static float error_of_all(const struct weights *weights, const float erring[WEIGHTS_ERRING], float largest)
 {
     for (int b = 0; b < WEIGHTS_ERRING && weights->distance != DISTANCE_EUCLIDEAN; b++)
@@ -368,7 +367,7 @@ static float error_of_all(const struct weights *weights, const float erring[WEIG
     return 0;
 }
 
-/* Raises the error of each vertex to that of the adjacent triangles, and at least to `least`. */
+/* Raises each vertex's error to the largest error of the adjacent triangles, and at least to `least`. */
 static void raise_vertices(const struct asset_view *file, const struct asset_level *level, const float *errors, float least,
                            float *of_vertex)
 {
@@ -381,8 +380,8 @@ static void raise_vertices(const struct asset_view *file, const struct asset_lev
     }
 }
 
-/* Merges the errors of a level's triangles into those of its vertices. errors: errors of interpolation. at_vertices: errors that errors of
-   distances cause, by vertex, which are added to `errors`; NULL: none. */
+/* Merges the errors of a level's triangles into those of its vertices. errors: interpolation errors, by triangle. at_vertices:
+   errors due to errors of distances, by vertex, which are added; NULL: none. */
 static void spread(struct weights *weights, float *errors, const float *at_vertices, const struct asset_level *level)
 {
     const struct asset_view *file = &weights->layout->file->view;
@@ -406,8 +405,8 @@ static void spread(struct weights *weights, float *errors, const float *at_verti
     raise_vertices(file, level, errors, least, weights->errors);
 }
 
-/* Measures the errors of all triangles of one level of detail. resolved true: preparation left no interpolation error, so only the effect
-   of errors of distances is measured. */
+/* Measures the errors of all triangles of one level of detail. resolved true: preparation left no interpolation error, so only
+   the effect of errors in distances is measured. */
 static void measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
 {
     struct weights *weights = job->weights;
@@ -440,9 +439,9 @@ static void measure_level(struct drawn_error_job *job, const struct asset_level 
     mem_free(ones);
 }
 
-/* Returns true if the subdivision that preparation chose suffices (preprocess/subdivision/linear_error.h), because the weights are no
-   more curved than preparation assumed. They may be more curved when sensors are missing: the field then bends at other places, perhaps
-   in larger triangles. */
+/* Returns true if the subdivision chosen in preparation suffices (preprocess/subdivision/linear_error.h), because the weights
+   are no more curved than preparation assumed. They may be more curved when sensors are missing: the field then bends at other
+   places, perhaps in larger triangles. */
 static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
 {
     const struct field_layout *layout = weights->layout;

@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Error of the drawn field: how far values interpolated from a triangle's corners may be from the field inside it. For high powers of
-   shepard by distances along the surface, the errors of these distances count, too.
-   Preparation subdivides triangles until the error is below one colour step for the plant file's parameters, but may reach its limit of
-   triangles; and a view may use other parameters. So the error is measured for the parameters in use. Thread: one. */
+/* Error of the drawn field: how far values interpolated between a triangle's corners may be from the field inside it. For high
+   powers of shepard with geodesic distances, errors of the distances count, too. Preparation subdivides triangles until the
+   error is below one colour step for the plant file's parameters, but it may reach its limit of triangles, and a view may use
+   other parameters. So the error is measured for the parameters in use. Thread: one. */
 #ifndef FIELD_DRAWN_ERROR_H
 #define FIELD_DRAWN_ERROR_H
 #include "base/workers.h"
 #include "field/weights.h"
 
-/* Measures the error in the triangles of the level of detail that uses the first `vertices` vertices, unless it is known, and merges the
-   error into weights->errors: for each vertex the largest error of the adjacent triangles. The unit is the spread of the readings for
-   shepard, and the largest reading for paper. params and usable are those of weights_create(). in_range: the readings differ by no more
-   than preparation assumed. Does nothing if each pixel evaluates the field (plant/exact.h), if preparation left no error for these
-   parameters and all sensors are used, if the weights are prepared (linear within triangles by definition), or when out of memory. */
+/* Measures, unless already known, the error in the triangles of the level of detail that uses the first `vertices` vertices.
+   Merges it into weights->errors: for each vertex, the largest error of the adjacent triangles. The unit is the spread of the
+   readings for shepard, and the largest reading for paper. params and usable are those of weights_create(). in_range: the
+   readings differ by no more than preparation assumed. No-op if each pixel evaluates the field (plant/exact.h), if preparation
+   left no error for these parameters and all sensors are used, if the weights are prepared (linear within triangles by
+   definition), or when out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
                          struct workers *workers);
-/* Returns the largest change of a value by errors of distances along the surface, as a multiple of the mean of |reading - value|, weighted
-   as in the value. 0: these errors change no value noticeably, or distances have none. */
+/* Returns the largest change of a value due to errors of distances along the surface, as a multiple of the weighted mean of
+   |reading - value|. 0: these errors change no value noticeably, or distances have none. */
 double drawn_error_of_distances(const struct weights *weights);
 
 #endif

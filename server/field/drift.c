@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds drift (drift.h) by weighted least squares with orthogonalised columns; drops columns that are combinations of others. Jumps are
-   searched in the residuals of the fit without the straight line in time, since a drift changes little within hours. */
+/* Finds drift (drift.h) by weighted least squares with orthogonalised columns; drops linearly dependent columns. Looks for
+   jumps in the residuals of the fit without the straight line in time, because a drift changes little within hours. */
 #include "field/drift.h"
 
 #include <math.h>
@@ -11,34 +11,34 @@
 #include "base/mem.h"
 
 enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS = 20 };
-/* The plant's speed of change at an hour is the mean change of the prediction per hour, from CHANGE_BEFORE hours before to CHANGE_AFTER
-   hours after that hour. */
+/* The plant's rate of change at an hour is the mean change of the prediction per hour, from CHANGE_BEFORE hours before to
+   CHANGE_AFTER hours after that hour. */
 enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 };
-/* an hour in which the plant changes this many times as fast as usual has half the weight in the fit */
+/* an hour in which the plant changes this many times as fast as usual gets half the weight in the fit */
 static const double FAST_FACTOR = 2;
-static const double STILL_PART = 0.1; /* if the plant changes per hour by less than this multiple of the noise, it counts as unchanged */
-static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to the noise of one reading: 1/4 if the mean has at least 16
-                                         independent readings */
-/* A jump shows in the difference between two averages of residuals. First: number of hours in each average. Second: number of hours between
-   the two averages, which are left out. */
+static const double STILL_PART = 0.1; /* the plant counts as unchanged if it changes per hour by less than this multiple of the noise */
+static const double MEAN_PART = 0.25; /* noise of an hourly mean, relative to that of a single reading: 1/4 if the mean has at least
+                                         16 independent readings */
+/* A jump shows as the difference between two averages of residuals. First: number of hours in each average. Second: number of
+   hours left out between the two. */
 enum { BESIDE = 3, WITHIN = 2 };
-static const double MIN_JUMP_FACTOR = 6;     /* smallest jump, relative to the usual change of residuals over the same number of hours */
-static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models how long heat takes from the other
-                                                sensors to this one */
+static const double MIN_JUMP_FACTOR = 6;     /* smallest jump to be found, relative to the residuals' usual change over as many hours */
+static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models the time that heat takes from the
+                                                other sensors to this one */
 static const double DEPENDENT_PART = 1. / 6; /* residuals further apart than this fraction of the recorded time count as independent */
-static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's length (a column is one term of the model, by hour) that must
-                                                be independent of the other columns */
+static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's length (a column is one term of the model over all
+                                                hours) that must be independent of the other columns */
 
 struct week { /* hourly data of one sensor */
-    /* hourly means: values: of the sensor; predicted: by the other sensors; nearest: of the nearest sensors, [nearest_count][hours] */
+    /* hourly means. values: the sensor's; predicted: from the other sensors; nearest: the nearest sensors', [nearest_count][hours] */
     const double *values, *predicted, *nearest;
     int nearest_count, hours;
     /* noise: error and recording resolution of a reading; root: square root of each hour's weight in the fit */
     double noise, root[DRIFT_HOURS];
 };
 
-/* The equations (rows) of the least-squares fit, one per hour in which all needed values exist. Each is multiplied by the square root of
-   the hour's weight. */
+/* The equations (rows) of the least-squares fit, one per hour in which all required values exist. Each is multiplied by the
+   square root of the hour's weight. */
 struct drift_rows {
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
     double counted; /* sum of the hours' weights */
@@ -94,8 +94,8 @@ static void collect(const struct week *week, struct drift_rows *rows)
     rows->columns = 3 + week->nearest_count;
 }
 
-/* Makes the model's columns orthonormal, and subtracts their components from the columns of time and of the values. largest: the largest
-   magnitude of the values. Returns the number of columns kept; columns that depend on others are dropped. */
+/* Makes the model's columns orthonormal, and subtracts their components from the columns of time and of the values. largest:
+   largest magnitude of the values. Drops columns that depend on others. Returns the number of columns kept. */
 static int reduce(struct drift_rows *rows, double largest)
 {
     int kept = 0, n = rows->count;
@@ -104,13 +104,13 @@ static int reduce(struct drift_rows *rows, double largest)
         for (int k = 0; k < kept; k++)
             take_out(column, rows->at[k], n);
         double length = sqrt(dot(column, column, n));
-        /* Drops a column if only rounding errors are left in the column, for example because readings are nearly constant. The first
+        /* Drops a column of which only rounding errors are left, for example because readings are nearly constant. The first
            column, which is all 1, always stays. */
         if (c > 0 && !(length > 1e-9 * sqrt(n) * (1 + largest)))
             continue;
         for (int i = 0; i < n; i++)
             rows->at[kept][i] = column[i] / length;
-        for (int k = 0; k < kept; k++) /* orthogonalises a second time, because rounding errors of the first time may be large */
+        for (int k = 0; k < kept; k++) /* orthogonalises a second time, because rounding errors of the first may be large */
             take_out(rows->at[kept], rows->at[k], n);
         kept++;
     }
@@ -131,7 +131,7 @@ static double median(const double *of, int n)
     return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
 }
 
-/* Finds the row (hour) before which the residuals jump most. Returns its index, or 0 if they do not jump. */
+/* Finds the row (hour) before which the residuals jump most. Returns its index; 0: there is no jump. */
 static int find_jump(const struct drift_rows *rows, double noise)
 {
     double change[DRIFT_HOURS];
@@ -144,7 +144,7 @@ static int find_jump(const struct drift_rows *rows, double noise)
         change[k] = fabs(sum) / BESIDE;
         largest = change[k] > change[largest] ? k : largest;
     }
-    /* 0.6745: median absolute deviation divided by standard deviation, for a normal distribution */
+    /* 0.6745: ratio of median absolute deviation to standard deviation in a normal distribution */
     if (change[largest] < MIN_JUMP_FACTOR * fmax(median(change, count) / 0.6745, noise * sqrt(2. / BESIDE)))
         return 0;
     int at = largest + BESIDE;
@@ -153,8 +153,8 @@ static int find_jump(const struct drift_rows *rows, double noise)
     return at;
 }
 
-/* Computes each hour's weight in the fit: 1 where the sensor's prediction is constant, 1/2 where it changes FAST_FACTOR times as fast as
-   usual. */
+/* Computes each hour's weight in the fit: 1 if the sensor's prediction is constant, 1/2 if it changes FAST_FACTOR times as fast
+   as usual. */
 static void weigh(struct week *week)
 {
     double change[DRIFT_HOURS], sorted[DRIFT_HOURS];
@@ -177,8 +177,8 @@ static void weigh(struct week *week)
         week->root[h] = 1 / hypot(1, change[h] / (FAST_FACTOR * usual));
 }
 
-/* Collects the rows (hours) of the fit and makes their columns (terms of the model) orthonormal. Then adds a column for each jump found,
-   which is 0 before the jump and 1 after it. Returns the number of columns kept. */
+/* Collects the rows (hours) of the fit and makes their columns (terms of the model) orthonormal. Adds a column for each jump
+   found: 0 before the jump, 1 after it. Returns the number of columns kept. */
 static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
 {
     double largest = 0;
@@ -196,8 +196,8 @@ static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
     return columns;
 }
 
-/* Returns the variance of the slope by Newey & West's estimate, which uses each residual's contribution to the slope. Contributions up
-   to DEPENDENT_PART of the hours apart count as correlated. */
+/* Returns the variance of the slope as estimated by Newey & West, from each residual's contribution to the slope. Contributions
+   up to DEPENDENT_PART of the hours apart count as correlated. */
 static double slope_variance(const struct drift_rows *rows, double time_square, int hours)
 {
     double pull[DRIFT_HOURS] = { 0 };
@@ -292,7 +292,7 @@ struct drift_search {
     double *said; /* predictions by [sensor][hour] */
 };
 
-/* Predicts the readings of every sensor, also of drifting ones, from the sensors that are not found to drift. */
+/* Predicts the readings of every sensor, including drifting ones, from the sensors that have not been found to drift. */
 static void predict(const struct drift_search *search, const struct drift *drifts)
 {
     const double level = neighbours_level(search->neighbours);
@@ -310,7 +310,7 @@ static void predict(const struct drift_search *search, const struct drift *drift
     mem_free(said);
 }
 
-/* Copies a sensor's hourly readings to `out`. Fills gaps with predictions, shifted by the sensor's mean difference from its predictions. */
+/* Copies a sensor's hourly readings to `out`. Fills gaps with predictions plus the sensor's mean difference from its predictions. */
 static void read_filled(const struct drift_search *search, size_t sensor, double *out)
 {
     const double *said = search->said + sensor * (size_t)search->hours;
@@ -327,7 +327,7 @@ static void read_filled(const struct drift_search *search, size_t sensor, double
         out[h] = isfinite(out[h]) ? out[h] : said[h] + off / known;
 }
 
-/* Returns true if a sensor can be compared with others: it is not found to drift, and has values for at least half of the hours. */
+/* Returns true if a sensor may be compared with others: not found to drift, and has values for at least half of the hours. */
 static bool is_of_use(const struct drift_search *search, size_t sensor, const struct drift *drift)
 {
     int known = 0;
@@ -336,8 +336,8 @@ static bool is_of_use(const struct drift_search *search, size_t sensor, const st
     return drift->verdict != DRIFT_FOUND && 2 * known >= search->hours;
 }
 
-/* Fits the model to all sensors that are not yet found to drift. Returns the index of the sensor that drifts most clearly, or `count` if
-   none drifts. */
+/* Fits the model to all sensors not yet found to drift. Returns the index of the sensor that drifts most clearly, or `count` if
+   none does. */
 static size_t judge(const struct drift_search *search, const double *noise, struct drift *out)
 {
     double own[DRIFT_HOURS], nearest[DRIFT_NEAREST * DRIFT_HOURS];
@@ -357,7 +357,7 @@ static size_t judge(const struct drift_search *search, const double *noise, stru
         drift_fit(own, search->said + i * (size_t)search->hours, nearest, (int)count, search->hours, noise[i], &out[i]);
         if (out[i].verdict != DRIFT_FOUND)
             continue;
-        out[i].verdict = DRIFT_NONE; /* DRIFT_FOUND is set later, and only for the sensor that drifts most clearly */
+        out[i].verdict = DRIFT_NONE; /* DRIFT_FOUND is set later, and only for the sensor with the clearest drift */
         if (clearest == search->count || fabs(out[i].change) / out[i].error > fabs(out[clearest].change) / out[clearest].error)
             clearest = i;
     }
@@ -383,8 +383,8 @@ void drift_find(const struct neighbours *neighbours, const double *values, int h
             break;
         out[clearest].verdict = DRIFT_FOUND;
     }
-    /* The search stopped because too few sensors without drift remain. Verdicts about these depend on drifting sensors, so they become
-       DRIFT_UNKNOWN. */
+    /* The search stopped because too few sensors without drift remain. Verdicts on these would depend on drifting sensors, so
+       they become DRIFT_UNKNOWN. */
     for (size_t i = 0; i < count && clearest < count; i++)
         if (out[i].verdict == DRIFT_NONE)
             out[i].verdict = DRIFT_UNKNOWN;

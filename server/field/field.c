@@ -130,8 +130,8 @@ static void forget_state(struct field *field, struct field_state *state)
     field_cache_remove_state(field, link);
 }
 
-/* Allocates memory for `count` vertices in the state (computed field); makes room in the cache for it. Returns false when out of memory;
-   the state is then freed. */
+/* Allocates memory for `count` vertices of the state (computed field), and makes room for it in the cache. Returns false when
+   out of memory; the state is then freed. */
 static bool grow_state(struct field *field, struct field_state *state, size_t count)
 {
     size_t more = state_more_bytes(state, count);
@@ -146,7 +146,7 @@ static bool grow_state(struct field *field, struct field_state *state, size_t co
     return true;
 }
 
-/* Returns the index of a tag's sensor. -1: it is not on the asset, or its position is unknown. */
+/* Returns the index of the tag's sensor; -1: it is not on the asset, or its position is unknown. */
 static int find_sensor(const struct field_layout *layout, int tag)
 {
     for (size_t i = 0; layout && !layout->assumed && i < layout->sensor_count; i++)
@@ -175,7 +175,7 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
-    /* SHOW_UNCERTAINTY and SHOW_BLIND have nothing to show if sensor positions are assumed, because both depend on the real positions */
+    /* SHOW_UNCERTAINTY and SHOW_BLIND depend on the real sensor positions, so they show nothing if positions are assumed */
     if (field_params_cover(params) && layout && layout->assumed)
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
@@ -219,8 +219,8 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     return true;
 }
 
-/* Updates the field of one asset for about `work` nanoseconds. Returns NULL if the asset has no field to show, or out of memory. *done:
-   receives true if the field is up to date, false if more calls are needed. */
+/* Updates the field of one asset for about `work` nanoseconds. Returns NULL if the asset has no field to show, or when out of
+   memory. *done: true if the field is up to date, false if more calls are needed. */
 static const struct scalars *advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                      size_t count, double work, bool *done)
 {

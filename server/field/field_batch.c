@@ -16,8 +16,8 @@ static void update_some(void *arg, size_t begin, size_t end)
         update_run(together->states[i]);
 }
 
-/* Updates several assets in parallel, but only those whose weights are complete: an update would fill in incomplete weights, and
-   instances of one asset share them. */
+/* Updates several assets in parallel, but only those with complete weights: an update would otherwise fill in weights that are
+   shared by the instances of an asset. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot)
 {
@@ -35,8 +35,7 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
         if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
             together.states[begun++] = state;
     }
-    /* update_is_light() is called only after all updates have begun, because beginning an update may evict cached weights that another
-       update needs */
+    /* update_is_light() is called only after all updates have begun, because beginning an update may evict cached weights of another */
     for (size_t i = 0; i < begun; i++)
         if (update_is_light(together.states[i]))
             together.states[together.count++] = together.states[i];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cache of computed fields (states) and of sensors' weights, and its eviction. */
+/* The cache of computed fields (states) and of sensors' weights, with its eviction. */
 #include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"
@@ -58,7 +58,7 @@ static bool weights_may_go(const struct weights *weights)
     return weights->users == 0 || weights->columns;
 }
 
-/* Returns the tick at which the least recently used entry that may be evicted was last used; UINT64_MAX: none may be evicted. */
+/* Returns the tick of the last use of the least recently used entry that may be evicted; UINT64_MAX: none may be evicted. */
 static uint64_t oldest_use(const struct field *field, const struct field_params *keep)
 {
     uint64_t oldest = UINT64_MAX;
@@ -107,10 +107,10 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
     return true;
 }
 
-/* Caches columns of G (a sensor's weights at all vertices) when they are summed for the second time, because while a user drags a slider
-   each set of weights is summed only once. To make room, only entries are evicted that were last used before the previous use of these
-   weights; otherwise two busy fields would evict each other forever. If not all columns fit, the parts for the first vertices are cached,
-   which all levels of detail use. */
+/* Caches columns of G (one sensor's weights at all vertices) only when they are summed for the second time, because each set of
+   weights is summed only once while a user drags a slider. To make room, evicts only entries last used before the previous use
+   of these weights; otherwise two busy fields would evict each other forever. If not all columns fit, caches the parts for the
+   first vertices, which all levels of detail use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
     size_t bytes = weights_column_bytes(weights), had = weights_kept_bytes(weights);
@@ -118,7 +118,7 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    /* some columns of G (a sensor's weights) are cached, and there is no room for all: keeps the cached ones */
+    /* some columns of G (a sensor's weights) are cached, but there is no room for all: keeps the cached ones */
     else if (field->bytes - had + bytes > field->bound)
         return;
     else

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Internals of struct field, shared by the files field*.c. */
+/* Internals of struct field, shared by the field*.c files. */
 #ifndef FIELD_FIELD_IMPL_H
 #define FIELD_FIELD_IMPL_H
 #include "field/field.h"
@@ -19,42 +19,42 @@ struct field {
     struct trial_layout {                   /* layouts with trial positions */
         const struct trial *trial;          /* reference to the trial */
         int asset, group;
-        struct field_layout *layout; /* sensors at the trial's positions; NULL: the asset then has no sensor of the group */
+        struct field_layout *layout; /* layout with sensors at the trial's positions; NULL: the asset then has no sensor of the group */
         struct trial_layout *next;
     } * tried;
     size_t bytes, bound;
-    uint64_t tick; /* number of calls so far; the time ("tick") by which the least recently used cache entries are found */
+    uint64_t tick; /* number of calls so far: the time ("tick") by which the least recently used cache entries are found */
     uint64_t versions;
 };
 
-/* Returns the layout (positions and distances) of the sensors of group params->group on the asset; creates it if needed. NULL: there are
-   none. params must come from field_params_of(). */
+/* Returns the layout (positions and distances) of the sensors of group params->group on the asset; creates it if needed. NULL:
+   there are no such sensors. params must come from field_params_of(). */
 struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params);
 /* Frees all trial layouts. */
 void field_trials_finish(struct field *field);
-/* Returns the asset's state (computed field) for these parameters, from the cache or newly created, without updating it. NULL if the asset
-   has no sensor of the group, or when out of memory. */
+/* Returns the asset's state (computed field) for these parameters, from the cache or newly created, but does not update it.
+   NULL if the asset has no sensor of the group, or when out of memory. */
 struct field_state *field_state(struct field *field, int asset, const struct field_params *params);
 
-/* Reads the snapshot into the state and begins the necessary update. Returns false when out of memory; the state is then freed. */
+/* Reads the snapshot into the state and begins any necessary update. Returns false when out of memory; the state is then freed. */
 bool field_begin_update(struct field *field, struct field_state *state, const struct snapshot *snapshot, size_t count);
 
 /* --- the cache (field_cache.c) --- */
 
-/* Returns the bucket (linked list) of the hash table of cached weights in which weights with this hash are stored. */
+/* Returns the bucket (linked list) of the hash table of cached weights to which this hash belongs. */
 struct weights **field_cache_bucket(struct field *field, uint64_t hash);
 /* Releases the state's reference to its weights, which can then be evicted. */
 void field_cache_release_weights(struct field_state *state);
 /* Removes the state at *link from its asset's list of cached states and destroys it. */
 void field_cache_remove_state(struct field *field, struct field_state **link);
-/* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the limit. Evicts
-   the oldest entries first, an eighth of the time span of last uses in one search, so that searches are rare. Returns false if the bytes
-   do not fit. */
+/* Evicts entries last used before tick `before`, except states with the parameters `keep`, until `need` more bytes fit the
+   limit. Evicts the oldest entries first; each search covers an eighth of the time span of last uses, so that searches are
+   rare. Returns false if the bytes do not fit. */
 bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before);
-/* Starts caching the columns of these weights (each sensor's weights at all vertices) if they are summed for at least the second time.
+/* Starts caching the columns of these weights (each sensor's weights at all vertices) if they have been summed before.
    previous: tick of their previous use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);
-/* Frees every state and weights object that was made from this trial's layout. */
+/* Frees every state and weights object made from this trial's layout. */
 void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);
 
 #endif

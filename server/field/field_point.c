@@ -24,8 +24,9 @@ static void point_drawn(const struct scalars *scalars, const struct field_place 
     *out = (struct field_point){ .value = value, .no_data = no_data > 0.5, .uncertain = uncertain > 0.5 };
 }
 
-/* Returns the largest error of the value at a place, or 0 if it is below a colour step. Any level of detail may be drawn there, so the
-   largest interpolation error of the triangles around the corners counts. of_distances: error that errors of distances cause there. */
+/* Returns the largest error of the value at a place; 0 if it is below a colour step. Any level of detail may be drawn there, so
+   the largest interpolation error of the triangles around the corners counts. of_distances: the part due to errors of
+   distances. */
 static double error_near(const struct field_state *state, const struct field_place *place, double of_distances)
 {
     const struct weights *weights = state->weights;
@@ -39,7 +40,7 @@ static double error_near(const struct field_state *state, const struct field_pla
     return most > state->error_limit * state->error_scale ? most : 0;
 }
 
-struct single_point { /* a layout (sensors and distances) with one point instead of the asset's vertices */
+struct single_point { /* a layout (sensors and distances) for one point instead of the asset's vertices */
     float position_m[1][3], parts[1][3], away_m[1][3];
     uint32_t corners[1][3];
     struct layout_points points;
@@ -68,8 +69,8 @@ static void point_distance(const struct field_state *state, const struct single_
     out->value = out->no_data ? out->value : far_m;
 }
 
-/* Sums the sensors' weights at the point, multiplied by the readings that the scalars show, with the same arithmetic as at vertices.
-   Returns the largest change of the value by errors of distances, for these readings. */
+/* Sums the sensors' weights at the point, multiplied by the readings from which the scalars were computed, with the same
+   arithmetic as at vertices. Returns the largest change of the value due to errors of distances, for these readings. */
 static double point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
 {
     const size_t sensors = point->layout.sensor_count;
@@ -118,8 +119,8 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
               const struct field_place *place, struct field_point *out)
 {
     struct field_params room;
-    /* number of vertices that need values; 0 if frames evaluate the field at each pixel, because the value at a point then needs no
-       vertices */
+    /* number of vertices that need values; 0 if frames evaluate the field at each pixel, since the value at a point then needs
+       no vertices */
     const size_t count = field_vertices(field, asset, params, field->scene->assets[asset].file->view.header->vertex_count);
     const struct scalars *scalars = field_scalars_of(field, asset, params, snapshot, count);
     if (!scalars)

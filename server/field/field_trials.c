@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields with trial sensor positions: creates, looks up and drops their layouts. */
+/* Fields with trial sensor positions: creates, finds and drops their layouts. */
 #include <math.h>
 
 #include "base/mem.h"
@@ -39,8 +39,8 @@ void field_trials_finish(struct field *field)
         tried_remove(field, &field->tried);
 }
 
-/* Frees the layouts of dropped trials except trial `keep`. Without this, layouts would pile up, because each step of dragging a sensor
-   creates a trial. */
+/* Frees the layouts of dropped trials, except that of trial `keep`. Otherwise layouts would pile up, because each step of
+   dragging a sensor creates a trial. */
 static void forget_dropped(struct field *field, uint32_t keep)
 {
     for (struct trial_layout **link = &field->tried; *link;)
@@ -58,7 +58,7 @@ static struct trial_layout *find(const struct field *field, int asset, const str
     return tried;
 }
 
-/* Returns parameters for a constant field on the asset: all sensor positions are assumed, so the group's own parameters have no effect. */
+/* Returns parameters for a constant field on the asset: all sensor positions are assumed, so the group's have no effect. */
 static const struct field_params *even_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
@@ -96,7 +96,7 @@ static const struct field_params *trial_params(struct field *field, int asset, c
     return room;
 }
 
-/* Returns parameters for SHOW_BLIND, which depends on distances alone, even if the group uses a prepared interpolation. */
+/* Returns parameters for SHOW_BLIND, which depends only on distances, even if the group uses a prepared interpolation. */
 static const struct field_params *blind_params(const struct field_params *params, struct field_params *room)
 {
     if (params->show != SHOW_BLIND)
@@ -118,7 +118,7 @@ struct field_layout *field_layout(struct field *field, int asset, const struct f
 {
     struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
-        return NULL; /* prepared interpolations do not exist for trial positions: shows no data, not the previous field */
+        return NULL; /* prepared interpolations do not exist for trial positions: shows no data instead of the previous field */
     if (params->trial)
         return find(field, asset, params)->layout;
     if (!*at)

@@ -8,8 +8,8 @@
 
 #include "base/mem.h"
 
-/* Smallest valid pivot of the factorisation, as a fraction of the sensor's precision. A smaller pivot means that no used sensor determines
-   the lost sensor, whose value is then set to 0. */
+/* Smallest valid pivot of the factorisation, as a fraction of the sensor's precision. Below it, no used sensor determines the
+   lost sensor, whose value is then set to 0. */
 #define MIN_PIVOT_PART 1e-9
 
 struct influence_fill {
@@ -62,7 +62,7 @@ void influence_fill_destroy(struct influence_fill **fill_ptr)
     *fill_ptr = NULL;
 }
 
-/* Replaces x by L^-1 x, where L is the Cholesky factor and x is 0 before index `first`. */
+/* Replaces x with L^-1 x, where L is the Cholesky factor and x is 0 before index `first`. */
 static void solve_lower(const struct influence_fill *fill, size_t first, double *x)
 {
     const size_t n = fill->lost_count;
@@ -104,8 +104,8 @@ static double own_of_used(const struct influence_fill *fill, size_t sensor, doub
     return own;
 }
 
-/* Returns 1 / ((P_LL)^-1)_ll, the precision of lost sensor l given the used sensors, from a column of the factor's inverse. x: scratch
-   memory. */
+/* Returns 1 / ((P_LL)^-1)_ll, the precision of lost sensor l given the used sensors, from a column of the factor's inverse. x:
+   scratch buffer. */
 static double own_of_lost(const struct influence_fill *fill, size_t lost, double *x)
 {
     const size_t n = fill->lost_count;

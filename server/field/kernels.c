@@ -14,10 +14,10 @@
 #define KERNEL SIMD_CLONES("avx512f", "avx2")
 
 #if defined(__GNUC__) && !defined(__clang__)
-/* lets the compiler evaluate both sides of a conditional expression, as SIMD code must: floating-point exceptions do not matter here */
+/* lets the compiler evaluate both sides of a conditional expression, as SIMD code must; floating-point exceptions do not matter here */
 #pragma GCC optimize("no-trapping-math")
 #endif
-#include "field/weight_formula.h" /* included after the pragma, which this header needs, too, to become SIMD code */
+#include "field/weight_formula.h" /* included after the pragma, which this header also needs to become SIMD code */
 
 static inline void fade(const struct kernel_column *column, float *restrict weight)
 {
@@ -48,8 +48,8 @@ KERNEL void kernel_nearest(const float *restrict distance_m, size_t count, float
         near_m[j] = distance_m[j] < near_m[j] ? distance_m[j] : near_m[j];
 }
 
-/* compares the floats' bits as integers: non-negative floats sort like their bits, and the compiler may reorder an integer maximum, so
-   that the loop becomes SIMD code */
+/* compares the bits of the floats as integers: non-negative floats sort like their bits, and the compiler may reorder an
+   integer maximum, which makes SIMD code of the loop possible */
 KERNEL float kernel_largest(const float *distance_m, size_t count, float most_m)
 {
     int32_t most, infinity = 0x7f800000;
@@ -143,7 +143,7 @@ KERNEL static void add_one(double *restrict sum, const float *restrict a, double
         sum[j] += (double)a[j] * factor;
 }
 
-/* Adds KERNEL_COLUMNS columns, each multiplied by its factor, to the vertices begin..end-1 of `sum`. */
+/* Adds KERNEL_COLUMNS columns, each multiplied by its factor, to vertices begin..end-1 of `sum`. */
 SIMD_BODY void add_eight(double *restrict sum, const float *const *columns, const double *factors, size_t begin, size_t end)
 {
     const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
@@ -205,8 +205,9 @@ KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict
         value[j] = value_of(&own, sum[j], weight[j]);
 }
 
-/* Stores a value in a scalar. Reads and writes the scalar as one 64-bit number: the value is the lower half, and the flags in the upper
-   half stay unchanged. Returns the bits of the absolute change, which sort as integers like the changes themselves (kernel_largest). */
+/* Stores a value in a scalar. Reads and writes the scalar as one 64-bit number: the value is the lower half, and the flags in
+   the upper half stay unchanged. Returns the absolute change as its bits, which sort as integers like the changes themselves
+   (kernel_largest). */
 static inline int32_t put(struct scalar *restrict at, float value)
 {
     _Static_assert(sizeof(*at) == 8 && offsetof(struct scalar, value) == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "value first");
@@ -249,7 +250,7 @@ struct few {
     double factor[KERNEL_COLUMNS - 1];
 };
 
-/* Does the work of kernel_few() for a block. column_count: a constant after inlining, so that the compiler unrolls the loops. */
+/* Does the work of kernel_few() for a block. column_count is a constant after inlining, so that the compiler unrolls the loops. */
 SIMD_BODY int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight, size_t count,
                           struct scalar *restrict at)
 {

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field's inner loops on plain arrays: no files, no scene, no threads; written so that the compiler vectorises them. `restrict`: no two
-   arrays overlap. Distances are metres, >= 0, or INFINITY (not connected). Thread: any. */
+/* The field's inner loops on plain arrays: no files, no scene, no threads; written so that the compiler vectorises them.
+   `restrict`: no two arrays overlap. Distances are metres, >= 0, or INFINITY (not connected). Thread: any. */
 #ifndef FIELD_KERNELS_H
 #define FIELD_KERNELS_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#define KERNEL_BLOCK 256         /* number of vertices processed at a time, so that their data stays in the L1 cache */
-#define KERNEL_COLUMNS 8         /* number of columns (one column: one sensor's weights) that are added in one pass */
+#define KERNEL_BLOCK 256         /* number of vertices processed together, so that their data stays in the L1 cache */
+#define KERNEL_COLUMNS 8         /* number of columns (a column is one sensor's weights) added in one pass */
 #define KERNEL_LINE 16           /* floats per cache line */
-#define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay; beyond it exponents would overflow the loops' integer conversions */
+#define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay; beyond it, exponents would overflow the loops' integer conversions */
 
 struct scalar;
 
@@ -18,25 +18,26 @@ struct scalar;
 void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m);
 /* Writes the straight-line distance of each position from the point. */
 void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m);
-/* For one sensor: lowers near_m[i], the distance of vertex i from the nearest sensor so far, to distance_m[i] if that is smaller. */
+/* For one sensor: lowers near_m[i], the distance from vertex i to the nearest sensor so far, to distance_m[i] if that is smaller. */
 void kernel_nearest(const float *restrict distance_m, size_t count, float *restrict near_m);
 /* Returns the largest finite distance, or most_m if that is larger. */
 float kernel_largest(const float *distance_m, size_t count, float most_m);
 
-/* For one sensor: raises top[i] to the sensor's strength if no sensor is nearer to vertex i. After a call for each sensor, top[i] is the
-   largest strength among equally near nearest sensors; kernel_shepard() divides by it, so that weights cannot overflow. */
+/* For one sensor: raises top[i] to the sensor's strength if no sensor is nearer to vertex i. After a call for each sensor,
+   top[i] is the largest strength among the equally near nearest sensors. kernel_shepard() divides by it, so that weights cannot
+   overflow. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
-/* Raises top[i] to one sensor's exponent of the paper's Algorithm 1 (Kim & Suh 2025), max(0, 1 - distance / radius) strength / ln 2 (a
-   power of 2), if that is larger and the sensor contributes. A sensor contributes within its reach. If no sensor reaches vertex i, the
-   nearest one contributes alone and continues its value, so that a triangle with one reached corner can be interpolated. Start with zeros
-   and call once for each sensor. */
+/* For one sensor: if it contributes, raises top[i] to its exponent in the paper's Algorithm 1 (Kim & Suh 2025), max(0, 1 -
+   distance / radius) strength / ln 2 (a power of 2), if that is larger. A sensor contributes within its reach. If no sensor
+   reaches vertex i, the nearest one contributes alone and continues its value, so that a triangle of which only one corner is
+   reached can be interpolated. Start with zeros and call once for each sensor. */
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 
-/* Writes log2 of x, or of 1e-37 if x is less. */
+/* Writes log2 of x, or of 1e-37 for smaller x. */
 void kernel_log2(const float *restrict x, size_t count, float *restrict out);
 
-/* Inputs of one sensor for computing its weights at a block of vertices. */
+/* Inputs for computing one sensor's weights at a block of vertices. */
 struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
@@ -46,34 +47,35 @@ struct kernel_column {
     bool alike;             /* for interpolation shepard: true: all strengths are equal */
     float radius_m;         /* radius R, for interpolation paper */
 };
-/* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the nearest
-   sensor. It is exactly 1 for the strongest of the nearest sensors, and exactly 0 for all others where near is 0. With a reach, it is
-   multiplied by ((reach - distance) / (reach - near))^2: 1 for the nearest sensor, 0 for others from the reach on. */
+/* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the
+   nearest sensor. It is exactly 1 for the strongest of the nearest sensors; where near is 0, it is exactly 0 for all others.
+   With a reach, it is multiplied by ((reach - distance) / (reach - near))^2: 1 for the nearest sensor, 0 for others from the
+   reach on. */
 void kernel_shepard(const struct kernel_column *column, float *restrict weight);
-/* Writes the sensor's weight of Algorithm 1, exp(d strength - top), with d = max(0, 1 - distance / radius), unless `weight` is NULL; and
-   its term, the weight times d^decay. A reach fades both as in kernel_shepard(). */
+/* Writes the sensor's weight in Algorithm 1, exp(d strength - top), with d = max(0, 1 - distance / radius), unless `weight` is
+   NULL; and its term, which is the weight times d^decay. A reach fades both as in kernel_shepard(). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);
 
-/* Adds columns[c] * factors[c] to sum for column_count <= KERNEL_COLUMNS columns (a column has one sensor's weights at a block of
-   vertices). next: as many columns that will be read afterwards, which are prefetched; NULL: unknown. */
+/* Adds columns[c] * factors[c] to sum, for column_count <= KERNEL_COLUMNS columns (one sensor's weights at a block of
+   vertices). next: as many columns that will be read next, for prefetching; NULL: unknown. */
 void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count,
                 const float *const *next);
 
-/* Like kernel_add() for exactly KERNEL_COLUMNS columns, but also adds the columns without their factors to total. */
+/* Like kernel_add() for exactly KERNEL_COLUMNS columns, but also adds the columns to total, without their factors. */
 void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],
                      const double factors[KERNEL_COLUMNS], size_t count);
 
-/* The rule that turns sums into values: value = clamp(sum / weight * scale + offset, low, high); `empty` where weight is 0. */
+/* Rule for converting sums to values: value = clamp(sum / weight * scale + offset, low, high); `empty` where weight is 0. */
 struct kernel_value {
     float scale, offset, low, high, empty;
 };
-/* Applies the rule of struct kernel_value to the sum and the weight of each vertex. */
+/* Applies the rule of struct kernel_value to each vertex's sum and weight. */
 void kernel_value(const struct kernel_value *rule, const double *restrict sum, const float *restrict weight, size_t count,
                   float *restrict value);
 /* Stores values into scalars. Returns the largest change, and sets *changed if any differs. */
 float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed);
-/* Computes kernel_add() to a sum of zeros, kernel_value() and kernel_store() in one pass with identical bits, for fewer than
-   KERNEL_COLUMNS sensors. Returns the largest change, and sets *changed if any value differs. */
+/* Equivalent to kernel_add() on a sum of zeros, kernel_value() and kernel_store(), in one pass and with identical bits, for
+   fewer than KERNEL_COLUMNS sensors. Returns the largest change, and sets *changed if any value differs. */
 float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
                  const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed);
 

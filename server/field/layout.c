@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Layouts (layout.h): lists the sensors of one group on one asset, and computes their distances to vertices. */
+/* Layouts (layout.h): lists the sensors of one group on one asset, and computes the distances of vertices from them. */
 #include "field/layout.h"
 
 #include <float.h>
@@ -21,8 +21,8 @@ static bool of_group(const struct scene *scene, const struct scene_sensor *senso
     return scene->plant->tags[sensor->tag].group == group;
 }
 
-/* Returns whether the group has a sensor with a known position, in which case sensors with an assumed position are ignored. Trial positions
-   count as known. */
+/* Returns true if the group has a sensor with a known position; sensors with an assumed position are then ignored. Trial
+   positions count as known. */
 static bool has_known(const struct scene *scene, int asset, int group, const struct trial *trial)
 {
     const struct scene_asset *from = &scene->assets[asset];
@@ -59,7 +59,7 @@ static void add_sensor(struct field_layout *layout, struct layout_sensor sensor)
     layout->sensors[layout->sensor_count++] = sensor;
 }
 
-/* Adds a sensor of the asset file. number: index of the sensor among the group's sensors with a known position. */
+/* Adds a sensor of the asset file. number: the sensor's index among the group's sensors with a known position. */
 static void add_prepared(struct field_layout *layout, const struct scene_sensor *sensor, size_t number)
 {
     const struct asset_view *view = &layout->file->view;
@@ -156,9 +156,10 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
         points->away_m[point][k] = parts[k] == 1 ? 0 : vecf_distance(points->positions_m[point], file->positions_m[corners[k]]);
 }
 
-/* Returns the distance of point p in a triangle from a virtual source s in the triangle's plane that has the given distances from the
-   corners: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2), with part_k the barycentric coordinates of p. Where paths
-   from two sides meet within the triangle, no such source exists; the triangle inequality then bounds the distance. */
+/* Returns the distance from point p in a triangle to a virtual source s in the triangle's plane that has the given distances
+   from the corners: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2), with part_k the barycentric coordinates of
+   p. If paths from two sides meet within the triangle, no such source exists; the triangle inequality then bounds the distance.
+   */
 static float along_at(const struct field_layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
 {
     const float *part = layout->points->parts[point], *away_m = layout->points->away_m[point];

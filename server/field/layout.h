@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sensors of one group on one asset, and the distances of all vertices from them. Thread: one. */
+/* The sensors of one group on one asset, and their distances from all vertices. Thread: one. */
 #ifndef FIELD_LAYOUT_H
 #define FIELD_LAYOUT_H
 #include "base/workers.h"
@@ -11,19 +11,19 @@ struct layout_sensor {
     int tag;               /* index in plant->tags */
     uint32_t column;       /* index of the sensor in the asset file; trial sensors have indices from the file's sensor count on */
     float surface_m[3];    /* position of the sensor in metres, in the coordinates of the asset file */
-    uint32_t vertex;       /* vertex nearest to the sensor */
-    bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m and not in the file */
+    uint32_t vertex;       /* index of the vertex nearest to the sensor */
+    bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m instead of the file */
     const float *tried_m;  /* geodesic distance of each vertex; NULL: not known yet */
     const float *heat_m;   /* distance of each vertex by the heat method; NULL: not prepared */
     float strength, decay; /* as configured, >= 0 */
 };
 
-/* Points at which distances from the sensors are requested, each inside a triangle of the asset file. */
+/* Points at which distances from the sensors are wanted, each inside a triangle of the asset file. */
 struct layout_points {
     float (*positions_m)[3];
-    uint32_t (*corners)[3]; /* by point: vertices at the corners of its triangle */
-    float (*parts)[3];      /* by point: barycentric coordinates in its triangle */
-    float (*away_m)[3];     /* by point: straight-line distances from the corners of its triangle */
+    uint32_t (*corners)[3]; /* [point]: vertices at the corners of its triangle */
+    float (*parts)[3];      /* [point]: barycentric coordinates in its triangle */
+    float (*away_m)[3];     /* [point]: straight-line distances from the corners of its triangle */
 };
 
 /* Sets all members of `points` for one point in a triangle of the asset file. */
@@ -37,35 +37,35 @@ struct field_layout {
     const struct plant_tag *tags; /* the plant's tags */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
-    const struct layout_points *points; /* points whose distances are requested; NULL: the asset file's vertices */
-    bool assumed; /* true: the positions of all sensors are assumed, so one sensor gives the value of the whole asset (field.h) */
-    float largest_m[DISTANCES]; /* largest distance between a vertex and a sensor, by enum distance_mode; 0: not computed yet */
+    const struct layout_points *points; /* points whose distances are wanted; NULL: the vertices of the asset file */
+    bool assumed; /* true: all sensor positions are assumed, so one sensor gives the value of the whole asset (field.h) */
+    float largest_m[DISTANCES]; /* [enum distance_mode]: largest distance between a vertex and a sensor; 0: not computed yet */
     uint32_t trial;             /* id of the trial that moved some of these sensors (field/trials.h); 0: none */
 };
 
-/* Builds the layout of a group's sensors on an asset. trial: moved sensors (NULL: none). Scene and trial must outlive the layout.
-   Returns NULL if no sensor of the group is on the asset. */
+/* Creates the layout of a group's sensors on an asset. trial: moved sensors; NULL: none. Scene and trial must outlive the
+   layout. Returns NULL if no sensor of the group is on the asset. */
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
-/* Returns whether the trial adds, removes or moves sensors of the group on the asset. */
+/* Returns true if the trial adds, removes or moves sensors of the group on the asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Frees the layout. Accepts a pointer to NULL; sets the pointer to NULL. */
 void layout_destroy(struct field_layout **layout);
-/* Returns the geodesic distance of each vertex from a sensor, by this mode (along triangles or by heat). If distances of that mode were not
-   prepared (trial sensors), returns those of the other geodesic mode. NULL: the mode is straight-line, or the distances are in the asset
-   file or not known yet. */
+/* Returns each vertex's geodesic distance from a sensor, in this mode (along triangles or by the heat method). If that mode was
+   not prepared (trial sensors), returns the distances of the other geodesic mode. NULL: the mode is straight-line, or the
+   distances are in the asset file or not known yet. */
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
-/* Returns true if renderers evaluate the sum over the sensors at each pixel instead of interpolating between vertices (plant/exact.h). */
+/* Returns true if renderers evaluate the sum over the sensors at each pixel, rather than interpolate between vertices (plant/exact.h). */
 bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode);
-/* Returns whether the asset file stores the sensor's distances of this kind. */
+/* Returns true if the asset file contains the sensor's distances of this mode. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
-/* Returns the distances of `count` vertices from one sensor, beginning with vertex `begin`: a pointer to them, or to `scratch`, which
-   receives them. The vertices must be in one block of KERNEL_BLOCK vertices (kernels.h). If layout->points is set, it returns the
-   distances of these points instead. The geodesic distance (along the surface) of such a point follows from those of the three corners of
-   the triangle that contains it, as if the path from the sensor entered the triangle at one side. Straight-line distances start at the
-   sensor's surface point, so that both kinds are 0 there; they replace geodesic ones that are not known yet. */
+/* Returns the distances from one sensor to `count` vertices, from vertex `begin` on: a pointer to them, or to `scratch`, which
+   receives them. The vertices must be in one block of KERNEL_BLOCK vertices (kernels.h). If layout->points is set, returns the
+   distances of these points instead. A point's geodesic distance (along the surface) follows from those of the three corners of
+   its triangle, as if the path from the sensor entered the triangle at one side. Straight-line distances start at the sensor's
+   surface point, so that both kinds are 0 there; they replace geodesic distances that are not known yet. */
 const float *layout_distances(const struct field_layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
-/* Returns the largest finite distance of any vertex from any sensor, computed once; 1 if all are 0 or infinite. */
+/* Returns the largest finite distance between a vertex and a sensor, computed once; 1 if all are 0 or infinite. */
 float layout_largest(struct field_layout *layout, enum distance_mode mode, struct workers *workers);
 
 #endif

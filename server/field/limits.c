@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-#define MAX_ALONE 1.999 /* largest position above H of a tag without HH: just below +2, which is the position of HH */
+#define MAX_ALONE 1.999 /* largest position above H for a tag without HH: just below +2, which is HH's position */
 
-/* The limits of one side (high or low), with the low side mirrored, so that larger values are always closer to an alarm. */
+/* The limits of one side (high or low); the low side is mirrored, so that larger values are always closer to an alarm. */
 struct limit_side {
     double inner, outer; /* inner: H or L; outer: HH or LL; NaN: the tag has no such limit */
 };
@@ -22,8 +22,8 @@ static double middle_of(const struct plant_group *group, const struct limit_side
     return group->max > l ? group->max : l + range / 2;
 }
 
-/* Returns a value's position between the limits of one side (high or low). value, inner and outer are measured from the middle of the
-   range, which has the position 0. */
+/* Returns a value's position between the limits of one side (high or low). value, inner and outer are relative to the middle,
+   which has position 0. */
 static double side_place(double value, double inner, double outer)
 {
     if (!isfinite(inner) && !isfinite(outer))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Predicts each sensor's reading from the other sensors (neighbours.h), by a prepared precision matrix or by distances. */
+/* Predicts each sensor's reading from the other sensors (neighbours.h), with a prepared precision matrix or from distances. */
 #include "field/neighbours.h"
 
 #include <math.h>
@@ -11,12 +11,12 @@
 #include "plant/influence.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6 /* metres; sensors that are nearer to each other count as being at one point */
+#define AT_ONE_PLACE 1e-6 /* metres; sensors closer together than this count as being at one point */
 
 struct neighbours {
     struct field_layout *layout;
-    const struct influence_entry *entry; /* NULL: predictions come from distances */
-    /* geodesic distances between sensors, by [to][from]; INFINITY: no path, or unknown. NULL: not computed: there are too many sensors */
+    const struct influence_entry *entry; /* entry of the influence file; NULL: predictions come from distances */
+    /* [to][from]: geodesic distances between sensors; INFINITY: no path, or unknown. NULL: not computed (too many sensors) */
     float *along_m;
 };
 
@@ -32,7 +32,7 @@ static const struct influence_entry *entry_of(const struct field_layout *layout)
     return NULL;
 }
 
-/* Returns the geodesic distances between all pairs of sensors, by [to][from]. The caller frees the array (mem_free). */
+/* Returns the geodesic distances between all pairs of sensors, [to][from]. The caller frees the array (mem_free). */
 static float *distances_between(const struct field_layout *layout)
 {
     const size_t n = layout->sensor_count;
@@ -49,7 +49,7 @@ static float *distances_between(const struct field_layout *layout)
     return along_m;
 }
 
-/* Returns true if another usable sensor is on the same body. Without one, the prediction would consist of rounding errors. */
+/* Returns true if another usable sensor is on the same body. Otherwise, the prediction would consist of rounding errors. */
 static bool is_predictable(const struct neighbours *neighbours, const uint8_t *used, size_t sensor)
 {
     const size_t n = neighbours->layout->sensor_count;
@@ -105,7 +105,7 @@ static void predict_by_distance(const struct neighbours *neighbours, const uint8
             if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
                 continue;
             away_m = fmax(away_m, AT_ONE_PLACE);
-            double near = least_m / away_m; /* weights are relative to that of the nearest sensor so far, so that powers do not overflow */
+            double near = least_m / away_m; /* weights are relative to that of the nearest sensor so far, so that powers cannot overflow */
             if (away_m < least_m) {
                 double scale = isfinite(least_m) ? pow(away_m / least_m, layout->group->power) : 0;
                 sum *= scale;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters of a field: defaults from the group, overrides of single sensors, checks, and default ranges. */
+/* Parameters of a field: defaults from the group, overrides for single sensors, checks, and default ranges. */
 #include "field/params.h"
 
 #include <math.h>
@@ -96,7 +96,7 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     float most_m = 0, scratch[KERNEL_BLOCK];
     for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
         size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
-        /* uses the distances along triangles for distances by the heat method, too: both get the same colour range, so that their pictures
+        /* uses the distances along triangles even for the heat method: both get the same colour range, so that their pictures
            can be compared */
         if (mode != DISTANCE_EUCLIDEAN)
             kernel_distances(asset_distance_codes(view, column, at), number, scratch);
@@ -107,7 +107,7 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     return most_m;
 }
 
-/* Rounds up to a multiple of 5 in the third significant digit: 16.375 becomes 16.5. */
+/* Rounds up so that the third significant digit becomes 0 or 5: 16.375 becomes 16.5. */
 static double rounded_up(double most_m)
 {
     double step = 0.5 * pow(10, floor(log10(most_m)) - 1);
@@ -127,8 +127,8 @@ static double distance_range(const struct scene *scene, const struct field_param
     return 1;
 }
 
-/* Returns the largest standard deviation, over all assets, of the prior of interpolation gp (Gaussian process). If preparation fitted the
-   prior, each asset has its own. */
+/* Returns the largest standard deviation, over all assets, of the prior of interpolation gp (Gaussian process). A prior that
+   preparation fitted differs by asset. */
 static double deviation_range(const struct scene *scene, int group)
 {
     const double stated = scene->plant->groups[group].gp.deviation;

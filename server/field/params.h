@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parameters of a field: a session's choices of how it is computed and which quantity is shown. Thread: any. */
+/* The parameters of a field: a session's choice of how the field is computed and which quantity is shown. Thread: any. */
 #ifndef FIELD_PARAMS_H
 #define FIELD_PARAMS_H
 #include <stdbool.h>
@@ -11,7 +11,7 @@
 
 enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE, SHOW_OPERATOR, SHOW_UNCERTAINTY, SHOW_BLIND };
 
-/* One sensor's strength and decay, replacing those of the tag list. */
+/* One sensor's strength and decay, which replace those of the tag list. */
 struct field_override {
     int tag;
     float strength, decay; /* FIELD_AS_CONFIGURED: not overridden */
@@ -23,44 +23,44 @@ enum { FIELD_OVERRIDES = 256 };
 struct field_params {
     int group;
     enum field_show show;
-    int sensor;        /* index of the tag whose distance is shown; -1: none */
-    uint32_t baseline; /* id of the baseline that a difference is taken from; 0: none */
+    int sensor;        /* index of the tag from which distances are shown; -1: none */
+    uint32_t baseline; /* id of the baseline from which a difference is taken; 0: none */
     uint32_t trial;    /* id of the trial that moves sensors (field/trials.h); 0: none */
-    /* index of the slot of value/snapshot_cache.h that holds the past readings to show; 0: present readings. Fields of different
-       instants are thus cached separately */
+    /* index of the slot in value/snapshot_cache.h with the past readings to show; 0: current readings. It makes the cache
+       distinguish fields of different instants */
     int slot;
     enum interpolation interpolation;
     enum distance_mode distance;
     enum fill_mode fill;
-    double strength, decay; /* factors on each sensor's strength and decay as configured; 1: unchanged */
+    double strength, decay; /* factors applied to each sensor's configured strength and decay; 1: unchanged */
     double power;           /* exponent p of the distance, for interpolation shepard */
-    double radius_m;        /* radius R of interpolation paper; 0: the largest distance on the asset from any of its configured sensors */
+    double radius_m;        /* radius R of interpolation paper; 0: the largest distance on the asset from any configured sensor */
     double reach_m;         /* INFINITY: no limit */
     size_t override_count;
     struct field_override overrides[FIELD_OVERRIDES]; /* overrides sorted by tag; unused elements are zero */
 };
 /* Fills in the group's defaults from the plant file. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
-/* Sets the shown quantity, and adapts the interpolation. `fin` lets values fall towards ambient, which makes no sense for `show:
-   operator` (the position of each reading between its tag's limits): `harmonic`, or `shepard` if that is not prepared, replaces it.
-   Uncertainty uses `gp` wherever it is prepared. */
+/* Sets the shown quantity, and adapts the interpolation. `fin` lets values fall towards ambient, which makes no sense for
+   `show: operator` (the position of each reading between its tag's limits): it is replaced by `harmonic`, or by `shepard` if
+   `harmonic` is not prepared. Uncertainty uses `gp` wherever it is prepared. */
 void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
-/* Returns whether each sensor that the parameters name (`sensor`, overrides) belongs to the shown group and has a position. */
+/* Returns true if every sensor that the parameters name (`sensor`, overrides) belongs to the shown group and has a position. */
 bool field_params_placed(const struct plant *plant, const struct field_params *params);
-/* Checks the parameters: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. Returns NULL if they are
-   valid, else a static text that says what is wrong. */
+/* Checks the parameters: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. Returns NULL if
+   they are valid, else what is wrong (static text). */
 const char *field_params_wrong(const struct plant *plant, const struct field_params *params);
 /* Sets one sensor's override; removes it if both values are FIELD_AS_CONFIGURED. Returns false if there is no room for another override. */
 bool field_params_override(struct field_params *params, struct field_override override);
 /* Returns the tag's override; NULL: there is none. Owned by params. */
 const struct field_override *field_params_override_of(const struct field_params *params, int tag);
-/* Returns whether the shown quantity depends only on which sensors are good, not on their readings. */
+/* Returns true if the shown quantity depends only on which sensors are good, not on their readings. */
 bool field_params_cover(const struct field_params *params);
-/* Writes the default range of the colour map: the group's MIN and MAX; for distances 0 to the largest, rounded up; for differences a
-   quarter of the range below and above 0; for `show: operator` -3 to 3, the positions between a tag's alarm limits (field/limits.h); for
-   uncertainty 0 to the standard deviation that `gp` assumes without any reading (its prior); for hot spots a twentieth of the group's range
-   to the whole range. */
+/* Writes the default range of the colour map: the group's MIN and MAX; for distances 0 to the largest, rounded up; for
+   differences a quarter of the range on either side of 0; for `show: operator` -3 to 3, the positions between a tag's alarm
+   limits (field/limits.h); for uncertainty 0 to the standard deviation of `gp` without any reading (its prior); for hot spots a
+   twentieth of the group's range to the whole range. */
 void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Evaluates a field by straight-line distances (pixel_field.h) at one point, by sums over all its sensors. */
+/* Evaluates a field based on straight-line distances (pixel_field.h) at one point, as a sum over all its sensors. */
 #include "field/pixel_field.h"
 
 #include <math.h>
@@ -35,8 +35,8 @@ static struct nearest nearest_of(const struct pixel_field *field, const float po
     return nearest;
 }
 
-/* Returns a sensor's weight; *term receives the factor of the sensor's value in the sum. near_log2: log2 of near_m. top: for interpolation
-   paper, the largest exponent of all sensors at this point, which prevents overflow. */
+/* Returns a sensor's weight; *term receives the factor with which the sensor's value enters the sum. near_log2: log2 of near_m.
+   top: for interpolation paper, the largest exponent of all sensors at this point, which prevents overflow. */
 static float weight_of(const struct pixel_field *field, const struct pixel_sensor *sensor, float distance_m, float near_m, float near_log2,
                        float top, float *term)
 {
@@ -96,8 +96,8 @@ void pixel_field_at(const struct pixel_field *field, const float point_m[3], str
     out->uncertain |= reached && lost && field->fill && field->show != PIXEL_BLIND;
 }
 
-/* Returns the largest change of a reading, which bounds the change of any value: shepard's values are weighted means of readings, and
-   paper's values change by no more than the readings. */
+/* Returns the largest change of a reading, which bounds the change of any value: shepard's values are weighted means of
+   readings, and paper's values change by no more than the readings do. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before)
 {
     struct pixel_field same = *before;

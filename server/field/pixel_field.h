@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields by straight-line distance: shepard and paper (field.h) depend on these distances alone, so renderers evaluate them at the
-   surface point of each pixel. Such a field is exact, on triangles of any size and on every level of detail. Thread: any. */
+/* Fields based on straight-line distances: shepard and paper (field.h) depend on these distances alone, so renderers evaluate
+   them at the surface point of each pixel. Such a field is exact on triangles of any size and on every level of detail. Thread:
+   any. */
 #ifndef FIELD_PIXEL_FIELD_H
 #define FIELD_PIXEL_FIELD_H
 #include <stdbool.h>
@@ -13,13 +14,13 @@ enum { PIXEL_CONFIGURED = 1, PIXEL_USABLE = 2, PIXEL_UNCERTAIN = 4, PIXEL_NO_LIM
 
 struct pixel_sensor {
     float place_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
-    float value;      /* value that enters the sum */
+    float value;      /* value of the sensor in the sum */
     float strength, decay;
-    uint32_t state; /* PIXEL_* bits; with neither PIXEL_USABLE nor PIXEL_NO_LIMITS the sensor is lost */
+    uint32_t state; /* PIXEL_* bits; if neither PIXEL_USABLE nor PIXEL_NO_LIMITS is set, the sensor is lost */
 };
 
-/* A field that renderers evaluate at each pixel. Zero it before filling it in, because fields are compared and hashed byte by byte, padding
-   included. */
+/* A field that renderers evaluate at each pixel. Zero it before filling it, because fields are compared and hashed byte by
+   byte, including padding. */
 struct pixel_field {
     int32_t count; /* number of configured sensors; 0: the field is interpolated between vertices instead */
     int32_t paper, fill;
@@ -36,9 +37,9 @@ struct pixel_value {
 };
 /* Evaluates the field at a point in coordinates of the asset file. */
 void pixel_field_at(const struct pixel_field *field, const float point_m[3], struct pixel_value *out);
-/* Returns the largest change of any value of the field since `before`; INFINITY if anything but readings changed. */
+/* Returns the largest change of any of the field's values since `before`; INFINITY if anything but readings changed. */
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before);
-/* Replaces *to, which must be zeroed or filled before, by a copy of *from with its own sensors. */
+/* Replaces *to, which must be zeroed or already filled, with a copy of *from that has its own sensors. */
 void pixel_field_copy(struct pixel_field *to, const struct pixel_field *from);
 void pixel_field_finish(struct pixel_field *field); /* frees the sensors and zeroes the field */
 uint64_t pixel_field_hash(const struct pixel_field *field);

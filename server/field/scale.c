@@ -29,8 +29,9 @@ static double band_count(const struct scale *scale)
     return fmax(ceil((scale->max - scale->min) / scale->interval - 0.001), 1);
 }
 
-/* Returns the position in the colour map (0..1) of the colour of the band that contains the value. Values are stored as floats, so in
-   double precision a value at the edge of a band may be slightly below that edge; comparison and division therefore use floats. */
+/* Returns the position (0..1) in the colour map of the colour of the band that contains the value. Comparison and division use
+   floats: values are stored as floats, so in double precision a value at the edge of a band could be slightly below that edge.
+   */
 static double band_place(const struct scale *scale, double value)
 {
     if (scale->break_count > 0) {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour scale: which colour of a colour map a value gets. Legends, frames and clients use the same rule:
-   - Position of a value: (value - MIN)/(MAX - MIN), or log(value/MIN)/log(MAX/MIN) on a logarithmic scale.
-   - Colours: values below MIN and above MAX have colours of their own. Other values have the colour with index
-     min(255, floor(256 position)); neighbouring colours are never mixed.
-   - Bands of equal width (`interval`): band k begins at MIN + k interval, for k < max(1, ceil((MAX - MIN)/interval - 0.001)). MAX may make
-     the last band shorter. A band has the colour at the middle of its positions.
-   - Bands between `breaks`: n breaks inside (MIN, MAX) make n + 1 bands. Band i has the colour at the position (i + 0.5)/(n + 1).
-   MIN, MAX and value are compared as 32-bit floats, because they are stored as such. Pure. Thread: any. */
+/* Colour scale: the mapping from values to colours of a colour map. Legends, frames and clients use the same rules: - Position
+   of a value: (value - MIN)/(MAX - MIN), or log(value/MIN)/log(MAX/MIN) on a logarithmic scale. - Colours: values below MIN and
+   above MAX have colours of their own. Other values have the colour with index min(255, floor(256 position)); neighbouring
+   colours are never mixed. - Bands of equal width (`interval`): band k begins at MIN + k interval, for k < max(1, ceil((MAX -
+   MIN)/interval - 0.001)). MAX may make the last band shorter. A band has the colour at the middle of its positions. - Bands
+   between `breaks`: n breaks inside (MIN, MAX) make n + 1 bands. Band i has the colour at the position (i + 0.5)/(n + 1). MIN,
+   MAX and value are compared as 32-bit floats, because they are stored as such. Pure. Thread: any. */
 #ifndef FIELD_SCALE_H
 #define FIELD_SCALE_H
 #include <stdbool.h>
@@ -17,15 +16,15 @@
 enum { SCALE_BREAKS = PLANT_BREAKS, SCALE_EDGES = 64 };
 struct scale {
     const struct colormap *map;
-    double min, max; /* MIN and MAX of the scale: min < max; both above 0 if `log` */
+    double min, max; /* MIN and MAX of the scale: min < max, and both above 0 if `log` */
     bool log;
     double interval;             /* width of bands; 0: none */
-    double breaks[SCALE_BREAKS]; /* ascending values that separate bands of colour; they replace `interval` */
+    double breaks[SCALE_BREAKS]; /* ascending values that separate the bands of colour; they replace `interval` */
     int break_count;
 };
 enum { SCALE_BELOW = -1, SCALE_ABOVE = 256 };
 
-/* Returns the value's position on the scale, 0 at MIN and 1 at MAX; value > 0 where the scale is logarithmic. */
+/* Returns the value's position on the scale, 0 at MIN and 1 at MAX; value must be positive if the scale is logarithmic. */
 double scale_place(const struct scale *scale, double value);
 /* Returns the value at a position; the inverse of scale_place(). */
 double scale_value(const struct scale *scale, double place);
@@ -33,7 +32,7 @@ double scale_value(const struct scale *scale, double place);
 int scale_index(const struct scale *scale, double value);
 /* Writes the colour of a value. */
 void scale_look_up(const struct scale *scale, double value, uint8_t rgb[3]);
-/* Writes the values where bands meet, ascending. Returns the number of values; 0 if there are no bands, or more than SCALE_EDGES values. */
+/* Writes the values at which bands meet, ascending. Returns their number; 0 if there are no bands, or more than SCALE_EDGES values. */
 int scale_edges(const struct scale *scale, double edges[SCALE_EDGES]);
 /* Returns the smallest change of a value that can change its colour. */
 double scale_step(const struct scale *scale);

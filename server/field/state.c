@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads from a snapshot what each sensor contributes to the field, and decides whether the computed scalars are out of date. */
+/* Reads each sensor's contribution to the field from a snapshot, and decides whether the computed scalars are out of date. */
 #include "field/state.h"
 
 #include <float.h>
@@ -11,9 +11,9 @@
 #include "value/quality.h"
 
 #define FLAG 255
-#define FILLED_DOUBT 0.1   /* if more than this fraction of the value computed for a lost sensor rests on Uncertain sensors, the value is
-                              flagged as uncertain */
-#define READING_LIMIT 1e30 /* readings are limited to this magnitude, since larger ones would overflow sums of floats */
+#define FILLED_DOUBT 0.1   /* a value computed for a lost sensor is flagged as uncertain if more than this fraction comes from
+                              Uncertain sensors */
+#define READING_LIMIT 1e30 /* readings are limited to this magnitude, because larger ones would overflow sums of floats */
 
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params)
 {
@@ -51,8 +51,8 @@ void state_destroy(struct field_state **state_ptr)
     *state_ptr = NULL;
 }
 
-/* Returns true if the state stores its sums over sensors between updates. With few sensors it does not, because summing again takes no
-   longer than reading and writing the sums. */
+/* Returns true if the state stores its sums over sensors between updates. With few sensors it does not, because summing again
+   is as fast as reading and writing the sums. */
 static bool keeps_sums(const struct field_state *state)
 {
     return state->layout->sensor_count > KERNEL_COLUMNS;
@@ -69,7 +69,7 @@ size_t state_bytes(const struct field_state *state)
     return sizeof(struct field_state) + state->room * each_vertex(state) + state->layout->sensor_count * each_sensor;
 }
 
-/* Returns the number of vertices to allocate: `count` rounded up to whole blocks, at most all vertices. */
+/* Returns the number of vertices to allocate: `count` rounded up to whole blocks, but at most all vertices. */
 static size_t room_for(const struct field_state *state, size_t count)
 {
     size_t whole = (count + KERNEL_BLOCK - 1) / KERNEL_BLOCK * KERNEL_BLOCK;
@@ -127,7 +127,7 @@ static double value_of(const struct field_state *state, const struct plant_tag *
 static struct state_input input_of(const struct field_state *state, const struct plant_tag *tag, const struct reading *reading)
 {
     bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
-    /* coverage quantities (SHOW_UNCERTAINTY, SHOW_BLIND) depend only on whether the sensor is good, so its value stays 0 */
+    /* coverage quantities (SHOW_UNCERTAINTY, SHOW_BLIND) depend only on whether a sensor is good, so its value stays 0 */
     if (field_params_cover(&state->params))
         return (struct state_input){ .usable = good ? SENSOR_USED : SENSOR_LOST };
     double value = good ? value_of(state, tag, reading->value) : 0;
@@ -140,8 +140,8 @@ static struct state_input input_of(const struct field_state *state, const struct
     };
 }
 
-/* Subtracts the baseline's input `then` from the present input `now`. Only sensors usable in both contribute: otherwise a sensor that
-   appeared or failed would look like a change of the plant. */
+/* Subtracts the baseline's input `then` from the current input `now`. Only sensors usable in both contribute; otherwise a
+   sensor that appeared or failed would look like a change of the plant. */
 static struct state_input less(struct state_input now, struct state_input then)
 {
     bool usable = now.usable && then.usable;
@@ -152,16 +152,16 @@ static struct state_input less(struct state_input now, struct state_input then)
     };
 }
 
-/* Returns how near a reading is to trouble; larger is nearer. With limits: the absolute position between its tag's limits (0: middle, 1: at
-   a limit); else the distance from the middle of the group's range, relative to half the range, below 1. */
+/* Returns how critical a reading is. With limits: the absolute position between its tag's limits (0: middle, 1: at a limit);
+   else the distance from the middle of the group's range, relative to half the range, below 1. */
 static double severity_of(const struct plant_group *group, const struct plant_tag *tag, double reading)
 {
     double place = limit_place(group, tag, reading), middle = (group->min + group->max) / 2;
     return isfinite(place) ? fabs(place) : fmin(fabs(reading - middle) / (group->max - middle), 0.999);
 }
 
-/* If the positions of all sensors are assumed, selects the sensor whose reading is nearest to trouble (severity_of) to give the asset's
-   value; of equally near ones the first. */
+/* If all sensor positions are assumed, selects the sensor with the most critical reading (severity_of) to give the asset's
+   value; among equal ones the first. */
 static void choose_one(struct field_state *state, const struct snapshot *snapshot)
 {
     const struct field_layout *layout = state->layout;
@@ -216,7 +216,7 @@ void state_fill(struct field_state *state)
         doubts[i] = state->now[i].uncertain;
     }
     influence_fill_values(weights->fill, values);
-    influence_fill_values(weights->fill, doubts); /* computes which fraction of each lost sensor's value comes from Uncertain readings */
+    influence_fill_values(weights->fill, doubts); /* computes the fraction of each lost sensor's value that comes from Uncertain readings */
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (!weights->takes_part[i]) {
             state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field of one asset for one set of parameters: its scalars, and the readings that they show. Thread: one at a time. */
+/* The field of one asset for one set of parameters: its scalars, and the readings from which they were computed. Thread: one at a time. */
 #ifndef FIELD_STATE_H
 #define FIELD_STATE_H
 #include "base/workers.h"
@@ -20,30 +20,30 @@ struct field_state {
     struct weights *weights; /* counted in weights->users */
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
-    double *sums;            /* by vertex: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
+    double *sums;            /* [vertex]: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
     size_t room;             /* number of vertices for which `at` (scalars) and `sums` have room */
-    double error_limit;      /* vertices with a larger weights->errors are marked uncertain; initially 0 */
-    unsigned errors_version; /* value of weights->errors_version when the vertices were last marked by these errors */
+    double error_limit;      /* vertices whose weights->errors exceed this are marked uncertain; initially 0 */
+    unsigned errors_version; /* value of weights->errors_version when vertices were last marked for their errors */
     double error_scale;      /* factor that converts an element of weights->errors to the error of a drawn value */
-    /* number of updates that added changes to the sums since these were last computed in full; their rounding errors add up */
+    /* number of updates that added changes to the sums since the sums were last computed in full; the rounding errors accumulate */
     unsigned added;
-    /* by sensor of the layout. now: inputs from the newest snapshot; shown: inputs from which the scalars were computed */
+    /* [sensor of the layout]. now: inputs from the newest snapshot; shown: inputs from which the scalars were computed */
     struct state_input *now, *shown;
-    uint8_t *usable; /* by sensor of the layout: whether the input in `now` is used (enum sensor_use) */
-    /* memory of the lists of sensors to sum (struct weights_terms). Element 0: sensors whose input changed; element 1: all sensors */
+    uint8_t *usable; /* [sensor of the layout]: whether the input in `now` is used (enum sensor_use) */
+    /* memory for the lists of sensors to sum (struct weights_terms). Element 0: sensors whose input changed; element 1: all sensors */
     struct state_list {
         uint32_t *members;
         double *factors;
         uint8_t *marked;
     } lists[2];
     struct update *update; /* update in progress; NULL: none */
-    size_t wanted;         /* number of vertices requested since the last update: always the first ones of the file */
+    size_t wanted;         /* number of vertices requested since the last update, always from the start of the file */
     uint64_t used;
     struct field_state *next;
 };
 
-/* Creates the state, never NULL, without room for vertices (state_grow). Copies params; the layout must outlive the state. The caller
-   destroys it. */
+/* Creates a state without room for vertices (state_grow()); never returns NULL. Copies params; the layout must outlive the
+   state. The caller destroys it. */
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params);
 /* Frees the state. Accepts a pointer to NULL; sets the pointer to NULL. */
 void state_destroy(struct field_state **state);
@@ -54,16 +54,16 @@ size_t state_more_bytes(const struct field_state *state, size_t count);
    changed. */
 bool state_grow(struct field_state *state, size_t count);
 
-/* Reads the snapshot into state->now, state->usable and the ages. baseline: subtracted for a difference; NULL: unknown. */
+/* Reads the snapshot into state->now, state->usable and the ages. baseline: subtracted to give a difference; NULL: unknown. */
 void state_read(struct field_state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
-/* For prepared interpolations: gives lost sensors in state->now the values that follow from the other sensors. The state's weights must
-   be for the qualities in state->now. */
+/* For prepared interpolations: sets the values of lost sensors in state->now to those that follow from the other sensors. The
+   state's weights must match the qualities in state->now. */
 void state_fill(struct field_state *state);
-/* Returns whether state->weights must be replaced, because other sensors are usable in state->now than when they were computed. */
+/* Returns true if state->weights must be replaced, because other sensors are usable in state->now than for these weights. */
 bool state_needs_weights(const struct field_state *state);
 /* Returns true if the state's scalars are out of date: they were computed from other inputs than state->now. */
 bool state_is_behind(const struct field_state *state);
-/* For SHOW_DISTANCE, instead of state_read() and an update: fills the scalars once with the distances from one sensor of the layout. */
+/* For SHOW_DISTANCE, in place of state_read() and an update: fills the scalars once with the distances from one sensor of the layout. */
 void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Registry of trials: sets of sensor positions that users try out (trials.h). */
+/* Registry of trials: sets of sensor positions that users are trying out (trials.h). */
 #include "field/trials.h"
 
 #include <pthread.h>
@@ -93,7 +93,7 @@ void trials_destroy(struct trials **pointer)
     *pointer = NULL;
 }
 
-/* Frees dropped trials except the newest TRIALS_KEPT, and except trials that a caller holds (trials_take). Call with the lock held. */
+/* Frees dropped trials, except the newest TRIALS_KEPT and those that a caller holds (trials_take). Call with the lock held. */
 static void sweep(struct trials *trials)
 {
     int dropped = 0;

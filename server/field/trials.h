@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trials: sets of sensor positions that a user tries out, each with an id that views refer to. A set is immutable; each step of dragging a
-   sensor makes a new one. Ids are never reused. Thread: any. */
+/* Trials: sets of sensor positions that a user is trying out, each with an id by which views refer to it. A set is immutable;
+   each step of dragging a sensor creates a new one. Ids are never reused. Thread: any. */
 #ifndef FIELD_TRIALS_H
 #define FIELD_TRIALS_H
 #include <stdbool.h>
@@ -11,19 +11,19 @@ enum { TRIAL_SENSORS = 64 };
 
 /* Geodesic distances of every vertex from a trial position; reference-counted. */
 struct trial_reach;
-/* Makes a reference-counted object of distance_m and takes ownership of the array (mem_free). Returns one reference. */
+/* Creates a reference-counted object from distance_m and takes ownership of that array (mem_free). Returns one reference. */
 struct trial_reach *trial_reach_create(float *distance_m);
 /* Drops a reference. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
-    int tag, asset;            /* tag of the sensor, and the only asset on which it is */
+    int tag, asset;            /* tag of the sensor, and the only asset that it is on */
     float surface_m[3];        /* position of the sensor in metres, in the coordinates of the asset file */
     double place_m[3];         /* position of the sensor in plant coordinates */
     uint32_t vertex;           /* vertex nearest to the position */
     struct trial_reach *reach; /* geodesic distances; NULL: not known yet, straight-line distances are used meanwhile */
-    uint32_t number;           /* unique number of this position with its distances, set by trials_put(), by which cached weights for
-                                  different positions are told apart */
+    uint32_t number;           /* unique number of this position and its distances, set by trials_put(); distinguishes cached
+                                  weights of different positions */
 };
 
 struct trial {
@@ -31,10 +31,10 @@ struct trial {
     size_t count;
     struct trial_sensor sensors[TRIAL_SENSORS];
 };
-/* Returns the trial's position of this tag; NULL if the trial does not move the tag, or is NULL. */
+/* Returns the trial's position for this tag; NULL if the trial does not move the tag, or is NULL. */
 const struct trial_sensor *trial_find(const struct trial *trial, int tag);
-/* Returns the geodesic distance in metres of each vertex of the asset from the sensor's trial position. NULL while
-   the distances are being computed. Owned by sensor->reach. */
+/* Returns the geodesic distance in metres from the sensor's trial position to each vertex of the asset; NULL while it is being
+   computed. Owned by sensor->reach. */
 const float *trial_distances(const struct trial_sensor *sensor);
 
 struct trials;
@@ -42,15 +42,15 @@ struct trials;
 struct trials *trials_create(void);
 /* Frees the registry. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trials_destroy(struct trials **trials);
-/* Adds a trial of 1..TRIAL_SENSORS sensors; copies them and takes references of its own. Returns the trial's id, never 0. */
+/* Adds a trial of 1..TRIAL_SENSORS sensors; copies the sensors and takes its own references. Returns the trial's id, never 0. */
 uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, size_t count);
 enum { TRIALS_KEPT = 16 };
-/* Marks a trial as dropped: its user no longer needs it. The newest TRIALS_KEPT dropped trials are kept, because frames that are being
-   drawn may use them. id 0 is a no-op. */
+/* Marks a trial as dropped: its user no longer needs it. The newest TRIALS_KEPT dropped trials stay, because frames in progress
+   may use them. id 0 is a no-op. */
 void trials_drop(struct trials *trials, uint32_t id);
-/* Returns whether the trial exists and was not dropped. */
+/* Returns true if the trial exists and has not been dropped. */
 bool trials_live(struct trials *trials, uint32_t id);
-/* Returns the trial, held until trials_give(). NULL: there is none. */
+/* Returns the trial, held until trials_give(); NULL: there is none. */
 const struct trial *trials_take(struct trials *trials, uint32_t id);
 /* Releases a trial. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trials_give(struct trials *trials, const struct trial **trial);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Updates the scalars of a field, a block of KERNEL_BLOCK vertices at a time: sums the weighted readings of all sensors, or adds only the
-   changes of readings that changed. */
+/* Updates the scalars of a field, one block of KERNEL_BLOCK vertices at a time: sums the weighted readings of all sensors, or
+   adds only the changes of readings. */
 #include "field/update.h"
 
 #include <float.h>
@@ -14,33 +14,32 @@
 #include "plant/influence.h"
 
 #define FLAG 255
-#define DRAWN_ERROR (1 / 255.0) /* fraction of the range; a vertex whose triangles may be drawn with a larger error is marked uncertain */
-/* factor by which a newly chosen error limit is stricter than necessary, so that it stays valid when readings change slightly */
+#define DRAWN_ERROR (1 / 255.0) /* fraction of the range; vertices whose triangles may be drawn with a larger error are marked uncertain */
+/* a newly chosen error limit is stricter than necessary by this factor, so that it stays valid when readings change slightly */
 #define ERROR_MARGIN 1.1
-/* the limit above which vertices are marked uncertain (error_limit) is replaced if it is stricter than necessary by more than this
-   factor */
+/* the error limit (error_limit) is replaced if it is stricter than necessary by more than this factor */
 #define ERROR_SLACK 1.5
 #define MAX_BLIND 1000.0 /* largest height of a hot spot that is shown, in multiples of the group's range */
-/* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding errors stay. After a larger
-   change, everything is summed again */
+/* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding error remains.
+   After a larger change, everything is summed again */
 #define STEP_LIMIT 1e6
-/* number of updates after which everything is summed again, so that the accumulated rounding stays below 1e-9 of the range */
+/* number of updates after which everything is summed again, which keeps the accumulated rounding below 1e-9 of the range */
 #define MAX_ADDED 4096
-#define JOB_WORK 30000.0 /* estimated work in nanoseconds from which another thread is woken to share an update */
-#define SMALL_WORK 1e6   /* nanoseconds; if many assets are updated, an update with less work than this runs on one thread */
+#define JOB_WORK 30000.0 /* estimated work in nanoseconds from which another thread is woken to share in an update */
+#define SMALL_WORK 1e6   /* nanoseconds; when many assets are updated, an update with less work than this runs on one thread */
 #define MAKE_WORK 1.0    /* estimated nanoseconds to compute one sensor's weight at one vertex and add it */
-#define ADD_WORK 0.15    /* estimated nanoseconds to add a weight that was computed before */
+#define ADD_WORK 0.15    /* estimated nanoseconds to add a weight that is already computed */
 
 struct update {
     struct field_state *state;
     struct weights_terms all, changed;
     struct kernel_value rule;
-    /* indices of blocks of vertices. next: block to update next; old: end of the blocks that already had values before; end: end of the
-       blocks that need values */
+    /* indices of blocks of vertices. next: block to update next; old: end of the blocks that already had values; end: end of
+       the blocks that need values */
     size_t next, old, end;
-    bool sums_all; /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of changed readings */
-    bool flags; /* true: qualities changed, so flags of all blocks are set; false: flags in blocks below `old` stay */
-    bool marks; /* true: the reading of at least one sensor in the sum has the quality Uncertain */
+    bool sums_all; /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of readings */
+    bool flags; /* true: qualities changed, so the flags of all blocks are set; false: flags in blocks below `old` stay */
+    bool marks; /* true: at least one reading in the sum has the quality Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
     bool value_changed, flag_changed;
@@ -72,8 +71,8 @@ static struct weights_terms choose_terms(struct field_state *state, bool all)
     return (struct weights_terms){ .members = list->members, .factors = list->factors, .marked = list->marked, .count = count };
 }
 
-/* Returns true if changes may be added to the existing sums. They must be few, which makes adding cheaper than summing again, and small,
-   so that their rounding errors do not matter. */
+/* Returns true if changes may be added to the existing sums: they are few, so that adding is cheaper than summing again, and
+   small, so that their rounding errors do not matter. */
 static bool steps_are_small(const struct update *update)
 {
     const struct field_state *state = update->state;
@@ -97,12 +96,12 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
-        /* The interpolation fin sums differences from the ambient value, and `offset` adds ambient again. A sum of 0 is therefore valid and
-           means ambient. */
+        /* The interpolation fin sums differences from the ambient value, and `offset` adds ambient back. A sum of 0 is
+           therefore valid and means ambient. */
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
-        /* values of interpolation gp may lie outside the range of the readings, so they are not clamped */
+        /* values of interpolation gp are not clamped, because they may lie outside the range of the readings */
         if (state->params.interpolation == INTERPOLATION_GP)
             rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
@@ -114,8 +113,9 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
     rule->empty = difference || places ? 0 : (float)group->min;
 }
 
-/* Returns the factor that converts an error of the weights (weights->errors) to the largest error of a value. The errors of all weights at
-   a point add up to 0, so the factor is the spread of the readings; with `fin` they do not, so ambient counts as one more reading. */
+/* Returns the factor that converts an error of the weights (weights->errors) to the largest error of a value. The errors of all
+   weights at a point add up to 0, so the factor is the spread of the readings. With `fin` they do not, so ambient counts as one
+   more reading. */
 static double error_scale(const struct field_state *state)
 {
     double low = INFINITY, high = -INFINITY;
@@ -135,7 +135,7 @@ static double error_scale(const struct field_state *state)
     return unit * fmax(fabs(low), fabs(high));
 }
 
-/* Returns the width of the colour map's range, of which an error of a drawn value is a fraction. */
+/* Returns the width of the colour map's range, relative to which errors of drawn values are judged. */
 static double error_range(const struct field_state *state)
 {
     const struct plant_group *group = state->layout->group;
@@ -149,8 +149,9 @@ bool update_is_in_range(const struct field_state *state)
     return error_scale(state) <= error_range(state);
 }
 
-/* Chooses the limit for errors of the weights; vertices above it are marked uncertain. The limit stays while it is safe and not much too
-   strict, so that slightly changed readings do not rebuild all flags. Returns true if the flags must be set again. */
+/* Chooses the limit on errors of the weights above which vertices are marked uncertain. The limit stays while it is safe and
+   not much too strict, so that slightly changed readings do not rebuild all flags. Returns true if the flags must be set again.
+   */
 static bool choose_error_limit(struct field_state *state)
 {
     const struct weights *weights = state->weights;
@@ -188,7 +189,7 @@ void update_begin(struct field_state *state, size_t count)
     update->sums_all = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
-    /* no input changed: blocks that have values stay unchanged, and only new blocks are computed */
+    /* no input changed: computes only new blocks, and leaves those with values unchanged */
     if (!update->sums_all && update->changed.count == 0)
         update->next = update->old;
     update_rule(state, state->now, &update->rule);
@@ -200,12 +201,12 @@ void update_begin(struct field_state *state, size_t count)
 
 /* --- block by block --------------------------------------------------------------------------------------------------------- */
 
-/* Returns struct scalar's `uncertain`. marked / total: the fraction of the weight that is on Uncertain sensors. filled: the byte for a
+/* Returns struct scalar's `uncertain`. marked / total: the fraction of the weight on Uncertain sensors. filled: the byte for a
    value filled in around a lost sensor; the larger byte counts. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    /* 1 if half of the weight is on Uncertain sensors. Weights of interpolation gp may be negative, so `total` may be 0 and `part` above
-       2 */
+    /* 1 if Uncertain sensors have half of the weight. Weights of interpolation gp may be negative, so `total` may be 0 and
+       `part` above 2 */
     double part = total > 0 && marked > 0 ? 2 * marked / total : 0;
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
@@ -259,7 +260,7 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    if (total_wanted) /* known totals (sums of weights) are not written again, because other threads may be reading them */
+    if (total_wanted) /* known totals (sums of weights) are not rewritten, because other threads may be reading them */
         weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }
@@ -270,8 +271,8 @@ float update_blind(const struct plant_group *group, float near_m)
     return (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
 }
 
-/* Computes a block of SHOW_UNCERTAINTY or SHOW_BLIND, which depend on which sensors are good and not on their readings. Returns true if a
-   flag changed. */
+/* Computes a block of SHOW_UNCERTAINTY or SHOW_BLIND, which depend on which sensors are good, but not on their readings.
+   Returns true if a flag changed. */
 static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
 {
     const struct field_state *state = update->state;
@@ -285,7 +286,7 @@ static bool map_block(const struct update *update, size_t begin, size_t count, f
     return set_flags(update, begin, count, nothing, nothing);
 }
 
-/* Returns true if kernel_few() suffices for a block: few sensors, all of their weights cached, and no flags to set. */
+/* Returns true if kernel_few() suffices for a block: few sensors, all their weights cached, and no flags to set. */
 static bool is_simple(const struct update *update, size_t block, size_t begin)
 {
     return !field_params_cover(&update->state->params) && !update->state->sums && !update->flags && block < update->old &&
@@ -363,10 +364,10 @@ void update_run(struct field_state *state)
     update->next = update->end;
 }
 
-/* A legend states an error bound only if values on more than this fraction of an asset's surface may be wrong by more than 1/255 of the
-   range. Preparation does not subdivide triangles that nobody sees (inside bodies, and at jumps of distance), up to a quarter of the
-   surface of the demo's machines. These triangles are marked and picks report them, but a number in the legend would warn of errors that no
-   frame shows. */
+/* A legend gives an error bound only if values on more than this fraction of an asset's surface may be wrong by more than 1/255
+   of the range. Preparation does not subdivide triangles that nobody sees (inside bodies, and at jumps of distance), which are
+   up to a quarter of the surface of the demo's machines. These triangles are marked and picks report them, but a number in the
+   legend would warn of errors that no frame shows. */
 static const float MIN_LEGEND_SHARE = 0.3f;
 
 static double drawn_error(const struct field_state *state)

@@ -1,37 +1,38 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Updates a state's sums and scalars to new readings. The work can be done in several calls; all use the readings present when the
-   update began. Thread: one at a time (work is spread over `workers`). */
+/* Updates a state's sums and scalars to new readings. The work can be spread over several calls, which all use the readings
+   present when the update began. Thread: one at a time (work is spread over `workers`). */
 #ifndef FIELD_UPDATE_H
 #define FIELD_UPDATE_H
 #include "field/state.h"
 
-/* Begins an update of at least the first `count` vertices. Until the update ends, state->now must not change and the scalars must not be
-   read. */
+/* Begins an update of at least the first `count` vertices. Until the update ends, state->now must not change, and the scalars
+   must not be read. */
 void update_begin(struct field_state *state, size_t count);
-/* Does about `work` nanoseconds (of one core) of the update, and at least one block. Returns true once it is done; state->update is NULL
-   then. */
+/* Does about `work` nanoseconds (of one core) of the update, but at least one block. Returns true once it is done;
+   state->update is then NULL. */
 bool update_go_on(struct field_state *state, struct workers *workers, double work, uint64_t *versions);
 /* Returns true if the state's update is short and does not change its weights, so that update_run() may run in parallel with other
    updates. */
 bool update_is_light(const struct field_state *state);
-/* Does the whole update on the calling thread, after update_begin(), if update_is_light() returned true. update_end() must follow. Thread:
-   any, in parallel with updates of other states. */
+/* After update_begin(): runs the whole update on the calling thread, provided update_is_light() returned true. update_end()
+   must follow. Thread: any, in parallel with updates of other states. */
 void update_run(struct field_state *state);
 /* Completes the update after update_run(). Thread: the one that owns the field. */
 void update_end(struct field_state *state, uint64_t *versions);
-/* Returns whether the readings of state->now differ by no more than the range that preparation assumed. */
+/* Returns true if the readings in state->now differ by no more than the range that preparation assumed. */
 bool update_is_in_range(const struct field_state *state);
-/* Abandons the state's update in progress, if there is one. */
+/* Abandons the state's update in progress, if any. */
 void update_forget(struct field_state *state);
 
-/* Writes to *rule how sums over sensors are converted to field values. inputs: by sensor of the layout. */
+/* Writes the rule for converting sums over sensors to field values to *rule. inputs: [sensor of the layout]. */
 void update_rule(const struct field_state *state, const struct state_input *inputs, struct kernel_value *rule);
-/* Sets all members of *at except its value, for a prepared vertex of `weights`, which must be for the state's parameters and sensors.
-   total: sum of the vertex's weights; marked: sum of the weights of Uncertain sensors, 0 if there are none. */
+/* Sets all members of *at except its value, for a prepared vertex of `weights`, which must match the state's parameters and
+   sensors. total: sum of the vertex's weights; marked: sum of the weights of Uncertain sensors, 0 if there are none. */
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at);
-/* Returns the height of the smallest hot spot that a sensor at distance near_m shows. A hot spot of size s (the group's hot_spot_m) has
-   the shape exp(-D^2 / (2 s^2)) around its centre, so that a sensor at distance D reads only that fraction of its height. */
+/* Returns the height of the smallest hot spot that a sensor at distance near_m would show. A hot spot of size s (the group's
+   hot_spot_m) has the shape exp(-D^2 / (2 s^2)) around its centre, so a sensor at distance D reads only that fraction of its
+   height. */
 float update_blind(const struct plant_group *group, float near_m);
 
 #endif

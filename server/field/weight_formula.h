@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The weight of one sensor at one point, by straight-line or surface distance: kernels.c uses these formulas for many vertices at a time,
-   pixel_field.c for single points. render/soft/pixel_lanes.h has a SIMD version for squared distances. Branch-free, so that loops become
-   SIMD code. All distances in metres; near_m: distance of the nearest sensor. Pure. */
+/* The weight of one sensor at one point, by straight-line or surface distance. kernels.c uses these formulas for many vertices
+   at a time, pixel_field.c for single points; render/soft/pixel_lanes.h has a SIMD version for squared distances. Branch-free,
+   so that loops become SIMD code. All distances are in metres; near_m: distance of the nearest sensor. Pure. */
 #ifndef FIELD_WEIGHT_FORMULA_H
 #define FIELD_WEIGHT_FORMULA_H
 #include <float.h>
@@ -13,8 +13,8 @@
 
 #define WEIGHT_TINY 1e-37f
 
-/* log2 of x, or of WEIGHT_TINY if x is less; to 1e-7, exactly 0 at 1. Limits are applied to integers: a limit on floats would split the
-   loop into paths, which prevents SIMD. */
+/* Returns log2 of x, or of WEIGHT_TINY for smaller x; accurate to 1e-7, exactly 0 at 1. The limit is applied to integers: a
+   limit on floats would split the loop into paths, which prevents SIMD. */
 static inline float weight_log2(float x)
 {
     int32_t bits, tiny = 0x02081cea; /* bits of WEIGHT_TINY */
@@ -29,8 +29,8 @@ static inline float weight_log2(float x)
     return (float)exponent + x * p;
 }
 
-/* Returns 2^x for -2e6 <= x <= 0, with relative error 2e-7; exactly 1 at 0, exactly 0 below -126.5. For x from 0 to 2e6, some finite
-   number. */
+/* Returns 2^x for -2e6 <= x <= 0, with relative error 2e-7; exactly 1 at 0, exactly 0 below -126.5. For x from 0 to 2e6,
+   returns some finite number. */
 static inline float weight_exp2(float x)
 {
     int32_t whole = (int32_t)(x - 0.5f);
@@ -60,7 +60,7 @@ static inline float weight_faded(float weight, float distance_m, float near_m, f
     return weight_takes_part(distance_m, near_m, reach_m) ? weight * left * left : 0.0f;
 }
 
-/* Shepard: returns (near / distance)^power. Divisions dominate the cost, so this is computed as 2^(power (log2 near - log2 distance)). */
+/* Shepard: returns (near / distance)^power, as 2^(power (log2 near - log2 distance)), because divisions dominate the cost. */
 static inline float weight_part(float distance_m, float near_m, float near_log2, float power)
 {
     float part = weight_exp2(power * (near_log2 - weight_log2(distance_m)));
@@ -75,8 +75,8 @@ static inline float weight_part_squared(float distance_m, float near_m)
     return ratio * ratio;
 }
 
-/* Paper: returns log2(e) d strength, with d = max(0, (R - D) / R), D the distance and R the radius. d, which *d receives, is exactly 0 at
-   D = R: exactness matters because a small decay exponent amplifies small values. */
+/* Paper: returns log2(e) d strength, with d = max(0, (R - D) / R), D the distance and R the radius. *d receives d, which is
+   exactly 0 at D = R; this matters because a small decay exponent amplifies small values. */
 static inline float weight_exponent(float distance_m, float radius_m, float per_radius, float strength, float *d)
 {
     float near_one = (radius_m - distance_m) * per_radius;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the matrix G, the weight of each sensor at each vertex, a block of vertices at a time. A column of G holds one sensor's weights,
-   which follow from the sensor's distances. */
+/* Computes the matrix G, the weight of each sensor at each vertex, one block of vertices at a time. A column of G holds one
+   sensor's weights, which follow from the sensor's distances. */
 #include "field/weights.h"
 
 #include <math.h>
@@ -12,30 +12,29 @@
 #include "base/system/huge_pages.h"
 #include "plant/influence.h"
 
-/* for interpolation gp: smallest fraction of the prior's variance that readings must remove at a vertex. Vertices below it have no data */
+/* for interpolation gp: smallest fraction of the prior's variance that readings must remove for a vertex to have data */
 #define MIN_KNOWN_PART 0.1
-/* for interpolation fin: smallest fraction of a value that must come from sensors rather than from ambient. Vertices below it have no
-   data */
+/* for interpolation fin: smallest fraction of a value that must come from sensors rather than ambient for a vertex to have data */
 #define MIN_SENSOR_SHARE 0.1
 
-/* largest standard deviation of interpolation gp that is shown, as a multiple of the prior's standard deviation. On a body whose sensors
-   are all lost, it would otherwise be unbounded */
+/* largest standard deviation of interpolation gp to show, as a multiple of the prior's; without this limit it would be
+   unbounded on a body whose sensors are all lost */
 #define MAX_DEVIATIONS 4.0
 
-/* first bytes of a struct weights_key: what does not differ between sensors. Must have no padding, because keys are compared as bytes */
+/* first bytes of a struct weights_key: everything common to all sensors. Must have no padding, because keys are compared bytewise */
 struct key_head {
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
-    uint32_t trial; /* id of the layout's trial. The key does not contain the number of sensors, because the key's length determines it */
+    uint32_t trial; /* id of the layout's trial. The number of sensors is not in the key, because the key's length determines it */
 };
 struct key_sensor {
     uint32_t column, usable;
     float strength, decay;
 };
 
-/* Returns a sensor's strength; for interpolation paper multiplied by the user's factor. In shepard's sum such a common factor would
-   cancel. */
+/* Returns a sensor's strength; for interpolation paper, multiplied by the user's factor. In shepard's sum such a common factor
+   would cancel out. */
 static float strength_of(const struct layout_sensor *sensor, const struct field_params *params)
 {
     const struct field_override *override = field_params_override_of(params, sensor->tag);
@@ -88,8 +87,8 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
     return a->hash == b->hash && a->count == b->count && memcmp(a->bytes, b->bytes, a->count) == 0;
 }
 
-/* Returns the asset's prepared entry for this interpolation in its influence file. NULL: the interpolation is computed from distances,
-   or not prepared for these sensor positions. */
+/* Returns the asset's prepared entry for this interpolation in its influence file; NULL: the interpolation is computed from
+   distances, or not prepared for these sensor positions. */
 static const struct influence_entry *influence_of(const struct field_layout *layout, enum interpolation interpolation)
 {
     const struct influence_entry *entry = interpolation_is_prepared(interpolation) && !layout->trial && !layout->assumed
@@ -121,9 +120,9 @@ static void choose_members(struct weights *weights, const struct field_params *p
         weights->alike &= weights->strength[weights->members[m]] == weights->strength[weights->members[0]];
 }
 
-/* Returns the number of steps of scalar.lacking per metre. That byte encodes the distance of a vertex from the border between data and no
-   data: 127 is the border, more is beyond it. The 127 steps on either side span a fifth of the asset's diagonal, which is more than any
-   triangle at the border. */
+/* Returns the number of steps of scalar.lacking per metre. That byte encodes a vertex's distance beyond the border between data
+   and no data: 127 is the border, larger values are beyond it. The 127 steps on either side span a fifth of the asset's
+   diagonal, which is more than the size of any triangle at the border. */
 static float steps_per_m(const struct field_layout *layout)
 {
     const struct asset_header *header = layout->file->view.header;
@@ -143,13 +142,13 @@ static bool take_errors(struct weights *weights, const float *errors)
         for (int b = 0; b < WEIGHTS_ERRING; b++)
             erring[b] += errors[v] >= ldexpf(1, -b);
     }
-    for (int b = 0; b < WEIGHTS_ERRING; b++) /* vertices are counted in integers, because a float counter stops growing at 2^24 */
+    for (int b = 0; b < WEIGHTS_ERRING; b++) /* counts vertices in integers, because a float counter stops growing at 2^24 */
         weights->erring[b] = (float)((double)erring[b] / (double)weights->layout->vertex_count);
     weights->errors_version = 1;
     return weights->errors;
 }
 
-/* Uses the weights of the influence file as they are, not divided by their sum: where the weights at a vertex add up to less than 1,
+/* Uses the weights of the influence file unchanged, not divided by their sum: where a vertex's weights add up to less than 1,
    ambient has the remaining weight. */
 static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
 {
@@ -185,7 +184,7 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
     struct weights *weights = mem_new(sizeof(*weights));
     weights->layout = layout;
     weights->interpolation = params->interpolation;
-    /* prepared interpolations always use distances along the surface, whatever distance the user chose */
+    /* prepared interpolations always use distances along the surface, whatever the user chose */
     weights->distance = interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance;
     weights->power = (float)params->power;
     weights->reach_m = (float)params->reach_m;
@@ -239,8 +238,8 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    /* If the strengths are equal, only power and decay may differ. The array `top`, which scales weights, does not depend on these two.
-       Neither do the sums of weights (`total`) of the interpolation paper. */
+    /* If the strengths are equal, only power and decay can differ. The array `top`, which scales weights, depends on neither;
+       nor do the sums of weights (`total`) of the interpolation paper. */
     if (same_strengths(weights, from))
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
@@ -295,7 +294,7 @@ size_t weights_bytes(const struct field_layout *layout)
            layout->sensor_count * each_sensor;
 }
 
-/* Returns how many bytes the columns of one block take (the weights of all sensors at KERNEL_BLOCK vertices). */
+/* Returns the size in bytes of one block's columns (the weights of all sensors at KERNEL_BLOCK vertices). */
 static size_t block_bytes(const struct weights *weights)
 {
     return weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
@@ -384,7 +383,7 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
-/* Classifies a vertex by its distances to the nearest used sensor, lost sensor and sensor without limits. */
+/* Classifies a vertex by its distances from the nearest used sensor, the nearest lost sensor, and the nearest sensor without limits. */
 static enum place place_of(float near_m, float lost_m, float no_limits_m, float reach_m)
 {
     if (no_limits_m < near_m && no_limits_m <= lost_m && no_limits_m <= reach_m)
@@ -478,13 +477,13 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
     }
 }
 
-/* Working memory for up to KERNEL_COLUMNS columns (a column: one sensor's weights at a block), computed in one step of a sum. */
+/* Working memory for up to KERNEL_COLUMNS columns (a column is one sensor's weights at a block), computed in one step of a sum. */
 struct workroom {
     float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };
 
-/* Computes one sensor's column (weights) for a block of vertices. term: receives the factor of the reading; weight: for `paper`, receives
-   the weight, which lacks the factor d^decay. weight NULL: only the term is wanted. */
+/* Computes one sensor's column (weights) for a block of vertices. term: receives the factor of the reading; weight: for
+   `paper`, receives the weight, without the factor d^decay. weight NULL: computes only the term. */
 static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, struct workroom *room, float *weight,
                         float *term)
 {
@@ -508,8 +507,9 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
-/* Returns the cached columns (sensors' weights) to prefetch while the first `done` terms are added: the next ones of this block, or the
-   first ones of the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS, or they are not cached. */
+/* Returns the cached columns (sensors' weights) to prefetch while the first `done` terms are being added: the next ones of this
+   block, or the first ones of the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS, or they
+   are not cached. */
 static const float *const *columns_after(const struct weights *weights, size_t begin, const struct weights_terms *terms, size_t done,
                                          const float **room)
 {
@@ -560,7 +560,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         for (size_t k = 0; sums->marked && k < number; k++) {
             if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
-            /* weights of interpolation gp may be negative: adds absolute values, so that two weights do not cancel */
+            /* weights of interpolation gp may be negative: adds absolute values, so that weights do not cancel */
             for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++)
                 sums->marked[j] += fabs((double)heavy[k][j]);
         }

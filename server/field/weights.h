@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The matrix G: the weight of each usable sensor at each vertex of an asset, for one set of parameters and one set of usable sensors
-   (field.h). G does not depend on readings, so instances of one asset and sessions with equal parameters share it. Columns of G may be
-   cached or recomputed for each sum, with bit-identical results. Thread: one, but weights_prepare() and weights_add() may run on different
-   blocks in parallel. */
+/* The matrix G: the weight of each usable sensor at each vertex of an asset, for one set of parameters and one set of usable
+   sensors (field.h). G does not depend on readings, so instances of one asset and sessions with equal parameters share it.
+   Columns of G may be cached or recomputed for each sum, with bit-identical results. Thread: one, but weights_prepare() and
+   weights_add() may run in parallel on different blocks. */
 #ifndef FIELD_WEIGHTS_H
 #define FIELD_WEIGHTS_H
 #include "field/params.h"
@@ -11,13 +11,13 @@
 #include "field/layout.h"
 
 enum sensor_use {
-    SENSOR_LOST, /* the sensor is configured but not usable; there is no data around it */
+    SENSOR_LOST, /* the sensor is configured but not usable, so there is no data around it */
     SENSOR_USED,
-    SENSOR_NO_LIMITS, /* the sensor is good, but its tag has no limits: the area around it counts as measured but shows no value */
+    SENSOR_NO_LIMITS, /* the sensor is good, but its tag has no limits: the area around it counts as measured but has no value to show */
     SENSOR_ASIDE      /* the sensor is ignored, because another one gives the asset's value */
 };
 
-/* Whether a vertex has data, by the sensor that is nearest to the vertex. */
+/* Whether a vertex has data, depending on the sensor nearest to it. */
 enum place {
     PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
     PLACE_LOST,     /* the nearest sensor is not usable; another one is within reach */
@@ -25,18 +25,18 @@ enum place {
     PLACE_NO_LIMITS /* the nearest sensor within reach is good, but its tag has no alarm limits (SENSOR_NO_LIMITS) */
 };
 
-/* bits that say which arrays of struct weights are filled for a block of vertices. KNOWN_NEAR: near_m and place; KNOWN_TOP: top;
+/* bits for the arrays of struct weights that are filled for a block of vertices. KNOWN_NEAR: near_m and place; KNOWN_TOP: top;
    KNOWN_TOTAL: total */
 enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 };
 
-struct weights_key { /* key of cached weights: the bytes of everything that the sensors' weights at all vertices depend on */
+struct weights_key { /* key of cached weights: the bytes of everything on which the sensors' weights at the vertices depend */
     void *bytes;
     size_t count;
     uint64_t hash;
 };
 
-enum { WEIGHTS_ERRING = 9 }; /* number of thresholds of the interpolation error by which vertices are counted: 1, 1/2, 1/4 ... 1/256 of
-                                the range; the last is about one step of colour */
+enum { WEIGHTS_ERRING = 9 }; /* number of error thresholds for which area or vertices are counted: 1, 1/2, 1/4 ... 1/256 of the
+                                range; the last is about one colour step */
 
 struct weights {
     struct weights_key key;
@@ -46,43 +46,42 @@ struct weights {
     /* steps_per_m: number of steps of struct scalar's `lacking` (encoded distance from the border of the data) per metre */
     float power, reach_m, radius_m, steps_per_m;
     bool alike;                                  /* true: all members (sensors in the sum) have the same strength */
-    float *strength, *decay;                     /* by sensor of the layout */
-    /* for each sensor of the layout: 1: it would contribute if its quality were good; 0: it would not; more than 1: SENSOR_NO_LIMITS */
+    float *strength, *decay;                     /* [sensor of the layout] */
+    /* [sensor of the layout]: 1: it would contribute if its quality were good; 0: it would not; greater than 1: SENSOR_NO_LIMITS */
     uint8_t *configured;
-    uint8_t *takes_part; /* for each sensor of the layout: 1 if its reading is used, else 0 */
+    uint8_t *takes_part; /* [sensor of the layout]: 1 if its reading is used, else 0 */
     /* members of the sum, in the order of the columns: the used sensors of the layout; for prepared interpolations all sensors */
     uint32_t *members;
     size_t member_count;
-    /* for each vertex: near_m: distance of the nearest usable sensor; top: scale that keeps weights from overflowing (kernels.h) */
+    /* [vertex]: near_m: distance of the nearest usable sensor; top: scale that keeps weights from overflowing (kernels.h) */
     float *near_m, *top;
-    float *total;                /* sum of the weights of each vertex */
+    float *total;                /* [vertex]: sum of its weights */
     uint8_t *place;              /* by vertex: enum place */
-    uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than the nearest usable one, encoded by
+    uint8_t *lost;               /* [vertex]: how much nearer the nearest lost sensor is than the nearest usable one, encoded by
                                     encode_lacking() in weights.c */
-    uint8_t *known; /* for each block: which of its arrays near_m, place, top and total are filled (bits of enum weights_known) */
+    uint8_t *known; /* [block]: which of its arrays near_m, place, top and total are filled (bits of enum weights_known) */
     const float *prepared;       /* [member][vertex]: prepared weights from the asset's influence file; NULL: weights are computed from
                                     distances */
     /* for prepared interpolations: factorised matrix from which lost sensors get values (influence_fill.h); NULL: no sensor is lost */
     struct influence_fill *fill;
-    /* for prepared interpolations with lost sensors, by sensor: the value that the sensor gets if all used sensors read 1; else NULL */
+    /* for prepared interpolations with lost sensors: [sensor]: its value if all used sensors read 1; else NULL */
     double *ones;
     float decay_m; /* metres; for interpolation fin: the decay length; for gp: 1/k, with k as in preprocess/influence/gaussian.h */
-    const float *deviations; /* for interpolation gp: standard deviation of the field at each vertex while all sensors are used; else
-                                NULL */
-    const float *priors;     /* for interpolation gp: standard deviation of the field at each vertex without any sensor */
+    const float *deviations; /* for interpolation gp: [vertex]: standard deviation of the field while all sensors are used; else NULL */
+    const float *priors;     /* for interpolation gp: [vertex]: standard deviation of the field without any sensor */
     float deviation;         /* for interpolation gp: standard deviation of the prior */
-    float *errors;           /* for each vertex: largest error of linear interpolation within the adjacent triangles; unit and method in
+    float *errors;           /* [vertex]: largest error of linear interpolation within the adjacent triangles; unit and method in
                                 drawn_error.h; NULL: not measured */
-    float *interpolation_errors; /* `errors` without the part that errors of distances cause; NULL: `errors` has no such part */
+    float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
     float largest_error;     /* largest element of `errors` */
-    /* erring[b]: fraction of the surface (of the vertices for prepared interpolations) whose interpolation error is at least 2^-b; the
-       largest such fraction of all measured levels of detail */
+    /* erring[b]: fraction of the surface (for prepared interpolations: of the vertices) whose interpolation error is at least
+       2^-b; the largest over all measured levels of detail */
     float erring[WEIGHTS_ERRING];
     uint64_t measured_levels; /* bit mask of the levels of detail whose triangles are included in `errors` */
     unsigned errors_version;  /* number of changes of `errors` so far */
-    float *beyond_m;          /* for interpolations fin and gp, by vertex: metres beyond the border of the area with data; else NULL */
-    float *columns; /* cached weights, [block][member][KERNEL_BLOCK], of the first kept_blocks blocks, or NULL; those of other blocks are
-                       computed for each sum */
+    float *beyond_m;          /* for interpolations fin and gp: [vertex]: metres beyond the border of the area with data; else NULL */
+    float *columns; /* cached weights of the first kept_blocks blocks, [block][member][KERNEL_BLOCK], or NULL; those of other blocks
+                       are recomputed for each sum */
     uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */
     size_t kept_blocks;
     int users;           /* number of states that use these weights */
@@ -90,68 +89,68 @@ struct weights {
     struct weights *next;
 };
 
-/* Computes the key, the bytes of everything that G depends on. usable: enum sensor_use by sensor of the layout. radius_m: radius R of
-   Algorithm 1 in metres, never 0. */
+/* Computes the key, the bytes of everything on which G depends. usable: [sensor of the layout], enum sensor_use. radius_m:
+   radius R of Algorithm 1 in metres, never 0. */
 void weights_key_init(struct weights_key *key, const struct field_layout *layout, const struct field_params *params, float radius_m,
                       const uint8_t *usable);
 /* Frees the key. */
 void weights_key_finish(struct weights_key *key);
 bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
 
-/* Creates the weights of this key and takes ownership of the key. Nothing is computed yet. Returns NULL when out of memory. The caller
-   destroys them. */
+/* Creates the weights for this key and takes ownership of the key. Nothing is computed yet. Returns NULL when out of memory.
+   The caller destroys the weights. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Copies those arrays from other weights, already computed, that are equal for the parameters of both. While a user drags one parameter,
-   these are most arrays. */
+/* Copies from other weights those computed arrays that are the same for both sets of parameters. While a user drags one
+   parameter, these are most of the arrays. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
 /* Frees the weights. Accepts a pointer to NULL; sets the pointer to NULL. */
 void weights_destroy(struct weights **weights);
-/* Returns the bytes that weights for this layout take, without cached columns (each sensor's weights at all vertices). */
+/* Returns the size in bytes of weights for this layout, without cached columns (each sensor's weights at all vertices). */
 size_t weights_bytes(const struct field_layout *layout);
-/* Returns the bytes that the columns (each sensor's weights) of all vertices would take, cached or not. */
+/* Returns the size in bytes of the columns (each sensor's weights) of all vertices, cached or not. */
 size_t weights_column_bytes(const struct weights *weights);
-/* Returns the bytes of the columns that are cached. */
+/* Returns the size in bytes of the cached columns. */
 size_t weights_kept_bytes(const struct weights *weights);
-/* Starts caching columns as they are computed: as many as fit into `bytes`, from the first vertices on. Call only while none are cached.
-   Returns weights_kept_bytes(), or 0 if none fit or memory runs out. */
+/* Starts caching columns as they are computed: as many as fit into `bytes`, from the first vertices on. Call only while none
+   are cached. Returns weights_kept_bytes(), or 0 if no column fits or memory runs out. */
 size_t weights_keep(struct weights *weights, size_t bytes);
 /* Frees the cached columns. */
 void weights_drop_columns(struct weights *weights);
 
-/* Returns a vertex's byte for struct scalar's `lacking`. filled: true: areas around lost sensors have data. The vertex must be prepared. */
+/* Returns a vertex's byte for struct scalar's `lacking`. filled: areas around lost sensors have data. The vertex must be prepared. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
-/* Computes the missing arrays among near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <=
-   KERNEL_BLOCK). Thread: any, on different blocks. */
+/* Computes those of the arrays near_m, top and place that a block of vertices lacks (begin: a multiple of KERNEL_BLOCK; count
+   <= KERNEL_BLOCK). Thread: any, on different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 
-/* For interpolation gp: writes the standard deviation at vertices of one block, exact for the used sensors apart from the sampling done
-   by preparation. Takes (lost * lost) steps per vertex. Thread: any. */
+/* For interpolation gp: writes the standard deviation at vertices of one block, exact for the used sensors except for the
+   sampling done in preparation. Takes (lost * lost) steps per vertex. Thread: any. */
 void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out);
 
-/* List of columns of G (a column: one sensor's weights at a block of vertices) that weights_add() adds, each multiplied by a factor. */
+/* List of columns of G (a column is one sensor's weights at a block of vertices) for weights_add(), each with a factor. */
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
-    const uint8_t *marked; /* for each entry of this list: 1 if the column is also added to sums->marked */
+    const uint8_t *marked; /* [entry of this list]: 1 if the column is also added to sums->marked */
     size_t count;
 };
-/* Sums over sensors for each vertex of one block of KERNEL_BLOCK vertices. weights_add() adds to them. */
+/* Sums over sensors for each vertex of one block of KERNEL_BLOCK vertices, to which weights_add() adds. */
 struct weights_sums {
     double *values; /* sum of factor times column */
-    /* total: sum of the weights of all columns in the list; marked: sum of those that are marked. NULL: not needed (marked requires
-       total) */
+    /* total: sum of the weights of all columns in the list; marked: sum over the marked columns. NULL: not needed (marked
+       requires total) */
     double *total, *marked;
 };
-/* Adds columns of G with their factors to the sums of a prepared block. Computes columns that are not cached, and caches them if caching
-   is on. Thread: any, on different blocks. */
+/* Adds columns of G, multiplied by their factors, to the sums of a prepared block. Computes columns that are not cached, and
+   caches them if caching is on. Thread: any, on different blocks. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
 /* Returns the cached weights of one sensor at a block of vertices. */
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
 /* Returns true if the weights of all sensors in a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
-/* Returns true if all arrays and columns of a block are filled, so that weights_add() only reads them. (With the interpolation `paper`, the
-   weights of Uncertain sensors are never cached.) */
+/* Returns true if all arrays and columns of a block are filled, so that weights_add() only reads them. (With the interpolation
+   `paper`, weights of Uncertain sensors are never cached.) */
 bool weights_is_complete(const struct weights *weights, size_t begin);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GL contexts from EGL without a window: on a chosen device, or on Mesa's surfaceless platform. */
+/* Windowless GL contexts from EGL: on a chosen device, or on Mesa's surfaceless platform. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,9 +46,9 @@ static void egl_lose(struct gl *gl)
     egl->context = EGL_NO_CONTEXT;
 }
 
-/* Destroys a context, but does not unload its driver: the leak checker suppresses leaks by the driver's name (tests/leaks.txt) and could
-   not name an unloaded one. The display stays open after the loss of a context, for the next context. If the display is lost as well, the
-   next attempt to create a context fails and closes the display, and the attempt after that opens it again. */
+/* Destroys a context, but does not unload its driver: the leak checker suppresses leaks by the driver's name (tests/leaks.txt)
+   and could not name an unloaded one. The display stays open for the next context, even if the context was lost. If the display
+   is lost as well, the next attempt to create a context fails and closes the display, and the attempt after that reopens it. */
 static void egl_destroy(struct gl *gl)
 {
     struct egl *egl = (struct egl *)gl;
@@ -72,7 +72,7 @@ static bool load_client(const char *name, struct text *why)
     return false;
 }
 
-/* Creates a context that reports when it is lost (GPU reset), if the driver supports that. Returns EGL_NO_CONTEXT on failure. */
+/* Creates a context that reports its loss (GPU reset), if the driver supports that. Returns EGL_NO_CONTEXT on failure. */
 static EGLContext create_context(EGLDisplay display, EGLConfig config)
 {
     static const EGLint telling[] = { EGL_CONTEXT_MAJOR_VERSION,

@@ -35,7 +35,7 @@ static bool has_word(const char *all, const char *name)
     return false;
 }
 
-/* asks EGL itself, because the flags of the function loader (glad) describe the display that was initialised last */
+/* asks EGL itself, because the flags of the function loader (glad) describe the most recently initialised display */
 bool egl_client_has(const char *name)
 {
     return has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), name);
@@ -62,8 +62,8 @@ bool egl_device_is_software(EGLDeviceEXT device)
     return has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-/* Reads a PCI address from the target of the link /sys/dev/char/226:0/device, for example .../0000:65:00.0. Returns false if there is
-   none. */
+/* Reads a PCI address from the target of the link /sys/dev/char/226:0/device, such as .../0000:65:00.0. Returns false if the
+   target has none. */
 static bool address_of_file(const char *path, struct gl_device *address)
 {
     struct stat file;

@@ -13,15 +13,15 @@ struct egl_devices {
     int count;
 };
 
-/* Returns true if EGL itself (not a display) has an extension. */
+/* Returns true if EGL itself, as opposed to a display, has an extension. */
 bool egl_client_has(const char *name);
-/* Reads the list of devices. Returns false if this EGL has no devices or cannot list them; the reason is appended to `why`. */
+/* Reads the list of devices. Returns false, with the reason appended to `why`, if this EGL has no devices or cannot list them. */
 bool egl_devices_read(struct egl_devices *devices, const char *name, struct text *why);
 bool egl_device_is_software(EGLDeviceEXT device);
-/* Finds the PCI address of a device through the kernel's device file. Returns false if the device has none (software), or EGL does not
-   report the file. */
+/* Finds a device's PCI address through the kernel's device file. Returns false if the device has none (software) or EGL does
+   not report the file. */
 bool egl_device_address(EGLDeviceEXT device, struct gl_device *address);
-/* Returns the index of the requested device; -1: it does not exist, and `why` lists the devices that do. */
+/* Returns the index of the requested device; -1: it does not exist, and the existing devices are appended to `why`. */
 int egl_devices_find(const struct egl_devices *devices, const struct gl_device *asked, const char *name, struct text *why);
 
 #endif

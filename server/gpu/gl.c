@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses how to create a GL context, and reads the context's capabilities. */
+/* Chooses a way to create a GL context, and reads the context's capabilities. */
 #include "gpu/gl.h"
 
 #include <pthread.h>
@@ -12,8 +12,8 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    /* software: this attempt to create a context may use a software device if no device is requested; again: it repeats an earlier
-       attempt, but now with software devices allowed */
+    /* software: this attempt may use a software device if no device is requested; again: it repeats an earlier attempt, this
+       time with software devices allowed */
     bool software, again;
 };
 static const struct attempt attempts[] = {
@@ -24,12 +24,12 @@ static const struct attempt attempts[] = {
 };
 enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
 
-/* Contexts of this process. EGL cannot be used while a context of OSMesa exists, so all contexts must be of one kind. */
+/* Contexts of this process. EGL cannot be used while an OSMesa context exists, so all contexts must be of the same kind. */
 static struct {
     pthread_mutex_t lock; /* held while any thread creates or destroys a context */
     /* --- below: under lock */
     int count;         /* number of living contexts */
-    enum gl_kind kind; /* kind of the living contexts */
+    enum gl_kind kind; /* kind of the existing contexts */
 } living = { .lock = PTHREAD_MUTEX_INITIALIZER };
 
 bool gl_others(void)
@@ -108,11 +108,11 @@ static void set_conventions(struct gl *gl)
     glDebugMessageCallback(on_debug_message, gl->log);
 }
 
-/* Tries the kinds of contexts in order, or only `kind` unless it is GL_AUTO. The reasons of failed attempts are appended to `why`, each
-   preceded by "; ". Returns NULL if none works. */
+/* Tries the kinds of contexts in order, or only `kind` unless it is GL_AUTO. Appends the reasons for failed attempts to `why`,
+   each preceded by "; ". Returns NULL if none works. */
 static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
-    bool asked = kind != GL_AUTO || device; /* a caller that asks for a kind or device may get a software device in the first attempt */
+    bool asked = kind != GL_AUTO || device; /* a caller who asks for a kind or device may get a software device in the first attempt */
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
         bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;
@@ -169,7 +169,7 @@ void gl_destroy(struct gl **gl)
     *gl = NULL;
 }
 
-static _Thread_local unsigned shortages; /* number of GL_OUT_OF_MEMORY errors so far on this thread */
+static _Thread_local unsigned shortages; /* number of GL_OUT_OF_MEMORY errors on this thread so far */
 
 static GLenum next_error(void)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interface between gl.c and each way to create GL contexts; gl.c has the table. */
+/* Interface between gl.c, which has the table of ways to create GL contexts, and these ways. */
 #ifndef GPU_GL_IMPL_H
 #define GPU_GL_IMPL_H
 #include "base/text/text.h"
@@ -8,17 +8,17 @@
 struct gl_impl {
     enum gl_kind kind;
     const char *name;
-    /* Creates a context and makes it current. Also loads GL's functions, unless gl_others() is true, because other contexts may be using
-       the function pointers. software: may use a software device, if no device is requested. Returns NULL on failure, with the reasons
-       appended to `why`. */
+    /* Creates a context and makes it current. Also loads GL's functions, unless gl_others() returns true, because other
+       contexts may be using the function pointers. software: may use a software device if no device is requested. Returns NULL
+       on failure, with the reasons appended to `why`. */
     struct gl *(*create)(const struct gl_device *device, bool software, struct text *why);
     void (*destroy)(struct gl *gl);
     bool (*current)(const struct gl *gl); /* returns true if the context exists and is current */
     void (*lose)(struct gl *gl);          /* destroys the context but keeps the struct (for gl_lose()) */
 };
 
-/* Returns true if other contexts of this kind exist, which may be in use. Only `create` and `destroy` may call this; gl.c calls them one
-   at a time. */
+/* Returns true if other contexts of this kind exist, which may be in use. Only `create` and `destroy` may call this, because
+   gl.c runs only one of these at a time. */
 bool gl_others(void);
 
 extern const struct gl_impl gl_egl_device_impl, gl_egl_surfaceless_impl, gl_osmesa_impl;

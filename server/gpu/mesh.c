@@ -29,7 +29,7 @@ static GLuint own_buffer(struct gpu_mesh *mesh, struct log *log, const char *nam
     return buffer;
 }
 
-/* Creates a buffer over data that the caller keeps: without a copy if GL can read the data in place, else with a copy. */
+/* Creates a buffer for data that the caller keeps: without a copy if GL can read the data in place, else with a copy. */
 static GLuint kept_buffer(struct gpu_mesh *mesh, const struct gl *gl, const char *name, size_t bytes, const void *data)
 {
     enum { EXTERNAL_VIRTUAL_MEMORY_BUFFER = 0x9160 }; /* constant of GL_AMD_pinned_memory; the function loader glad does not define it */
@@ -95,7 +95,7 @@ static int16_t to_short(float part)
     return (int16_t)lrintf(32767 * part);
 }
 
-/* Packs a normal into two 16-bit numbers (octahedral mapping). A zero normal, which has no direction, becomes "up". */
+/* Packs a normal into two 16-bit numbers (octahedral mapping). A zero normal, which has no direction, is packed as "up". */
 static void fold(const float n[3], int16_t out[2])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);
@@ -119,8 +119,8 @@ static GLuint upload_normals(struct gpu_mesh *mesh, struct log *log, const char 
     return buffer;
 }
 
-/* Uploads texture coordinates. *is_short receives true if they were packed into 16 bits; false if they are outside 0..1 or memory was
-   short. */
+/* Uploads texture coordinates. *is_short receives true if they were packed into 16 bits, and false if some are outside 0..1 or
+   memory was short. */
 static GLuint upload_texcoords(struct gpu_mesh *mesh, struct log *log, const char *name, size_t count, const float (*texcoords)[2],
                                bool *is_short)
 {

@@ -10,7 +10,7 @@
 
 #include "gpu/gl.h"
 
-/* Locations of vertex attributes, equal in every shader. */
+/* Locations of vertex attributes, the same in every shader. */
 enum mesh_attribute {
     MESH_POSITION,
     MESH_NORMAL,
@@ -24,8 +24,8 @@ enum mesh_attribute {
    positions (from MESH_INSTANCE_PLACES on) */
 enum { MESH_INSTANCE_VECTORS = 10 };
 
-/* Input of mesh_init(). Pointers need only be valid during the call, except positions, colours and indices: GL on a processor reads
-   these in place (gl.reads_in_place), so they must stay unchanged until mesh_finish(). */
+/* Input of mesh_init(). Pointers need only be valid during the call, except for positions, colours and indices. GL on a
+   processor reads these in place (gl.reads_in_place), so they must stay unchanged until mesh_finish(). */
 struct mesh_params {
     size_t vertex_count, index_count;
     const float (*positions_m)[3];
@@ -36,12 +36,12 @@ struct mesh_params {
     const uint32_t *indices;
 };
 
-/* Geometry on the GPU. Positions stay floats, because light, picking, software rendering and coincident faces rely on identical positions.
-   Normals are packed into 2 x 16 bits (shaders/normal.glsl), with errors up to 0.005 degrees; texture coordinates into 2 x 16 bits if all
-   are in 0..1, with errors up to 1/131,070. */
+/* Geometry on the GPU. Positions stay floats, because lighting, picking, software rendering and coincident faces rely on
+   identical positions. Normals are packed into 2 x 16 bits (shaders/normal.glsl), with errors up to 0.005 degrees; texture
+   coordinates into 2 x 16 bits if all are in 0..1, with errors up to 1/131,070. */
 struct gpu_mesh {
     GLuint vao, instanced_vao, positions, normals, texcoords, second_texcoords, colors, indices;
-    size_t vertex_count, index_count, bytes; /* bytes: size of the mesh's own GPU buffers, without data that GL reads in place */
+    size_t vertex_count, index_count, bytes; /* bytes: size of the mesh's own GPU buffers, excluding data that GL reads in place */
     bool short_texcoords, short_second_texcoords;
 };
 
@@ -49,7 +49,7 @@ bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
                const struct mesh_params *params); /* creates the buffers from `params`; returns false when out of memory, logged */
 void mesh_finish(struct gpu_mesh *mesh);
 void mesh_bind(const struct gpu_mesh *mesh); /* makes the mesh the source of the following draws */
-/* Sets the instances of the following draws. instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance. */
+/* Sets the instances for the following draws. instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance. */
 void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances);
 
 /* Creates an immutable buffer. Returns its GL name; 0 when the GPU is out of memory, logged. */

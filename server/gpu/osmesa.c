@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GL contexts from OSMesa, a library that is searched for at run time, because Mesa 25.1 and later do not have it. */
+/* GL contexts from OSMesa, a library that is looked up at run time, because Mesa 25.1 and later do not include it. */
 #include <dlfcn.h>
 
 #include <glad/gl.h>
@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "gpu/gl_impl.h"
 
-/* Constants from GL/osmesa.h, which is not needed to build. */
+/* Constants from GL/osmesa.h, so that the build does not need that header. */
 enum {
     OSMESA_FORMAT = 0x22,
     OSMESA_DEPTH_BITS = 0x30,
@@ -27,7 +27,7 @@ struct osmesa {
     unsigned char (*make_current)(void *context, void *buffer, unsigned type, int width, int height);
     GLADapiproc (*get_proc)(const char *name);
     void *(*get_current)(void);
-    /* OSMesa needs a buffer to make a context current; this one is never drawn to, because frames are drawn to framebuffers */
+    /* OSMesa needs a buffer to make a context current; nothing is ever drawn to this one, because frames are drawn to framebuffers */
     unsigned char buffer[4 * 4 * 4];
 };
 
@@ -50,7 +50,7 @@ static void osmesa_destroy(struct gl *gl)
     struct osmesa *osmesa = (struct osmesa *)gl;
     if (osmesa->context)
         osmesa->destroy(osmesa->context);
-    mem_free(osmesa); /* does not unload the library: its threads may still be ending */
+    mem_free(osmesa); /* does not unload the library, because its threads may still be ending */
 }
 
 static bool osmesa_load(struct osmesa *osmesa)

@@ -11,7 +11,7 @@ struct pool {
     GLenum format;
     size_t texel_bytes, max_texels; /* max_texels: capacity of a page */
     GLbitfield flags;
-    /* expected: number of texels announced for the next page (pool_expect()); texels: sum of the sizes of all pages */
+    /* expected: number of texels announced for the next page (pool_expect()); texels: total size of all pages */
     size_t expected, texels;
     struct pool_page **pages;
     size_t page_count, page_capacity;
@@ -54,8 +54,8 @@ static size_t whole_blocks(size_t texels)
     return (texels + POOL_BLOCK - 1) / POOL_BLOCK * POOL_BLOCK;
 }
 
-/* Finds a free gap of at least `count` texels in the page. *first receives its offset; *before receives the slice in front of the gap,
-   NULL if it is at the beginning. Returns false if there is none. */
+/* Finds a free gap of at least `count` texels in the page. *first receives its offset; *before receives the slice in front of
+   the gap, or NULL if the gap is at the beginning. Returns false if there is none. */
 static bool find_gap(const struct pool_page *page, size_t count, struct pool_slice **before, size_t *first)
 {
     *before = NULL;
@@ -104,7 +104,7 @@ void pool_expect(struct pool *pool, size_t texels, size_t slices)
     pool->expected = texels + slices * (POOL_BLOCK - 1);
 }
 
-/* Returns the number of texels for a new page: at least half of the sum of all pages, so that pages stay few. */
+/* Returns the number of texels for a new page: at least half the total of all pages, which keeps pages few. */
 static size_t page_texels(const struct pool *pool, size_t least)
 {
     size_t texels = pool->expected > pool->texels / 2 ? pool->expected : pool->texels / 2;

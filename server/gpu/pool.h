@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Per-vertex numbers of many assets in few GPU buffers (pages), so that one draw can show many assets. Shaders read the buffers as
-   texels. Each slice (range of a page for one asset) begins at a multiple of POOL_BLOCK texels, because shaders address slices by the
-   index of a block. Thread: the one of the GL context. */
+/* Per-vertex numbers of many assets in a few GPU buffers (pages), so that one draw can show many assets. Shaders read the
+   buffers as texels. Each slice (an asset's range in a page) begins at a multiple of POOL_BLOCK texels, because shaders address
+   slices by block index. Thread: the one of the GL context. */
 #ifndef GPU_POOL_H
 #define GPU_POOL_H
 #include <stdbool.h>
@@ -24,21 +24,21 @@ struct pool_page {
 };
 struct pool_slice {
     struct pool_page *page;
-    size_t block, count; /* block: index in the page of the slice's first block; count: number of texels */
+    size_t block, count; /* block: index of the slice's first block in the page; count: number of texels */
     int holds;
     struct pool_slice *next;
 };
 
-/* Creates a pool. format: GL format of a texel. Before the pool is destroyed, release all its slices. */
+/* Creates a pool. format: GL format of a texel. All slices must be released before the pool is destroyed. */
 struct pool *pool_create(struct log *log, const char *name, GLenum format, size_t texel_bytes, GLbitfield flags);
 void pool_destroy(struct pool **pool); /* frees the pool and its buffers and sets *pool to NULL; accepts a pointer to NULL */
-/* Announces slices that will be taken next, so that they share one page if possible. texels: sum of their sizes. */
+/* Announces the slices that will be taken next, so that they share one page if possible. texels: sum of their sizes. */
 void pool_expect(struct pool *pool, size_t texels, size_t slices);
 /* Takes a slice of `count` texels, with one reference. Returns NULL if the GPU has no room for it, logged. */
 struct pool_slice *pool_take(struct pool *pool, size_t count);
 struct pool_slice *pool_ref(struct pool_slice *slice); /* NULL is fine */
 void pool_unref(struct pool_slice **slice);            /* drops a reference and sets *slice to NULL; accepts a pointer to NULL */
-size_t pool_offset(const struct pool_slice *slice);    /* returns the offset in bytes of the slice in its page's buffer */
+size_t pool_offset(const struct pool_slice *slice);    /* returns the slice's offset in bytes in its page's buffer */
 size_t pool_bytes(const struct pool_slice *slice);
 size_t pool_bytes_taken(const struct pool *pool); /* bytes of all pages */
 

@@ -10,7 +10,7 @@
 
 enum { MAX_INCLUDES = 16, LOG_BYTES = 4096 };
 
-/* State of the expansion of `#include` lines in one source. Source numbers in compiler messages are indices in `names`. */
+/* State of the expansion of `#include` lines in one source. Source numbers in compiler messages are indices into `names`. */
 struct expansion {
     struct log *log;
     struct text out;
@@ -20,7 +20,7 @@ struct expansion {
 
 static bool expand(struct expansion *x, const char *name, const char *text);
 
-/* Replaces a line `#include "x.glsl"` by that file's text. Returns false on failure, logged. */
+/* Replaces a line `#include "x.glsl"` with that file's text. Returns false on failure, logged. */
 static bool expand_include(struct expansion *x, const char *from, int line, const char *directive)
 {
     const char *open = strchr(directive, '"');

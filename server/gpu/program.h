@@ -13,14 +13,14 @@ struct program_params {
 };
 #define program_params(...) (&(struct program_params){ __VA_ARGS__ })
 
-/* Compiles and links a program. A line `#include "x.glsl"` is replaced by that embedded file. Returns the program's GL name; 0 on
-   failure, with the compiler's messages logged. */
+/* Compiles and links a program. A line `#include "x.glsl"` is replaced with that embedded file. Returns the program's GL name;
+   0 on failure, with the compiler's messages logged. */
 GLuint program_create(struct log *log, const struct program_params *params);
 void program_destroy(GLuint *program); /* deletes the program and sets *program to 0; 0 is a no-op */
 
-/* Compiles one stage from text. name: how log messages name the text. Returns 0 on failure, logged. */
+/* Compiles one stage from text. name: the text's name in log messages. Returns 0 on failure, logged. */
 GLuint program_compile(struct log *log, GLenum stage, const char *name, const char *text, const char *defines);
-/* Links two stages (0: none) to a program and deletes the stages. Returns 0 on failure, logged. */
+/* Links two stages (0: none) into a program and deletes the stages. Returns 0 on failure, logged. */
 GLuint program_link(struct log *log, const char *name, const GLuint stages[2]);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "gpu/mesh.h"
 
-/* time limit for a frame to arrive from the GPU, much longer than any frame takes; afterwards the GL context counts as hanging */
+/* timeout for a frame to arrive from the GPU, much longer than any frame takes; afterwards the GL context counts as hung */
 static const GLuint64 TIMEOUT_NS = 20ull * 1000000000;
 enum { GRAIN_ROWS = 128 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asynchronous readback of a frame from the GPU, so that other work fits between start and end. Thread: the one of the GL context. */
+/* Asynchronous readback of a frame from the GPU: other work can be done between start and end. Thread: the one of the GL context. */
 #ifndef GPU_READBACK_H
 #define GPU_READBACK_H
 #include <stdbool.h>
@@ -17,16 +17,16 @@ struct readback { /* zero-initialise */
     GLsync done;
 };
 
-/* Starts to copy the resolved picture of the target to the CPU, without waiting; call target_resolve() before. The target may be drawn
-   to again immediately. Returns false when out of GPU memory, logged. */
+/* Starts copying the target's resolved picture to the CPU, without waiting; call target_resolve() first. The target may be
+   drawn to again immediately. Returns false when out of GPU memory, logged. */
 bool readback_start(struct readback *readback, struct log *log, const struct target *target);
 bool readback_is_done(const struct readback *readback);         /* never waits */
-bool readback_wait(struct readback *readback, struct log *log); /* waits for the copy to end. Returns false if the GL context is lost,
-                                                                   logged */
-/* Copies the pixels of the frame to `bgrx`; call it after readback_wait(). 4 bytes each (B, G, R, X), rows from the top, stride_bytes
-   apart. */
+bool readback_wait(struct readback *readback, struct log *log); /* waits for the end of the copy. Returns false if the GL context is
+                                                                   lost, logged */
+/* Copies the pixels of the frame to `bgrx`; call it after readback_wait(). Four bytes per pixel (B, G, R, X), rows from the
+   top, stride_bytes apart. */
 void readback_get(const struct readback *readback, struct workers *workers, uint8_t *bgrx, size_t stride_bytes);
-void readback_drop(struct readback *readback); /* ends the readback, whether readback_wait() was called or not */
+void readback_drop(struct readback *readback); /* ends the readback, whether or not readback_wait() was called */
 void readback_finish(struct readback *readback);
 
 #endif

@@ -13,29 +13,29 @@
 struct target {
     int width_px, height_px, samples;
     GLuint framebuffer, color, depth; /* framebuffer that passes draw to, and its textures */
-    /* framebuffer of the resolved picture (one sample per pixel), and its textures; if `samples` is 1, the same objects as framebuffer,
-       color and depth */
+    /* framebuffer of the resolved picture (one sample per pixel), and its textures; the same objects as framebuffer, color and
+       depth if `samples` is 1 */
     GLuint resolved_framebuffer, resolved_color, resolved_depth;
     GLuint over_framebuffer; /* framebuffer with the resolved colour but no depth, for drawing over the picture while shaders read its
                                 depth */
 };
 
-size_t target_bytes(const struct target *target); /* returns the bytes of the target's textures; 0 for an empty target */
+size_t target_bytes(const struct target *target); /* returns the size in bytes of the target's textures; 0 for an empty target */
 /* Creates framebuffers and textures. Returns false when out of GPU memory, logged. */
 bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples);
 void target_finish(struct target *target);
-/* Resolves a rectangle of a multisampled target: averages the samples' colours, and takes the depth of one sample. No-op without
-   multisampling. */
+/* Resolves a rectangle of a multisampled target: averages the colours of the samples, and takes the depth of one sample. No-op
+   without multisampling. */
 void target_resolve(const struct target *target, int x_px, int y_px, int width_px, int height_px);
 
-/* A texture to draw to whose size follows that of the frame. Zero-initialise. */
+/* A texture to draw to, with the size of the frame. Zero-initialise. */
 struct render_texture {
     int width_px, height_px;
     GLuint framebuffer, texture;
 };
-/* Creates the texture, with a framebuffer that has it as `attachment`, if there is none or its size differs; its contents are then lost.
-   Format and attachment must be those of the first call. Returns false when out of GPU memory (not logged) and leaves the texture empty;
-   the next call tries again. */
+/* Creates the texture, and a framebuffer that has it as `attachment`, if there is none or its size differs; its contents are
+   then lost. Format and attachment must be those of the first call. Returns false when out of GPU memory (not logged), and
+   leaves the texture empty; the next call tries again. */
 bool render_texture_fit(struct render_texture *layer, GLenum format, GLenum attachment, int width_px, int height_px);
 void render_texture_finish(struct render_texture *layer);
 

@@ -6,8 +6,8 @@
 
 #include "base/mem.h"
 
-/* Compression levels of zstd. An input of up to SMALL_BYTES, such as one second of readings of some hundred tags, gets SMALL_LEVEL,
-   which may take a millisecond. A larger input gets the faster LEVEL. */
+/* Compression levels of zstd. An input of up to SMALL_BYTES, such as one second of readings of several hundred tags, gets
+   SMALL_LEVEL, which may take a millisecond. A larger input gets LEVEL, which is faster. */
 enum { SMALL_BYTES = 1 << 16, SMALL_LEVEL = 9, LEVEL = 3 };
 static const unsigned long long BYTES_MAX = 1ULL << 30;
 
@@ -19,7 +19,7 @@ uint8_t *columns_pack(const uint64_t *rows, size_t width, size_t count, size_t *
         for (size_t i = 0; i < count; i++)
             for (size_t byte = 0; byte < 8; byte++)
                 planes[(column * 8 + byte) * count + i] = (uint8_t)(rows[i * width + column] >> (8 * byte));
-    /* cannot fail: the output buffer has the size of ZSTD_compressBound() */
+    /* cannot fail: the output buffer has ZSTD_compressBound() bytes */
     *bytes = ZSTD_compress(packed, bound, planes, words * 8, words * 8 <= SMALL_BYTES ? SMALL_LEVEL : LEVEL);
     mem_free(planes);
     return packed;

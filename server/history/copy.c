@@ -51,8 +51,8 @@ static bool stat_folder(const char *path, struct stat *st)
     return good;
 }
 
-/* Returns why a file must not be copied (static text), or NULL if it may be copied. The owner of the folder could put a hard link there
-   to a file that only the caller (root) may read, so files of other users are refused. */
+/* Returns why a file must not be copied (static text), or NULL if it may be. The owner of the folder could put a hard link
+   there to a file that only the caller (root) may read, so files of other users are refused. */
 static const char *fault_of(const char *path, const struct stat *st)
 {
     struct stat folder;
@@ -65,7 +65,7 @@ static const char *fault_of(const char *path, const struct stat *st)
     return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "the file has another hard link" : NULL;
 }
 
-/* Opens a file to copy it, unless fault_of() refuses it. Returns its descriptor, or -1 on failure (logged). */
+/* Opens a file for copying, unless fault_of() refuses it. Returns its descriptor, or -1 on failure (logged). */
 static int open_source(struct log *log, const char *path)
 {
     struct stat st;
@@ -81,8 +81,8 @@ static int open_source(struct log *log, const char *path)
     return -1;
 }
 
-/* Creates the file of a copy, readable by its owner and group only. If root creates it, it gets the owner of its folder. Returns its
-   descriptor, or -1 on failure (logged). */
+/* Creates the file for a copy, readable only by its owner and group. If root creates it, it gets the owner of its folder.
+   Returns its descriptor, or -1 on failure (logged). */
 static int create_target(struct log *log, const char *path)
 {
     struct stat folder;
@@ -111,7 +111,7 @@ static bool is_whole(struct log *log, sqlite3 *db, const char *path)
     return good;
 }
 
-/* Copies all pages of a database in one call. The daemon can continue to write, because it writes to the write-ahead log. Returns an
+/* Copies all pages of a database in one call. The daemon can keep writing, because it writes to the write-ahead log. Returns an
    SQLite result code. */
 static int copy_pages(sqlite3 *from, sqlite3 *to)
 {
@@ -122,8 +122,8 @@ static int copy_pages(sqlite3 *from, sqlite3 *to)
     return code == SQLITE_DONE ? end : code;
 }
 
-/* Returns a database's path with all symbolic links resolved, because SQLITE_OPEN_NOFOLLOW refuses links; free with free(). Returns NULL
-   if the file must not be copied (logged). */
+/* Resolves all symbolic links in a database's path, because SQLITE_OPEN_NOFOLLOW refuses links. Returns the path (free with
+   free()), or NULL if the file must not be copied (logged). */
 static char *path_of_database(struct log *log, const char *path)
 {
     int fd = open_source(log, path);

@@ -25,12 +25,12 @@
 
 enum {
     QUEUE_MAX = 4000000,   /* maximum number of samples in struct historian_queue, which is emptied once a second */
-    WAITING_MAX = 4000000, /* maximum number of recorded rows held in memory while the disk cannot be written */
-    /* if more recorded points are not compressed yet, month_file_tidy() runs early, because readers load all these points into memory */
+    WAITING_MAX = 4000000, /* maximum number of recorded rows kept in memory while the disk cannot be written */
+    /* if more recorded points than this are uncompressed, month_file_tidy() runs early, because readers load them all into memory */
     TIDY_ROWS = 1000000,
-    /* marker in the queue, instead of a tag's index: the samples after it come from this daemon's own store (it became the leader) */
+    /* marker in the queue, in place of a tag's index: from here on, samples come from this daemon's own store (it became the leader) */
     TAG_LEADS = -1,
-    /* marker in the queue, instead of a tag's index: the samples after it come over a new connection to the leading daemon */
+    /* marker in the queue, in place of a tag's index: from here on, samples come over a new connection to the leading daemon */
     TAG_FOLLOWS = -2,
     RETRY_MAX_S = 30,
 };
@@ -55,27 +55,27 @@ struct historian {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
     struct postgres *postgres; /* thread that sends history to PostgreSQL; NULL: no database is configured */
-    atomic_bool restored;      /* set once points that this machine lacked have been read from PostgreSQL into its history files */
+    atomic_bool restored;      /* set once points that this machine lacked have been copied from PostgreSQL to its history files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
-    /* rows that the previous run could not write to history, read from its spool file; written before all others */
+    /* rows that the previous run could not write to history, read from its spool file; written before any others */
     struct spool_rows spooled;
     char *spool_path; /* path of the previous run's spool file; NULL: there is none */
     struct month_file *file;
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
-    int64_t fill_us;     /* if `fills` is true: UTC time from which this machine lacks points, which must be read from PostgreSQL */
+    int64_t fill_us;     /* if `fills` is true: UTC time from which on this machine lacks points, which must be read from PostgreSQL */
     int64_t mirrored_us; /* UTC time in microseconds of the newest sample received from the leading daemon; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */
     struct historian_queue queue;
-    /* the plant after a reload, whose historian continues this one's recorded lines; NULL: the daemon ends instead */
+    /* the plant after a reload, whose historian continues the recorded lines; NULL: the daemon ends instead */
     const struct plant *next;
-    /* receives the time spans whose points the next historian must still read from PostgreSQL; NULL: not wanted */
+    /* receives the time spans whose points the next historian must still read from PostgreSQL; NULL: not needed */
     struct postgres_owed *owed;
 };
 
@@ -145,8 +145,8 @@ static void put(struct historian *historian, int tag, const struct history_point
     counter_inc(historian->counters.points, (int64_t)(historian->waiting.count - before));
 }
 
-/* Records a reading without a new sample, at a time that is not in the future. Passes it to store_tell_aged() too, so that a standby
-   records the same point. */
+/* Records a reading without a new sample, at a time that is not in the future. Also passes it to store_tell_aged(), so that a
+   standby records the same point. */
 static void put_reading(struct historian *historian, int tag, int64_t mono_ns, int64_t utc_ns)
 {
     const struct reading *reading = &historian->snapshot->readings[tag];
@@ -157,8 +157,8 @@ static void put_reading(struct historian *historian, int tag, int64_t mono_ns, i
     recorder_set_quality(historian->recorder, tag, utc_ns / 1000, event.quality);
 }
 
-/* Records qualities that no sample tells: a reading became stale, or a value is Good again whose source states a time before the loss of
-   the connection or before the start of this daemon. */
+/* Records changes of quality that no sample reports: a reading became stale, or a value is Good again whose source time is
+   before the loss of the connection or the start of this daemon. */
 static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     store_snapshot(historian->store, mono_ns, utc_ns, historian->snapshot);
@@ -170,8 +170,9 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
     }
 }
 
-/* Records the Good readings whose newest sample is older than before_us, at the beginning of a month and at the end of the run: each
-   month's file then has the values at its beginning, and values hold until the daemon ends. Call it after take_qualities(). */
+/* Records the Good readings whose newest sample is older than before_us, at the beginning of a month and at the end of the run.
+   So each month's file has the values at its beginning, and values hold until the daemon ends. Call it after take_qualities().
+   */
 static void repeat_readings(struct historian *historian, int64_t before_us, int64_t mono_ns, int64_t utc_ns)
 {
     struct history_point newest;
@@ -181,7 +182,7 @@ static void repeat_readings(struct historian *historian, int64_t before_us, int6
             put_reading(historian, (int)i, mono_ns, utc_ns);
 }
 
-/* Ends the recorded line of every tag just after last_us with a point without a value, because values after that time are unknown. */
+/* Ends every tag's recorded line with a point without a value just after last_us, because later values are unknown. */
 static void leave_out(struct historian *historian, int64_t last_us)
 {
     for (size_t i = 0; i < historian->plant->tag_count; i++)
@@ -208,8 +209,8 @@ static void take_mirrored(struct historian *historian, int64_t t_us)
         historian->mirrored_us = t_us;
 }
 
-/* Stops mirroring the leading daemon, because this daemon becomes the leader at t_us. The former leader may have recorded more after the
-   connection was lost, and sent that to PostgreSQL: those points must be read from there. */
+/* Stops mirroring the leading daemon, because this daemon becomes the leader at t_us. The former leader may have recorded more
+   after the connection was lost, and sent it to PostgreSQL: those points must be read from there. */
 static void begin_to_lead(struct historian *historian, int64_t t_us)
 {
     if (historian->mirrored_us)
@@ -219,16 +220,16 @@ static void begin_to_lead(struct historian *historian, int64_t t_us)
         postgres_lead(historian->postgres, historian->mirrored_us, t_us);
 }
 
-/* Returns true if a sample got its UTC time after the wall clock was set, false if before. ahead_ns: UTC minus monotonic time now;
-   step_ns: by how much the clock was set. */
+/* Returns true if a sample got its UTC time after the wall clock was set, false if before. ahead_ns: UTC minus monotonic time
+   now; step_ns: by how much the clock was set forward. */
 static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, int64_t step_ns)
 {
     int64_t off_ns = event->utc_ns - event->mono_ns - ahead_ns;
     return llabs(off_ns) < llabs(off_ns + step_ns);
 }
 
-/* Passes the queued samples to the recorder. step_ns: by how much the wall clock was set since the last call, in nanoseconds; 0: it was
-   not set. */
+/* Passes the queued samples to the recorder. step_ns: by how many nanoseconds the wall clock was set since the last call; 0: it
+   was not set. */
 static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->thread.lock);
@@ -290,7 +291,7 @@ static void say_gap(struct historian *historian, struct month_file *file, int64_
     mem_free(text);
 }
 
-/* Called after a start: if the previous daemon was killed, records the newest sample of each tag, ends the recorded lines there, and
+/* Called after a start: if the previous daemon was killed, records each tag's newest sample, ends the recorded lines there, and
    notes the gap in the file's table of events. */
 static int recover(struct historian *historian)
 {
@@ -317,8 +318,7 @@ static int recover(struct historian *historian)
     return error;
 }
 
-/* Closes the file of a month that is over. Its held rows (newest samples that were not recorded) are deleted, because all are recorded
-   by now. */
+/* Closes the file of a past month. Deletes its held rows (newest samples that were not recorded), because all are recorded by now. */
 static int leave_month(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -341,7 +341,7 @@ static int enter_month(struct historian *historian, int month)
     return error;
 }
 
-/* Returns the end (exclusive) of the rows from index `begin` on that belong to the same month as row `begin`. */
+/* Returns the end (exclusive) of the rows from `begin` on that belong to the same month as row `begin`. */
 static size_t same_month(const struct recorder_rows *rows, size_t begin)
 {
     int month = month_of(rows->at[begin].point.t_us);
@@ -352,8 +352,8 @@ static size_t same_month(const struct recorder_rows *rows, size_t begin)
     return end;
 }
 
-/* Writes rows to the files of their months, and removes the written rows from `rows`. held: the rows are newest samples that the filter
-   has not recorded yet. */
+/* Writes rows to the files of their months, and removes the written rows from `rows`. held: the rows are newest samples that
+   the filter has not recorded yet. */
 static int write_rows(struct historian *historian, struct recorder_rows *rows, bool held)
 {
     size_t done = 0;
@@ -373,7 +373,7 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
     return error;
 }
 
-/* Writes the rows of the last second. Usually all belong to one month, and are written in one transaction. */
+/* Writes the rows of the last second: usually all of one month, in one transaction. */
 static int write_second(struct historian *historian)
 {
     struct recorder_rows *rows = &historian->waiting, *held = &historian->held;
@@ -401,8 +401,8 @@ static void measure_free(struct historian *historian)
         counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));
 }
 
-/* Updates the metric that shows the time of the last `plantcast backup`. Also reserves disk space for the spool (the file for rows that
-   cannot be written to the history) again, if the spool has used it. */
+/* Updates the metric with the time of the last `plantcast backup`. Also reserves disk space again for the spool (the file for
+   rows that cannot be written to the history), if the spool has used it. */
 static void look_around(struct historian *historian)
 {
     struct stat backup;
@@ -437,8 +437,8 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     return error;
 }
 
-/* Closes the month's file after the spooled rows were written, but keeps its held rows (newest samples that are not recorded yet), so
-   that recover() handles them as after a crash. */
+/* Closes the month's file after the spooled rows were written, but leaves its held rows (newest samples that are not recorded
+   yet) there, so that recover() handles them as after a crash. */
 static int leave_file(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -447,8 +447,8 @@ static int leave_file(struct historian *historian)
     return error;
 }
 
-/* Writes the rows of the previous run's spool file to the files of their months. This must happen before recover() determines from these
-   files when that run ended. */
+/* Writes the rows of the previous run's spool file to the files of their months. This must happen before recover(), which
+   determines from these files when that run ended. */
 static int write_spooled(struct historian *historian)
 {
     if (!historian->spool_path)
@@ -472,7 +472,7 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     int error = write_spooled(historian);
     if (!error && !historian->file) {
         if (!historian->waiting.count)
-            return 0; /* with no rows to write, nothing is done, so that no empty history folder is created */
+            return 0; /* if there are no rows to write, does nothing, so that no empty history folder is created */
         make_folder(historian);
     }
     if (!error && !historian->recovered)
@@ -510,7 +510,7 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
 
 /* --- start and stop ----------------------------------------------------------------------------------------------------------- */
 
-/* Reads the monotonic and the UTC clock at nearly the same moment: repeats if the thread was interrupted between the two readings. */
+/* Reads the monotonic and the UTC clock at nearly the same moment: repeats the readings if the thread was interrupted in between. */
 static struct now look_at_clocks(void)
 {
     struct now now;
@@ -524,7 +524,7 @@ static struct now look_at_clocks(void)
     return now;
 }
 
-/* Returns by how much the wall clock was set since the last call, in nanoseconds; 0: it was not set. */
+/* Returns by how many nanoseconds the wall clock was set since the last call; 0: it was not set. */
 static int64_t watch_clock(struct historian *historian, const struct now *now)
 {
     int64_t ahead_ns = now->utc_ns - now->mono_ns, step_ns = historian->utc_ahead_ns ? ahead_ns - historian->utc_ahead_ns : 0;
@@ -532,7 +532,7 @@ static int64_t watch_clock(struct historian *historian, const struct now *now)
     return llabs(step_ns) > STEP_NS ? step_ns : 0;
 }
 
-/* Notes in the month's table of events that the wall clock was set, because the times of points alone do not show it. */
+/* Notes in the month's table of events that the wall clock was set, because the points' times alone do not show it. */
 static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_ns)
 {
     char *text = mem_printf(step_ns > 0 ? HISTORY_FORWARD_TEXT : HISTORY_BACK_TEXT, fabs((double)step_ns) / 1e9);
@@ -542,7 +542,7 @@ static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_
     mem_free(text);
 }
 
-/* Before the historian of the reloaded plant takes over, ends the recorded line of every tag at its newest sample. A tag that the
+/* Before the historian of the reloaded plant takes over, ends every tag's recorded line at its newest sample. A tag that the
    reloaded plant lacks also gets a point without a value, which marks the end of its data. */
 static void end_lines(struct historian *historian, int64_t utc_ns)
 {
@@ -558,7 +558,7 @@ static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
-    /* a standby's samples have the times of the leading daemon, so steps of the standby's own clock do not matter */
+    /* a standby's samples have the leading daemon's times, so steps of the standby's own clock do not matter */
     step_ns = historian->stands_by ? 0 : step_ns;
     take_events(historian, &now, step_ns);
     if (!historian->stands_by)
@@ -567,8 +567,8 @@ static void tick(struct historian *historian, bool last)
         note_step(historian, utc_ns, step_ns);
     bool new_month = historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000);
     if (new_month)
-        /* records the newest sample of every tag in the old month's file, because a recorded line that crosses the month's end must not
-           depend on samples in memory */
+        /* records every tag's newest sample in the old month's file, because a recorded line that crosses the month's end must
+           not depend on samples in memory */
         recorder_end(historian->recorder, &historian->waiting);
     if (!historian->stands_by && (new_month || last))
         repeat_readings(historian, new_month ? month_begin_us(month_of(utc_ns / 1000)) : utc_ns / 1000 - REPEAT_US, mono_ns, utc_ns);
@@ -579,8 +579,8 @@ static void tick(struct historian *historian, bool last)
     measure_free(historian);
 }
 
-/* Ends the recorded lines of the previous run at its newest samples. Used if the rows of that run's spool file still cannot be written
-   to history, before they are spooled together with this run's rows. */
+/* Ends the recorded lines of the previous run at its newest samples. Used if the rows of that run's spool file still cannot be
+   written to history, before they are spooled together with those of this run. */
 static void end_spooled_lines(struct spool_rows *rows)
 {
     struct recorder_rows *kept = &rows->kept;
@@ -596,12 +596,11 @@ static void end_spooled_lines(struct spool_rows *rows)
     rows->held.count = 0;
 }
 
-/* Saves the rows that cannot be written to history in a spool file, for the next start. Tries the paths of spool_places() until one can
-   be written. */
+/* Saves the rows that cannot be written to history in a spool file, for the next start. Tries the paths of spool_places() in turn. */
 static void spool(struct historian *historian)
 {
     char **places = spool_places(historian->folder);
-    /* the previous run's spooled rows come first, if they could not be written to history either */
+    /* the previous run's spooled rows come first, if they could not be written to history */
     struct spool_rows *rows = &historian->spooled;
     end_spooled_lines(rows);
     size_t before = rows->kept.count;

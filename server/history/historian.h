@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Records all samples of the store in the history files, on a thread of its own. It writes once a second, so that a crash loses at most
-   the last second. Neither the store nor live pictures wait for it. Rows that cannot be written (disk full or read-only) stay in memory
-   up to a limit and are written later. */
+/* Records all samples of the store in the history files, on a thread of its own. It writes once a second, so that a crash loses
+   at most the last second. Neither the store nor live pictures wait for it. Rows that cannot be written (disk full or
+   read-only) are kept in memory up to a limit and written later. */
 #ifndef HISTORY_HISTORIAN_H
 #define HISTORY_HISTORIAN_H
 #include "base/log/log.h"
@@ -16,36 +16,36 @@ struct historian_params {
     const struct plant *plant;
     struct store *store; /* store whose samples are recorded; must outlive the historian */
     const char *folder;  /* folder of the history files; created if it is missing */
-    /* true: samples come from the leading daemon (historian_mirror()) instead of the store, until historian_lead() is called */
+    /* true: until historian_lead() is called, samples come from the leading daemon (historian_mirror()) instead of the store */
     bool stands_by;
-    bool follows; /* true: this historian continues one that ended with historian_end(): recorded lines go on, and no gap is recorded */
-    /* time spans whose points must still be read from PostgreSQL, as historian_end() returned them; copied by the call; NULL: none */
+    bool follows; /* true: this historian continues the lines of one that ended with historian_end(), and no gap is recorded */
+    /* time spans whose points must still be read from PostgreSQL, as returned by historian_end(); copied; NULL: none */
     const struct postgres_owed *owed;
 };
 
 struct historian;
 /* Starts recording. Returns NULL if the thread cannot be started (logged). */
 struct historian *historian_start(const struct historian_params *params);
-/* Call it on a standby when it has connected to the leading daemon. Points that the leader recorded earlier and that this machine lacks
-   are then read from PostgreSQL. */
+/* Call this on a standby once it has connected to the leading daemon. Points that the leader recorded earlier and that this
+   machine lacks are then read from PostgreSQL. */
 void historian_follow(struct historian *historian);
-/* Records samples that the leading daemon recorded, in its order. Call it only while this daemon is a standby. Thread: one. */
+/* Records samples that the leading daemon has recorded, in its order. Call it only while this daemon is a standby. Thread: one. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
-/* Ends mirroring, because this daemon becomes the leader: from now on it records the samples of its own store. Values between the last
-   mirrored sample and now are recorded as unknown. */
+/* Ends mirroring, because this daemon becomes the leader: from now on it records the samples of its own store. Values between
+   the last mirrored sample and now are recorded as unknown. */
 void historian_lead(struct historian *historian);
-/* Call it on the leader when a standby connects. The standby may be the former leader, which may have sent its remaining points to
-   PostgreSQL since; these points are then read from there. */
+/* Call this on the leader when a standby connects. The standby may be the former leader, and may have sent its remaining points
+   to PostgreSQL in the meantime; these points are then read from there. */
 void historian_on_standby(struct historian *historian);
-/* For a standby: states that the leader has sent PostgreSQL all points recorded until age_ns ago. The standby then deletes them from its
-   own outbox instead of sending them. */
+/* For a standby: tells it that the leader has sent PostgreSQL all points recorded until age_ns ago. The standby then deletes
+   these points from its own outbox instead of sending them. */
 void historian_sent_elsewhere(struct historian *historian, int64_t age_ns);
 /* Returns the age in nanoseconds of the newest time T such that all points recorded before T are in PostgreSQL; INT64_MAX: unknown, or
    no database is configured. */
 int64_t historian_sent_age_ns(struct historian *historian);
-/* Writes pending points and ends the historian when the plant is reloaded, so that the historian of the reloaded plant (`next`) can
-   continue. Tags that `next` lacks have no value from now on. *owed receives the time spans whose points must still be read from
-   PostgreSQL. Sets *historian to NULL. */
+/* On a reload of the plant: writes pending points and ends the historian, so that the reloaded plant's historian (`next`: that
+   plant) can continue. Tags that `next` lacks have no value from now on. *owed receives the time spans whose points must still
+   be read from PostgreSQL. Sets *historian to NULL. */
 void historian_end(struct historian **historian, const struct plant *next, struct postgres_owed *owed);
 /* Writes pending points and ends the historian. Accepts a pointer to NULL; sets *historian to NULL. */
 void historian_stop(struct historian **historian);

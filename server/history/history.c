@@ -14,11 +14,11 @@ enum { OPEN_MONTHS = 4 };
 struct history_reader {
     struct log *log;
     char *folder;
-    /* plant that states the units to which values are converted; NULL: values keep the units in which they were recorded */
+    /* plant to whose units values are converted; NULL: values keep the units in which they were recorded */
     const struct plant *plant;
-    bool *told; /* by index of tag in `plant`: true once the log says that points of the tag are left out (unit not convertible) */
+    bool *told; /* [tag of `plant`]: true once the log reports that points of the tag are omitted (unit not convertible) */
     struct month_file *files[OPEN_MONTHS];
-    int next; /* index in `files` of the file that is closed next to make room for another */
+    int next; /* index in `files` of the next file to close when room for another is needed */
 };
 
 struct history_reader *history_reader_create(struct log *log, const char *folder)
@@ -48,8 +48,8 @@ void history_reader_destroy(struct history_reader **reader)
     *reader = NULL;
 }
 
-/* Opens the file of a month, or returns it if it is open; it stays valid until another month is opened. Returns NULL with *error 0 if
-   the month has no file, and NULL with *error -errno if the file cannot be read. */
+/* Opens the file of a month, or returns it if it is already open; it stays valid until another month is opened. Returns NULL
+   with *error 0 if the month has no file, and NULL with *error -errno if the file cannot be read. */
 static struct month_file *open_month(struct history_reader *reader, int month, int *error)
 {
     struct month_file **place = &reader->files[reader->next];
@@ -58,7 +58,7 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
         if (reader->files[i] && month_file_month(reader->files[i]) == month) {
             if (month_file_is_there(reader->files[i]))
                 return reader->files[i];
-            /* the month's file was deleted or replaced since it was opened: closes it and opens the present one */
+            /* the month's file was deleted or replaced after it was opened: closes it and opens the current one */
             place = &reader->files[i];
         }
     if (place == &reader->files[reader->next])
@@ -74,8 +74,8 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
 
 /* --- series ------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the rollup level with the longest buckets that are at most twice stretch_us, the wanted length. Returns -1 if the buckets of
-   all levels are longer: the caller must then compute buckets from the points. */
+/* Returns the rollup level with the longest buckets that are at most twice stretch_us, the desired length. Returns -1 if the
+   buckets of all levels are longer: the caller must then compute buckets from points. */
 static int level_for(int64_t stretch_us)
 {
     int level = -1;
@@ -85,7 +85,7 @@ static int level_for(int64_t stretch_us)
     return level;
 }
 
-/* Returns the shortest bucket length, in microseconds, with which at most max_points buckets cover the time span. */
+/* Returns the shortest bucket length in microseconds for which at most max_points buckets cover the time span. */
 static int64_t wanted_length(int64_t span_us, int max_points)
 {
     int64_t count = max_points > 1 ? max_points : 1, length_us = (span_us + count - 1) / count;
@@ -99,12 +99,12 @@ static int64_t bucket_length(int64_t stretch_us, int level)
     return count > 1 ? count * unit_us : unit_us;
 }
 
-/* State of merging a series' short buckets into longer ones, which are appended to `out`. */
+/* State of merging a series' short buckets into longer ones, appended to `out`. */
 struct gather {
     struct history_series *out;
-    int64_t length_us; /* length in microseconds of the short time intervals (buckets) that are joined */
-    /* rollup: computes buckets from points that are in no bucket of a file yet; continues from one month to the next. done_us: its
-       buckets that begin before this time are left out, because a file has them */
+    int64_t length_us; /* length in microseconds of the short buckets (time intervals) that are merged */
+    /* rollup: computes buckets from points that no bucket of a file includes yet, across months. done_us: buckets from `rollup`
+       that begin before this time are dropped, because a file has them */
     struct rollup rollup;
     int64_t done_us;
     bool has_last;
@@ -122,13 +122,13 @@ static struct history_bucket *bucket_of(struct history_series *out, int64_t t_us
     return bucket;
 }
 
-/* Merges a short bucket into the long bucket of its time. The straight line from the previous short bucket to this one counts in every
-   long bucket that it crosses. */
+/* Merges a short bucket into the long bucket that covers its time. The straight line from the previous short bucket to this one
+   counts in every long bucket that it crosses. */
 static void put_bucket(struct gather *gather, const struct history_bucket *bucket)
 {
     struct history_series *out = gather->out;
     struct history_bucket to = *bucket;
-    /* a switch holds its last value until then; files of earlier versions stored in `first` the value after a step at the bucket's start */
+    /* a switch holds its last value until then; earlier file versions stored in `first` the value after a step at the bucket's start */
     if (out->step)
         to.first = gather->last.last;
     int64_t begin_us = bucket->t_us - bucket->t_us % out->bucket_us, end_us = gather->last.t_us + gather->length_us;
@@ -145,8 +145,8 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
     gather->has_last = true;
 }
 
-/* Computes buckets from points that no bucket of a file includes yet. Of the points before done_us only the last matters, because the
-   line to the next point starts there. */
+/* Computes buckets from points that no bucket of a file includes yet. Of the points before done_us only the last matters,
+   because the line to the next point starts there. */
 static void put_points(struct gather *gather, const struct history_points *points)
 {
     struct history_bucket closed;
@@ -165,8 +165,8 @@ static void put_rest(struct gather *gather)
         put_bucket(gather, &rest);
 }
 
-/* Recomputes the first bucket of a month's file if the line from the previous month's last point crosses it, because the file's own
-   bucket begins only at its first point. *joined tells whether the recomputed bucket was merged. */
+/* Recomputes the first bucket of a month's file if the line from the previous month's last point crosses it, because the file's
+   own bucket begins only at its first point. *joined: true if the recomputed bucket was merged. */
 static int join_month(struct month_file *file, const char *tag, const struct history_bucket *first, struct gather *gather, bool *joined)
 {
     struct history_points points = { 0 };
@@ -206,7 +206,7 @@ static int add_month(struct month_file *file, const char *tag, int level, int64_
     return error;
 }
 
-/* Drops points outside the time range, except the last one before and the first one after it, because every month's file may have
+/* Drops points outside the time range, except the last one before and the first one after it. Every month's file may have
    contributed such points. */
 static void drop_edges(struct history_points *points, int64_t from_us, int64_t to_us)
 {
@@ -234,7 +234,7 @@ static void drop_outer_buckets(struct history_series *series, int64_t from_us, i
     buckets->count = last - first;
 }
 
-/* Logs, once for each tag, that points are left out because their unit cannot be converted. */
+/* Logs, once per tag, that points are omitted because their unit cannot be converted. */
 static void report_left_out(struct history_reader *reader, int tag, const struct history_left_out *left_out)
 {
     const struct plant_tag *of = &reader->plant->tags[tag];
@@ -245,13 +245,13 @@ static void report_left_out(struct history_reader *reader, int tag, const struct
     reader->told[tag] = true;
 }
 
-struct month_request { /* the part of a tag's series to read from a month's file */
+struct month_request { /* the part of a tag's series to be read from a month's file */
     const char *tag;
-    int level; /* rollup level whose buckets are read; -1: points are read */
+    int level; /* rollup level whose buckets to read; -1: points */
     int64_t from_us, to_us;
 };
 
-/* Reads the requested part of one month. left_out: counts points whose unit cannot be converted; NULL: they are not counted. */
+/* Reads the requested part of one month. left_out: counts the points whose unit cannot be converted; NULL: not counted. */
 static int read_month(struct history_reader *reader, int month, const struct month_request *of, struct gather *gather,
                       struct history_left_out *left_out)
 {
@@ -272,7 +272,7 @@ static int read_month(struct history_reader *reader, int month, const struct mon
     return error;
 }
 
-/* Returns true if the months read so far have a point of the tag. */
+/* Returns true if the months read so far contain a point of the tag. */
 static bool has_begun(const struct gather *gather)
 {
     return gather->out->points.count > 0 || gather->out->buckets.count > 0 || gather->rollup.open;
@@ -287,9 +287,9 @@ static bool lacks_end(const struct gather *gather, int level, int64_t to_us)
     return !points->count || points->at[points->count - 1].t_us <= to_us;
 }
 
-/* Reads a series from the files of all months in its time span. Also reads earlier months, back to the newest point before the span,
-   because the line that enters the span begins there, and later months, up to the first point after it. Both may be far away: a source
-   that sends only changes may send none for months. */
+/* Reads a series from the files of all months in its time span. Also searches earlier months for the newest point before the
+   span, where the line that enters the span begins, and later months for the first point after it. Both points may be far away:
+   a source that sends only changes may send none for months. */
 static int read_months(struct history_reader *reader, const struct month_request *of, struct gather *gather,
                        struct history_left_out *left_out)
 {
@@ -297,7 +297,7 @@ static int read_months(struct history_reader *reader, const struct month_request
     int *months = month_list(reader->folder, &count), error = 0, first = month_of(of->from_us), last = month_of(of->to_us);
     while (begin < count && months[begin] < first)
         begin++;
-    /* a month that cannot be read ends the search for a far point, but not the query */
+    /* a month that cannot be read ends the search for a distant point, but does not fail the query */
     for (size_t i = begin; i > 0 && !error && !has_begun(gather); i--)
         if ((error = read_month(reader, months[i - 1], of, gather, left_out)) && i < begin) {
             error = 0;
@@ -312,12 +312,12 @@ static int read_months(struct history_reader *reader, const struct month_request
     return error;
 }
 
-/* Reads the buckets between two times, with one bucket before and one after. */
+/* Reads the buckets between two times, plus one bucket before and one after. */
 static int read_buckets(struct history_reader *reader, const struct month_request *of, struct history_series *out)
 {
     struct gather gather = { .out = out, .length_us = of->level < 0 ? out->bucket_us : history_level_us[of->level], .done_us = INT64_MIN };
     out->buckets.count = 0;
-    /* if buckets are computed from points, the point before is needed as well, because its value holds until a step at the first point */
+    /* if buckets are computed from points, the preceding point is also needed, because its value holds until a step at the first point */
     struct month_request before = { of->tag, of->level, of->level < 0 ? of->from_us - 1 : of->from_us, of->to_us };
     int error = read_months(reader, &before, &gather, NULL);
     if (!error && of->level < 0)
@@ -357,7 +357,7 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
                    struct history_series *out)
 {
     const struct month_request of = { tag, -1, from_us, to_us };
-    /* including one point before and one after the range; reading may find two more, of neighbouring months */
+    /* includes one point before and one after the range; reading may find two more, in neighbouring months */
     const size_t most = (size_t)max_points + 2;
     struct history_left_out left_out = { 0 };
     int index = reader->plant ? plant_find_tag(reader->plant, tag) : -1;
@@ -382,8 +382,8 @@ void history_series_finish(struct history_series *series)
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-/* Returns true if the tag has no value at t_us because its newest recorded sample is older than `Stale s` of the tag allows. If the tag
-   had still had readings, the historian would have recorded a newer point. */
+/* Returns true if the tag has no value at t_us because its newest recorded sample is older than the tag's `Stale s` allows. If
+   readings had continued, the historian would have recorded a newer point. */
 static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
 {
     return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&
@@ -420,7 +420,7 @@ static int at_month(struct history_reader *reader, int month, const struct histo
     return error;
 }
 
-/* Returns true if the point before t_us was not found for some tag; with `after`, if the usable point before it has no point after it. */
+/* Returns true if for some tag the point before t_us was not found; with `after`, if the usable point before it has no point after it. */
 static bool lacks_point(const struct history_pair *pairs, size_t count, bool after)
 {
     size_t i = 0;
@@ -440,8 +440,8 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
         pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
     while (begin < months_count && months[begin] <= month)
         begin++;
-    /* The month of t_us, then months before and after it, because a tag's points may be months apart. A far month that cannot be read ends
-       the search, but does not fail: without it, the reading is unknown. */
+    /* Searches the month of t_us, then months before and after it, because a tag's points may be months apart. A distant month
+       that cannot be read ends the search, but is no failure: the reading is then unknown. */
     for (size_t i = begin; i > 0 && !error && (i == begin || lacks_point(pairs, into->count, false)); i--) {
         error = at_month(reader, months[i - 1], tags, t_us, into->count, pairs);
         if (error && months[i - 1] < month - 1) {
@@ -494,7 +494,7 @@ static int by_beginning(const void *a, const void *b)
     return (x->from_us > y->from_us) - (x->from_us < y->from_us);
 }
 
-/* Sorts gaps in recording by time, keeps those that overlap from_us..to_us, and joins overlapping ones. */
+/* Sorts gaps in recording by time, keeps those that overlap from_us..to_us, and merges overlapping ones. */
 static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
 {
     size_t kept = 0;
@@ -512,7 +512,7 @@ static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
     gaps->count = kept;
 }
 
-/* also reads the last file before from_us, because a gap that it notes may extend beyond from_us */
+/* also reads the last file before from_us, because a gap noted there may extend beyond from_us */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
 {
     size_t count;

@@ -6,8 +6,8 @@
 
 static const int64_t HOUR_US = 3600 * US_PER_S;
 
-/* Sets the hourly means between two one-hour buckets that do not adjoin. No point was recorded in these hours, so each mean lies on the
-   straight line between the buckets. */
+/* Sets the hourly means between two one-hour buckets that are not adjacent. No point was recorded in these hours, so each mean
+   lies on the straight line between the buckets. */
 static void fill_between(const struct history_series *series, const struct history_bucket *a, const struct history_bucket *b,
                          int64_t from_us, int hours, double *means)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Imports a CSV file of samples. Reads it twice: first to find all errors and how far apart the samples of each tag are, then to record
+/* Imports a CSV file of samples. Reads it twice: first to find all errors and the spacing of each tag's samples, then to record
    the samples in the history files of their months. */
 #include "history/import.h"
 
@@ -27,33 +27,33 @@
 enum {
     FLUSH_ROWS = 500000,
     MAX_ERRORS = 50,
-    MEDIANS = 10 /* a time between two samples of more than this many median times between samples is a gap */
+    MEDIANS = 10 /* a time between two samples longer than this many times the median is a gap */
 };
 
 /* The samples of one tag in the imported file. */
 struct import_series {
-    bool has_row;   /* true: the current pass over the CSV file has read a row of this tag */
-    int64_t row_us; /* time of this tag's row that the current pass read last */
+    bool has_row;   /* true: the current pass over the CSV file has already read a row of this tag */
+    int64_t row_us; /* time of this tag's last row in the current pass */
     bool seen;      /* true: the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
     int64_t longest_us; /* a longer time in microseconds between two samples of this tag is a gap, which interrupts the recorded line */
-    /* true: `pending` holds the tag's newest sample that the second pass has read. It is recorded once a later sample was read, because
-       another row with the same time would replace it */
+    /* true: `pending` holds the newest sample of the tag in the second pass. It is recorded once a later sample was read,
+       because another row with the same time would replace it */
     bool has_pending;
     struct history_point pending;
-    struct history_points before; /* points of this tag that the history had before the import, in the time span of the imported samples */
-    size_t next;                  /* index into `before` of the first point that is not older than the imported sample in hand */
+    struct history_points before; /* points of this tag that history already had in the time span of the imported samples */
+    size_t next;                  /* index in `before` of the first point that is not older than the current imported sample */
 };
 
 struct history_import {
     const struct import_params *params;
     struct csv csv;
-    /* column indices in the CSV file; -1: no such column. tag -1: the file has the wide form (one column for each tag) */
+    /* column indices in the CSV file; -1: no such column. tag -1: the file has the wide form (one column per tag) */
     int time, tag, value, quality, unit;
-    int *tags;                    /* wide form: tag index of each column; -1: the column is not a tag's and is ignored */
-    struct import_series *series; /* state of each tag's series, by index of the tag */
-    int64_t row_us;               /* wide form: time of the row that was read last; one value a line: INT64_MIN */
+    int *tags;                    /* wide form: tag index of each column; -1: not a tag's column, ignored */
+    struct import_series *series; /* [tag]: state of the tag's series */
+    int64_t row_us;               /* wide form: time of the last row read; long form (one value per line): INT64_MIN */
     struct import_counts *counts;
 };
 
@@ -67,7 +67,7 @@ static int find_time(struct history_import *import)
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    /* if no column has such a name, the first column has the times, unless its name is that of a tag */
+    /* if no column has such a name, the first column contains the times, unless it is named after a tag */
     return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1;
 }
 
@@ -101,7 +101,7 @@ static bool find_columns(struct history_import *import)
     }
     if (import->tag >= 0 && import->value >= 0) {
         import->unit = csv_find(&import->csv, "Unit");
-        /* true: the file was written by `plantcast history export`, because its columns are those of series_text_csv_head() */
+        /* true: the columns are those of series_text_csv_head(), so `plantcast history export` has written the file */
         import->counts->exported = import->csv.header.count == 5 && import->tag == 0 && import->time == 1 && import->value == 2 &&
                                    import->quality == 3 && import->unit == 4;
         return true;
@@ -112,8 +112,8 @@ static bool find_columns(struct history_import *import)
 
 /* --- rows ----------------------------------------------------------------------------------------------------------------------- */
 
-/* Reads the time of a row. When clocks are set back in autumn, one hour of local time occurs twice. A row whose time is not after the
-   previous row's (after_us) then belongs to the second occurrence. */
+/* Reads the time of a row. When clocks are set back in autumn, one hour of local time occurs twice. A row whose time is not
+   after that of the previous row (after_us) then belongs to the second occurrence. */
 static bool take_time(struct history_import *import, int64_t after_us, int64_t *t_us)
 {
     const char *text = csv_text(&import->csv, import->time);
@@ -163,8 +163,8 @@ static bool take_quality(struct history_import *import, uint32_t *quality)
     return false;
 }
 
-/* Converts a value from the unit in the row's column Unit; if that is blank, from the unit in which the tag's device sends values. The
-   result is in the tag's unit. */
+/* Converts a value to the tag's unit: from the unit in the row's column Unit or, if that is blank, from the unit in which the
+   tag's device sends values. */
 static bool take_unit(struct history_import *import, int tag, double *value)
 {
     const struct plant_tag *of = &import->params->plant->tags[tag];
@@ -179,8 +179,7 @@ static bool take_unit(struct history_import *import, int tag, double *value)
     return true;
 }
 
-/* Reads one cell of a CSV row: a number, or a state word (value/state_word.h), which means that there is no value. Passes the sample to
-   `take`. */
+/* Reads one cell of a CSV row, either a number or a state word (value/state_word.h), which means no value. Passes the sample to `take`. */
 static bool take_cell(struct history_import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
     const char *text = csv_text(&import->csv, column);
@@ -229,7 +228,7 @@ static bool take_row(struct history_import *import, take_sample *take, void *arg
     return good;
 }
 
-/* Makes one pass over the CSV file and passes every sample to `take`. Returns false if the file has errors, or `take` failed. */
+/* Makes one pass over the CSV file and passes every sample to `take`. Returns false if the file has errors or `take` failed. */
 static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, struct import_series *series,
                       take_sample *take, void *arg)
 {
@@ -276,8 +275,8 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     return true;
 }
 
-/* Returns a typical time between samples: the lower median, over all series with a rhythm (at least three samples), of the series'
-   median times between samples. Returns 0 if no series has a rhythm. */
+/* Returns a typical time between samples: the lower median, over all series with a rhythm (at least three samples), of each
+   series' median time between samples. Returns 0 if no series has a rhythm. */
 static int64_t typical_spacing(struct import_series *series, size_t count)
 {
     int64_t *medians = mem_array(count ? count : 1, sizeof(*medians)), typical_us = 0;
@@ -292,10 +291,10 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
     return typical_us;
 }
 
-/* Returns the longest time between two samples of a series that does not count as a gap. `Stale s` of the tag list is used only if the
-   series is fast enough for it, because it is meant for live readings. A series of two samples has no rhythm, since the time between the
-   two may itself be the gap: it uses the median of a typical series. If no series has a rhythm, it uses the longest time that the
-   historian leaves between two points. */
+/* Returns the longest time between two samples of a series that is not a gap. `Stale s` of the tag list counts only if the
+   series is fast enough for it, because it is meant for live readings. A series of two samples has no rhythm, since the time
+   between the two may itself be the gap. It uses the median of a typical series or, if no series has a rhythm, the longest time
+   that the historian leaves between two points. */
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
@@ -314,8 +313,8 @@ static int64_t longest_gap(const struct import_params *params, const struct plan
     return is_least && longest_us < override_us ? override_us : longest_us;
 }
 
-/* Runs between the two passes over the CSV file: sets the time beyond which each series has a gap, and resets the state for the second
-   pass. */
+/* Runs between the two passes over the CSV file: sets the longest time without a gap for each series, and resets the state for
+   the second pass. */
 static void judge_series(const struct import_params *params, struct import_series *series, struct import_counts *counts)
 {
     int64_t typical_us = typical_spacing(series, params->plant->tag_count);
@@ -406,8 +405,8 @@ static bool is_end_of_line(const struct history_point *point)
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
 }
 
-/* Returns true if the existing history has a point without a value at t_us, with which an earlier import or a stopped daemon ended the
-   line. Call it with ascending times. */
+/* Returns true if the existing history has a point without a value at t_us, by which an earlier import or a stopped daemon
+   ended the line. Call it with ascending times. */
 static bool was_end_of_line(struct import_series *series, int64_t t_us)
 {
     while (series->next < series->before.count && series->before.at[series->next].t_us < t_us)
@@ -416,8 +415,8 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
            is_end_of_line(&series->before.at[series->next]);
 }
 
-/* Records the tag's pending sample. If the next sample, at next_us, comes only after a gap, also records a point without a value, which
-   ends the line. next_us INT64_MAX: there is no next sample. */
+/* Records the tag's pending sample. If the next sample, at next_us, follows only after a gap, also records a point without a
+   value, which ends the line. next_us INT64_MAX: there is no next sample. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];
@@ -429,8 +428,7 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-        /* the line continues here: the sample's value overwrites the point without a value with which the existing history ended the
-           line */
+        /* the line continues here: the sample overwrites the point without a value that ended the line in the existing history */
     } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
@@ -452,8 +450,8 @@ static bool fill_sample(struct history_import *import, void *arg, int tag, const
 
 /* --- joining existing history -------------------------------------------------------------------------------------------------------- */
 
-/* Joins the first imported sample of a series to the point that history has before it. If the time between them is a gap, ends the
-   existing line with a point without a value; otherwise removes such a point. */
+/* Connects the first imported sample of a series to the preceding point in history. If the time between the two is a gap, ends
+   the existing line with a point without a value; otherwise removes such a point. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
     struct import_series *series = &filling->series[tag];
@@ -496,7 +494,7 @@ static bool read_before(struct filling *filling)
     return good;
 }
 
-/* Records the last imported sample of each series, and joins it to the point that history has after it. */
+/* Records the last imported sample of each series, and connects it to the following point in history. */
 static void record_last(struct filling *filling)
 {
     for (size_t i = 0; i < filling->params->plant->tag_count; i++) {
@@ -522,10 +520,9 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    /* the second pass reports into a struct diag of its own, which is discarded, because `diag` already has the same findings from the
-       first pass */
+    /* reports of the second pass go to a struct diag of its own and are discarded, because `diag` already has them from the first pass */
     struct diag again = { 0 };
-    mkdir(params->folder, 0777); /* result ignored: if the folder cannot be created, opening a month's file reports the error */
+    mkdir(params->folder, 0777); /* ignores the result: if the folder cannot be created, opening a month's file reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);
     if (good)

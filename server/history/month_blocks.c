@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "history/columns.h"
 
-/* SHARED_TIMES: maximum number of times in a chunk (a list of times that several blocks share). It is limited because a reader of one
-   block decompresses all times of its chunk. */
+/* SHARED_TIMES: maximum number of times in a chunk (a list of times shared by several blocks). It is limited because reading
+   one block means decompressing all times of its chunk. */
 enum { BLOCK_POINTS = 2048, SHARED_TIMES = 32768, BLOCK_COLUMNS = 3 };
 
 static int damaged(struct month_file *file)
@@ -42,7 +42,7 @@ int month_chunk_store(struct month_file *file, struct month_chunk *chunk)
     return error;
 }
 
-/* Reads a chunk (times that several blocks share) into file->chunk, where it serves the blocks that are read next. */
+/* Loads a chunk (times shared by several blocks) into file->chunk, for the blocks that are read next. */
 static int load_chunk(struct month_file *file, int64_t id)
 {
     if (id == file->chunk->id)
@@ -64,7 +64,7 @@ static int load_chunk(struct month_file *file, int64_t id)
     return 0;
 }
 
-/* Returns the index of a time in a chunk (the sorted times that several blocks share), at `from` or later. */
+/* Returns the index of a time in a chunk (sorted times shared by several blocks), searching from `from` on. */
 static uint64_t index_of(const struct month_chunk *chunk, size_t from, int64_t t_us)
 {
     size_t low = from, high = chunk->count;
@@ -130,8 +130,8 @@ static bool add_rows(const struct month_chunk *chunk, bool shared, const uint64_
     return true;
 }
 
-/* Decodes the block in the current row of an SQL query and appends its points to `out`. The row's first column is the id of the block's
-   chunk (shared times), the second the compressed data. */
+/* Decodes the block in the current row of an SQL query and appends its points to `out`. Column 0: id of the block's chunk
+   (shared times); column 1: the compressed data. */
 static int take_block(struct month_file *file, sqlite3_stmt *block, struct history_points *out)
 {
     int64_t chunk = sqlite3_column_int64(block, 0);
@@ -155,7 +155,7 @@ static int delete_block(struct month_file *file, int64_t id, int64_t t_us)
 
 /* --- the blocks of a tag ------------------------------------------------------------------------------------------------------ */
 
-/* Returns true if more points after from_us were read than `points` may hold. */
+/* Returns true if more points after from_us have been read than `points` may hold. */
 static bool exceeds(const struct history_points *points, int64_t from_us)
 {
     return history_points_full(points) && points->at[points->count - 1 - points->max].t_us > from_us;

@@ -12,7 +12,7 @@ enum { APPLICATION_ID = 0x50434849 /* the letters PCHI, by which SQLite's tools 
 
 const int64_t history_level_us[LEVEL_COUNT] = { 60 * US_PER_S, 600 * US_PER_S, 3600 * US_PER_S };
 
-/* Migrations: schemas[n - 1] is the SQL that converts a history file of version n - 1 to version n. */
+/* Migrations: schemas[n - 1] is the SQL that upgrades a history file from version n - 1 to version n. */
 static const char schema_1[] =
     "CREATE TABLE tag(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL, step INTEGER NOT NULL, within REAL NOT NULL);"
     "CREATE TABLE sample(tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL, PRIMARY KEY(tag, t)) WITHOUT ROWID;"
@@ -25,16 +25,16 @@ static const char schema_1[] =
     "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
     " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held) s"
     " JOIN tag ON tag.id = s.tag;";
-/* From version 2 on, the view leaves out held samples (newest samples, stored in case of a crash) that are also recorded, so that it
-   shows each point once. */
+/* From version 2 on, the view omits held samples (newest samples, stored in case of a crash) that are also recorded, so that
+   each point appears once. */
 static const char schema_2[] =
     "DROP VIEW history;"
     "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
     " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held h"
     " WHERE NOT EXISTS (SELECT 1 FROM sample WHERE tag = h.tag AND t = h.t)"
     " AND NOT EXISTS (SELECT 1 FROM recent WHERE tag = h.tag AND t = h.t)) s JOIN tag ON tag.id = s.tag;";
-/* From version 3 on, points are in compressed blocks, which SQL cannot read, so there is no view. Points of older versions stay in the
-   table `sample`. */
+/* From version 3 on, points are in compressed blocks, which SQL cannot read, so there is no view. Points from older versions
+   stay in the table `sample`. */
 static const char schema_3[] =
     "DROP VIEW history;"
     "INSERT OR REPLACE INTO sample SELECT tag, t, v, q FROM recent;"
@@ -43,8 +43,8 @@ static const char schema_3[] =
     "CREATE TABLE block(tag INTEGER NOT NULL, t INTEGER NOT NULL, last INTEGER NOT NULL, chunk INTEGER NOT NULL, data BLOB NOT NULL,"
     " PRIMARY KEY(tag, t)) WITHOUT ROWID;"
     "CREATE TABLE second(n INTEGER PRIMARY KEY, stamp INTEGER NOT NULL, data BLOB NOT NULL);"
-    /* stamps (numbers that increase with each write) begin at 1 << 40: SQLite then stores every stamp in 6 bytes, so that rows of the
-       table `second` keep their size and are overwritten in place */
+    /* stamps (numbers that increase with each write) start at 1 << 40, so that SQLite stores every stamp in 6 bytes; rows of
+       the table `second` thus keep their size and are overwritten in place */
     "INSERT INTO second VALUES(0, 1099511627776, x'');";
 static const char *const schemas[HISTORY_VERSION] = { schema_1, schema_2, schema_3 };
 
@@ -53,8 +53,8 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_BEGIN_READ] = "BEGIN",
     [SQL_COMMIT] = "COMMIT",
     [SQL_ROLLBACK] = "ROLLBACK",
-    /* also finds former series of the tag, which were set aside because of their unit: their names are the tag's name, char(31) and a
-       number */
+    /* also finds earlier series of the tag that were set aside because of their unit: they are named after the tag, followed by
+       char(31) and a number */
     [SQL_FIND_TAG] = "SELECT id, step, unit FROM tag WHERE name = ?1 OR (name > ?1 || char(31) AND name < ?1 || char(32)) ORDER BY name",
     [SQL_RENAME_TAG] = "UPDATE tag SET name = ?2 WHERE id = ?1",
     [SQL_TAG_UNIT] = "SELECT unit FROM tag WHERE id = ?",
@@ -108,7 +108,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_UPDATE_SECOND] = "UPDATE second SET stamp = ?2, data = ?3 WHERE n = ?1",
     [SQL_ADD_OUTBOX] = "INSERT INTO outbox(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_HAS_OUTBOX] = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'outbox'",
-    /* the outbox has no index on time, so points are deleted in order of insertion, up to the first one that is not too old */
+    /* the outbox has no index on time, so points are deleted in order of insertion, up to the first one that is recent enough */
     [SQL_CUT_OUTBOX] = "DELETE FROM outbox WHERE seq < coalesce((SELECT seq FROM outbox WHERE t >= ?1 ORDER BY seq LIMIT 1),"
                        " (SELECT max(seq) + 1 FROM outbox))",
     [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"
@@ -118,7 +118,7 @@ static const char *const sql[SQL_COUNT] = {
 static const struct database_format format = {
     APPLICATION_ID,
     HISTORY_VERSION,
-    /* small pages of the SQLite file, because each second changes only a few bytes of the table `second` */
+    /* small pages, because each second changes only a few bytes of the table `second` */
     "PRAGMA page_size = 1024; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 32000",
     schemas,
     sql,

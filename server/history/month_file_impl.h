@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State and functions that month_file*.c, month_blocks.c and month_seconds.c share. Private to them. */
+/* State and functions shared by month_file*.c, month_blocks.c and month_seconds.c. Private to them. */
 #ifndef HISTORY_MONTH_FILE_IMPL_H
 #define HISTORY_MONTH_FILE_IMPL_H
 #include <sys/types.h>
@@ -31,34 +31,34 @@ struct month_file {
     bool has_blocks; /* true: the file is known to have blocks of compressed points (format version 3 or later) */
     bool writes;     /* true: this handle has written to the table `second`, which holds the newest points (month_seconds.h) */
     ino_t inode;
-    const struct plant *shown_by; /* plant that states the units to which values are converted; NULL: not converted */
+    const struct plant *shown_by; /* plant to whose units values are converted; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
-    int64_t *ids;                  /* by index of the tag: the tag's id in the file; 0: not known yet */
-    struct month_rollups *rollups; /* incomplete rollup buckets, by index of the tag */
-    struct month_chunk *chunk;     /* the chunk (times that several blocks share) that was read last */
-    struct month_seconds *seconds; /* newest points, which are not in blocks yet, as this handle has read them from the table `second` */
-    /* number and stamp (increases with each write) of the row in the table `second` that was written last */
+    int64_t *ids;                  /* [tag]: the tag's id in the file; 0: not known yet */
+    struct month_rollups *rollups; /* [tag]: incomplete rollup buckets */
+    struct month_chunk *chunk;     /* the chunk (times shared by several blocks) read last */
+    struct month_seconds *seconds; /* newest points, not in blocks yet, as read by this handle from the table `second` */
+    /* number and stamp (increases with each write) of the last written row of the table `second` */
     int64_t slot, stamp;
-    int64_t slot_before, stamp_before; /* values of `slot` and `stamp` when the transaction began, which end() restores after a rollback */
+    int64_t slot_before, stamp_before; /* `slot` and `stamp` at the start of the transaction, which end() restores after a rollback */
 };
 
 /* Returns the prepared SQL statement `which`, ready to bind and step (base/files/database.h). */
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
-/* Runs an SQL statement to its end, and logs errors. `doing` says in the log what failed. Returns 0 or -errno. */
+/* Runs an SQL statement to its end, and logs errors; `doing` tells the log what failed. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
-/* *has tells whether the file has an outbox (points to send to PostgreSQL) now, because another handle may have created one. Returns 0
-   or -errno. */
+/* Sets *has to true if the file now has an outbox (points to send to PostgreSQL); another handle may have created one. Returns
+   0 or -errno. */
 int month_has_outbox(struct month_file *file, bool *has);
-struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from the columns t, v, q of the current
-                                                                                row, the first of which is first_column. */
-/* Returns whether the file has the tables `block` and `second`: files of versions 1 and 2 lack them until a writer converts them. */
+struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from three consecutive columns t, v, q
+                                                                                of the current row, beginning with first_column. */
+/* Returns true if the file has the tables `block` and `second`; files of versions 1 and 2 lack them until a writer upgrades the file. */
 bool month_has_blocks(struct month_file *file);
-/* Returns the id of the tag's series whose unit is `wanted` or can be converted to it, and the conversion in *change; 0: the file has no
-   such series. wanted NULL: returns the series to which the newest points belong, without conversion. */
+/* Returns the id of the tag's series whose unit is, or can be converted to, `wanted`, and sets *change to the conversion; 0:
+   the file has no such series. wanted NULL: returns the series with the newest points, without conversion. */
 int64_t month_find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change);
-/* Appends a tag's points from the compressed blocks and from the table `sample` (older versions), ascending, from the last one at or
-   before from_us to the first one after to_us. Returns 0 or -errno. */
+/* Appends a tag's points from the compressed blocks and from the table `sample` (older versions), ascending: from the last one
+   at or before from_us to the first one after to_us. Returns 0 or -errno. */
 int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out);
 void history_points_add(struct history_points *points, const struct history_point *point);
 

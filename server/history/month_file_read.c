@@ -25,7 +25,7 @@ void month_file_show_by(struct month_file *file, const struct plant *plant)
     file->shown_by = plant;
 }
 
-/* Returns the unit in which the plant shows the tag now. NULL: values keep the unit in which the file stores them. */
+/* Returns the unit in which the plant now shows the tag; NULL: values keep the unit stored in the file. */
 static const char *unit_shown(const struct month_file *file, const char *name)
 {
     int tag = file->shown_by ? plant_find_tag(file->shown_by, name) : -1;
@@ -86,7 +86,7 @@ static int by_time(const void *a, const void *b)
     return (x->t_us > y->t_us) - (x->t_us < y->t_us);
 }
 
-/* Appends a tag's newest points, which are not in blocks yet, and its held sample (newest, not recorded yet); sorted by time. */
+/* Appends a tag's newest points, which are not in blocks yet, and its held sample (newest, not recorded yet), sorted by time. */
 static int add_recent(struct month_file *file, int64_t id, struct history_points *out)
 {
     const struct month_seconds *seconds = file->seconds;
@@ -108,7 +108,7 @@ static int add_recent(struct month_file *file, int64_t id, struct history_points
     return error;
 }
 
-/* Appends a tag's points in the table `sample`, which versions 1 and 2 of the file format wrote. */
+/* Appends a tag's points from the table `sample`, written by versions 1 and 2 of the file format. */
 static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     struct history_point edge;
@@ -130,8 +130,8 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     return error;
 }
 
-/* Removes the points that a query need not return: of several before from_us only the last stays, of several after to_us only the first,
-   and of two with equal times the newer row. */
+/* Removes points that a query need not return: keeps only the last before from_us, only the first after to_us, and the newer
+   row of two with equal times. */
 static void trim(struct history_points *points, size_t begin, int64_t from_us, int64_t to_us)
 {
     size_t kept = begin;
@@ -160,7 +160,7 @@ int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, in
     return error;
 }
 
-/* Appends the points of a tag's series, in the unit in which the file stores them. */
+/* Appends the points of a tag's series, in the unit stored in the file. */
 static int add_series(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     size_t begin = out->count;
@@ -257,14 +257,14 @@ static void take(struct history_pair *pair, const struct history_point *there, i
         pair->after = point;
 }
 
-/* Returns true if the file may have a point that is still searched. month: month of the requested time. */
+/* Returns true if the file may have a point that has not been found yet. month: month of the requested time. */
 static bool is_searched(const struct month_file *file, const struct history_pair *pair, int month)
 {
     return (file->month <= month && pair->before.t_us == INT64_MIN) || (file->month >= month && pair->after.t_us == INT64_MIN);
 }
 
-/* Returns an array that maps a tag's id in the file to its index in `tags`; -1: not in `tags`, or no point of the tag is searched in this
-   file. Returns NULL if the file has none of the tags. Free with mem_free(). */
+/* Returns an array that maps a tag's id in the file to its index in `tags`; -1: not in `tags`, or no point of the tag is sought
+   in this file. Returns NULL if the file has none of the tags. Free with mem_free(). */
 static int *index_by_id(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs,
                         int64_t *most)
 {
@@ -377,7 +377,7 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
     return error;
 }
 
-/* Parses the text of an event with which the historian noted a gap in recording. Returns false for other events. */
+/* Parses the text of an event by which the historian noted a gap in recording. Returns false for other events. */
 static bool read_gap(const char *kind, const char *text, int64_t t_us, struct history_gap *out)
 {
     double seconds;

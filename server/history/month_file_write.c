@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a month's history file. Points are first written in order of time; later they are sorted by tag, compressed and reduced to
-   rollups. */
+/* Writes a month's history file. Points are first written in order of time; later they are sorted by tag, compressed and
+   summarised as rollups. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,8 +21,8 @@ static int begin(struct month_file *file)
     return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin a transaction");
 }
 
-/* Commits the transaction if `error` is 0, otherwise rolls it back. After a rollback, the tag ids and rollups in memory may not agree
-   with the file, so they are reset. */
+/* Commits the transaction if `error` is 0, otherwise rolls it back. After a rollback, the tag ids and rollups in memory may
+   differ from the file, so they are reset. */
 static int end(struct month_file *file, int error)
 {
     if (!error)
@@ -77,8 +77,8 @@ static void report_set_aside(struct month_file *file, const struct history_tag *
     sqlite3_reset(find);
 }
 
-/* Ends the tag's series, whose unit cannot be converted to the tag's present unit, and gives it another name. The series keeps its
-   points and its unit. Readers leave it out until the tag has a unit to which it can be converted. */
+/* Ends and renames the tag's series, because its unit cannot be converted to the tag's current unit. The series keeps its
+   points and its unit. Readers skip it until the tag has a unit to which it can be converted. */
 static int set_series_aside(struct month_file *file, const struct history_tag *of, int64_t id)
 {
     static const struct month_chunk own = { 0 };
@@ -101,9 +101,9 @@ static int set_series_aside(struct month_file *file, const struct history_tag *o
     return error;
 }
 
-/* Makes the tag's series in this file agree with the unit in which the plant shows the tag now: sets aside a series that cannot be
-   converted, and converts the values of one that can. The table `second` (newest points) has no point of the tag now, because
-   month_file_write() moves the points of earlier handles to blocks first. */
+/* Makes the tag's series in this file match the unit in which the plant now shows the tag: sets aside a series that cannot be
+   converted, and converts the values of one that can. At this point the table `second` (newest points) has no point of the tag,
+   because month_file_write() first moves the points of earlier handles to blocks. */
 static int fit_unit(struct month_file *file, int tag)
 {
     const struct history_tag *of = &file->tags[tag];
@@ -113,7 +113,7 @@ static int fit_unit(struct month_file *file, int tag)
     int64_t id = month_find_tag(file, of->name, of->unit, &step, &change);
     if (id != newest) {
         int moved = newest ? set_series_aside(file, of, newest) : 0;
-        if (!moved && id) /* an earlier change of unit has set this series aside, and its unit fits again */
+        if (!moved && id) /* an earlier change of unit has set this series aside, but its unit fits again */
             moved = rename_series(file, id, of->name);
         file->rollups[tag].loaded = false;
         if (moved)
@@ -124,7 +124,7 @@ static int fit_unit(struct month_file *file, int tag)
     static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
                                               { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
                                               { "rollup", "first" }, { "rollup", "last" }, { "outbox", "v" } };
-    /* a file from a time when PostgreSQL was configured has an outbox (points to send there), whose values are converted too */
+    /* a file from a time when PostgreSQL was configured has an outbox (points to send there), whose values must be converted, too */
     bool has_outbox;
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
@@ -160,7 +160,7 @@ static int tag_id(struct month_file *file, int tag, int64_t *id)
     return error;
 }
 
-/* Replaces the tag index of each row by the tag's id in the file. Returns the new rows in *with_ids, which the caller frees. */
+/* Replaces each row's tag index with the tag's id in the file. Returns the new rows in *with_ids, which the caller frees. */
 static int find_ids(struct month_file *file, const struct history_row *rows, size_t count, struct month_row **with_ids)
 {
     int error = 0;
@@ -172,7 +172,7 @@ static int find_ids(struct month_file *file, const struct history_row *rows, siz
     return error;
 }
 
-/* Copies the recorded points to the outbox, and the newest samples to the table `held`, from which the thread that sends to PostgreSQL
+/* Copies the recorded points to the outbox and the newest samples to the table `held`, from which the PostgreSQL sender thread
    takes them. */
 static int put_outbox(struct month_file *file, const struct month_row *rows, size_t count, const struct month_row *held, size_t held_count)
 {
@@ -254,8 +254,8 @@ void month_file_forget_rollups(struct month_file *file)
     memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
 }
 
-/* Computes the rollups from the points since the start of the hour of from_us, and from the last point before that. Writes the complete
-   buckets to the file and leaves the incomplete ones in *rollups. */
+/* Computes the rollups from the points since the start of the hour of from_us, and from the last point before. Writes complete
+   buckets to the file and leaves incomplete ones in *rollups. */
 static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups)
 {
     int64_t hour_us = from_us - from_us % history_level_us[LEVEL_1_H];
@@ -271,7 +271,7 @@ static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struc
     return error;
 }
 
-/* Finds the newest point of a tag at or before t_us; before->t_us INT64_MIN: there is none. */
+/* Finds a tag's newest point at or before t_us; before->t_us INT64_MIN: there is none. */
 static int find_before(struct month_file *file, int64_t id, int64_t t_us, struct history_point *before)
 {
     struct history_points points = { 0 };
@@ -316,7 +316,7 @@ static int by_tag_and_time(const void *a, const void *b)
     return x->order < y->order ? -1 : 1;
 }
 
-/* Stores the different times of all rows once, as a chunk that the blocks of these rows share. The caller frees chunk->times. */
+/* Stores each distinct time of the rows once, in a chunk that the blocks of these rows share. The caller frees chunk->times. */
 static int share_times(struct month_file *file, const struct month_row *rows, size_t count, struct month_chunk *chunk)
 {
     chunk->times = mem_array(count + 1, sizeof(*chunk->times));
@@ -329,14 +329,14 @@ static int share_times(struct month_file *file, const struct month_row *rows, si
     return month_chunk_store(file, chunk);
 }
 
-/* Writes the newest points of one tag to blocks and updates its rollups. tag -1: the plant no longer has the tag, so no rollups are
-   computed. `points` is a buffer. */
+/* Writes one tag's newest points to blocks and updates its rollups. tag -1: the plant no longer has the tag, so no rollups are
+   computed. `points` is a scratch buffer. */
 static int move_tag(struct month_file *file, int tag, const struct month_chunk *chunk, const struct month_row *rows, size_t count,
                     struct history_points *points)
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        /* loads the rollups before the new points are in blocks: otherwise these points would count twice */
+        /* loads the rollups before the new points are in blocks; otherwise these points would count twice */
         error = load_rollups(file, tag, rows->id);
     points->count = 0;
     for (size_t i = 0; i < count && !error; i++) {
@@ -366,8 +366,8 @@ static int move_rows(struct month_file *file, struct month_row *rows, size_t cou
     return error;
 }
 
-/* Returns an array that maps tag ids of the file to tag indices of the plant; -1: none. Does not use tag_id(), which converts units,
-   because the newest points still have the unit of the file. Free with mem_free(). */
+/* Returns an array that maps tag ids of the file to tag indices of the plant; -1: none. Does not use tag_id(), which would
+   convert units, because the newest points still have the file's unit. Free with mem_free(). */
 static int *tags_by_id(struct month_file *file, int64_t *id_max)
 {
     int64_t *ids = mem_array(file->tag_count + 1, sizeof(*ids));
@@ -424,7 +424,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     struct month_rollups rollups;
     struct history_point before;
     int error = find_before(file, id, from_us - 1, &before);
-    /* the line that began at the last point before from_us now ends at an imported point, so the buckets in between change too */
+    /* the line from the last point before from_us now ends at an imported point, so the buckets in between change, too */
     if (before.t_us != INT64_MIN)
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];
@@ -517,8 +517,9 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
     return end(file, error);
 }
 
-/* Records the held points (each tag's newest sample), and after the newest held point a gap point for each tag: until then the values held.
-   Without sends_gaps the gap points are not sent to PostgreSQL, where another daemon continues the lines. */
+/* Records the held points (each tag's newest sample) and, after the newest held point, a gap point for each tag, because the
+   values held until then. Without sends_gaps the gap points are not sent to PostgreSQL, where another daemon continues the
+   lines. */
 static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);

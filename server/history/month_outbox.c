@@ -9,7 +9,7 @@
 #include "history/month.h"
 #include "history/month_file.h"
 
-/* maximum number of rows deleted per transaction; limited because the historian cannot write during the transaction */
+/* maximum number of rows deleted per transaction; limited because the transaction blocks the historian's writes */
 enum { DELETE_ROWS = 20000 };
 enum statement { BEGIN, COMMIT, THERE, SPAN, ROWS, HELD, TAGS, EVENTS, DELETE, STATEMENT_COUNT };
 
@@ -20,7 +20,7 @@ static const char *const sql[STATEMENT_COUNT] = {
     [SPAN] = "SELECT (SELECT min(seq) FROM outbox), (SELECT max(seq) FROM outbox)",
     [ROWS] = "SELECT seq, tag, t, v, q FROM outbox ORDER BY seq LIMIT ?",
     [HELD] = "SELECT 0, tag, t, v, q FROM held",
-    /* a series that was set aside has a suffix to its name, which is removed: in PostgreSQL, name and unit together identify a tag */
+    /* the name of a series that was set aside has a suffix, which is removed here: in PostgreSQL, name and unit together identify a tag */
     [TAGS] = "SELECT id, substr(name, 1, instr(name || char(31), char(31)) - 1), unit, step FROM tag",
     [EVENTS] = "SELECT t, kind, text FROM event",
     [DELETE] = "DELETE FROM outbox WHERE seq <= ?",

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Outbox: the points in a month's file that must still be sent to PostgreSQL. The historian writes them in the same transaction as the
-   points themselves (month_file_use_outbox()); the sender reads and deletes them through a handle of its own. Thread: one per handle.
-   Functions that return int return 0 or -errno, already logged. */
+/* Outbox: the points in a month's file that are yet to be sent to PostgreSQL. The historian writes them in the same transaction
+   as the points themselves (month_file_use_outbox()); the sender reads and deletes them through a handle of its own. Thread:
+   one per handle. Functions that return int return 0 or -errno, already logged. */
 #ifndef HISTORY_MONTH_OUTBOX_H
 #define HISTORY_MONTH_OUTBOX_H
 #include <stddef.h>
@@ -14,7 +14,7 @@
     " q INTEGER NOT NULL)"
 
 struct month_outbox_row {
-    int64_t seq, tag; /* seq: sequence number in the outbox; tag: the tag's id in this file */
+    int64_t seq, tag; /* seq: sequence number in the outbox; tag: the tag's id in the month's file */
     struct history_point point;
 };
 struct month_outbox_tag {
@@ -26,9 +26,9 @@ struct month_outbox_event {
     int64_t t_us;
     char *kind, *text;
 };
-/* The content of an outbox that one transaction has read; zero-initialise, free with month_outbox_batch_finish(). */
+/* The content of an outbox as read by one transaction; zero-initialise, free with month_outbox_batch_finish(). */
 struct month_outbox_batch {
-    /* rows: recorded points in order of insertion; held: the newest sample of each tag that is not recorded yet */
+    /* rows: recorded points in order of insertion; held: each tag's newest sample that is not recorded yet */
     struct month_outbox_row *rows, *held;
     struct month_outbox_tag *tags;     /* all tags of the month's file */
     struct month_outbox_event *events; /* all events of the month's file, such as gaps */
@@ -36,16 +36,15 @@ struct month_outbox_batch {
 };
 
 struct month_outbox;
-/* Opens the outbox of a month's file. Returns NULL with *error on failure; -ENOENT, not logged: there is no file, or the file has no
-   outbox. */
+/* Opens the outbox of a month's file. Returns NULL with *error on failure; -ENOENT, not logged: there is no file, or it has no outbox. */
 struct month_outbox *month_outbox_open(struct log *log, const char *folder, int month, int *error);
 void month_outbox_close(struct month_outbox **outbox); /* Closes the outbox and sets *outbox to NULL; accepts a pointer to NULL. */
-/* *count receives an estimate of the number of points in the outbox: the difference between the last and the first sequence number. */
+/* Sets *count to an estimate of the number of points in the outbox: the difference between the last and the first sequence number. */
 int month_outbox_count(struct month_outbox *outbox, int64_t *count);
 /* Finds the sequence number of the newest point; 0: the outbox is empty. */
 int month_outbox_last(struct month_outbox *outbox, int64_t *seq);
-/* Reads the oldest points of the outbox, at most `most`, and the file's newest samples, tags and events. Frees the batch's previous
-   content. */
+/* Reads the oldest points of the outbox, at most `most`, as well as the file's newest samples, tags and events. Frees the
+   batch's previous content. */
 int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_outbox_batch *batch);
 void month_outbox_batch_finish(struct month_outbox_batch *batch);
 /* Deletes the points with sequence numbers up to `seq`, because they have been sent. */

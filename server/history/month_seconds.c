@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the table `second` of a month's file: for each recorded second, one row with the compressed points of that second. */
+/* Reads and writes the table `second` of a month's file: one row per recorded second, with the compressed points of that second. */
 #include "history/month_seconds.h"
 
 #include <errno.h>
@@ -9,14 +9,14 @@
 #include "base/mem.h"
 #include "history/columns.h"
 
-/* SQLite overwrites a row in place only if its size stays the same. So rows are padded to ROW_BYTES, which fills one page of 1024 bytes,
-   plus as many times PAGE_BYTES, one further page each, as the data needs. */
+/* SQLite overwrites a row in place only if its size stays the same. Rows are therefore padded to ROW_BYTES, which fills a page
+   of 1024 bytes, plus a multiple of PAGE_BYTES, one for each further page that the data needs. */
 enum { SECOND_COLUMNS = 4, ROW_BYTES = 930, PAGE_BYTES = 1020, ID_MAX = 1 << 22 };
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------ */
 
-/* Reads the mark: the stamp (increases with each write) of the newest row of the table `second` whose points were moved to blocks. Row 0
-   of the table stores the mark. */
+/* Reads the mark: the stamp (increases with each write) of the newest row of the table `second` whose points were moved to
+   blocks. The mark is stored in row 0 of the table. */
 static int read_mark(struct month_file *file, int64_t *mark)
 {
     sqlite3_stmt *find = month_sql(file, SQL_MARK);
@@ -27,7 +27,7 @@ static int read_mark(struct month_file *file, int64_t *mark)
     return database_fail(&file->db, code, "cannot be read");
 }
 
-/* Orders rows by time and tag, so that the differences between successive rows are small. */
+/* Compares rows by time, then by tag: in this order, the differences between successive rows are small. */
 static int by_time_and_tag(const void *a, const void *b)
 {
     const struct month_row *x = a, *y = b;
@@ -38,8 +38,8 @@ static int by_time_and_tag(const void *a, const void *b)
     return x->order < y->order ? -1 : x->order > y->order;
 }
 
-/* Sorts the rows and writes each to `at` as four numbers: tag (with one bit for recorded or held), time, value, quality. Returns the end
-   of the numbers. */
+/* Sorts the rows and writes each to `at` as four numbers: tag (with one bit for recorded or held), time, value, quality.
+   Returns the end of the written numbers. */
 static uint64_t *put_rows(uint64_t *at, struct month_row *rows, size_t count, bool held)
 {
     uint64_t last_tag = 0, last_t = 0;
@@ -73,7 +73,7 @@ int month_seconds_write(struct month_file *file, struct month_row *rows, size_t 
     int error = read_mark(file, &mark);
     if (error || count + held_count == 0)
         return error;
-    /* the points of all rows were moved to blocks, maybe through another handle: writing begins again at the table's first row */
+    /* the points of all rows were moved to blocks, perhaps through another handle: writing restarts at the table's first row */
     if (mark >= file->stamp) {
         file->stamp = mark;
         file->slot = 0;
@@ -115,7 +115,7 @@ static void add_held(struct month_seconds *seconds, const struct month_row *row)
 
 static void add_rows(struct month_seconds *seconds, const uint64_t *packed, size_t count)
 {
-    /* ids and times of the previous row; index 0: of recorded rows, index 1: of held rows (newest samples) */
+    /* ids and times of the previous row; index 0: for recorded rows, index 1: for held rows (newest samples) */
     uint64_t tag[2] = { 0 }, t[2] = { 0 };
     mem_grow(&seconds->rows, &seconds->capacity, seconds->count + count + 1, sizeof(*seconds->rows));
     for (const uint64_t *at = packed; at < packed + count * SECOND_COLUMNS; at += SECOND_COLUMNS) {
@@ -166,7 +166,7 @@ int month_seconds_read(struct month_file *file)
     sqlite3_bind_int64(next, 1, seconds->slot);
     while ((code = database_step(&file->db, next)) == SQLITE_ROW && !error) {
         if (sqlite3_column_int64(next, 1) <= seconds->stamp)
-            break; /* rows are overwritten in order, so this row and all that follow are older, and their points are in blocks already */
+            break; /* rows are overwritten in order, so this row and all that follow are older, and their points are already in blocks */
         error = take_second(file, next);
     }
     sqlite3_reset(next);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The newest points of a month's file, in the order in which they were recorded: one compressed row a second, until month_file_tidy()
-   moves the points to blocks. The rows are overwritten in place, because that writes fewer disk pages than deleting and inserting rows.
+/* The newest points of a month's file, in the order of recording: one compressed row per second, until month_file_tidy() moves
+   the points to blocks. Rows are overwritten in place, because that writes fewer disk pages than deleting and inserting rows.
    Private to month_file*.c. Functions that return int return 0 or -errno, already logged. */
 #ifndef HISTORY_MONTH_SECONDS_H
 #define HISTORY_MONTH_SECONDS_H
@@ -9,25 +9,25 @@
 
 struct month_row {
     int64_t id;   /* the tag's id in the file; 0: no row */
-    size_t order; /* position of the point in the order of recording; of two points with equal times the later one counts */
+    size_t order; /* position of the point in the order of recording; of two points with equal times the later one wins */
     struct history_point point;
 };
 
-/* The newest points, as a handle of a month's file has read them from the table `second`. */
+/* The newest points, as read by a handle of a month's file from the table `second`. */
 struct month_seconds {
-    /* stamps increase with each write. mark: stamp of the newest row whose points were moved to blocks; stamp, slot: stamp and number of
-       the newest row that was read */
+    /* stamps increase with each write. mark: stamp of the newest row whose points were moved to blocks; stamp, slot: stamp and
+       number of the newest row read */
     int64_t mark, stamp, slot;
     struct month_row *rows; /* recorded points */
-    struct month_row *held; /* held samples: the newest sample of each tag, by the tag's id in the file; id 0: no sample */
+    struct month_row *held; /* [id of the tag in the file]: held sample, the newest of the tag; id 0: none */
     size_t count, capacity, held_count, held_capacity;
 };
 
 /* Writes recorded points and newest samples as one row of the table `second`, inside a transaction. Sorts the arrays. */
 int month_seconds_write(struct month_file *file, struct month_row *rows, size_t count, struct month_row *held, size_t held_count);
-/* Updates file->seconds from the present rows of the table `second`. */
+/* Updates file->seconds from the current rows of the table `second`. */
 int month_seconds_read(struct month_file *file);
-/* Marks all rows that month_seconds_read() has read as moved to blocks, inside a transaction. */
+/* Marks all rows that month_seconds_read() has read as moved to blocks. Must run inside a transaction. */
 int month_seconds_clear(struct month_file *file);
 /* Frees the content of file->seconds. */
 static inline void month_seconds_finish(struct month_file *file)

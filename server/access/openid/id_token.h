@@ -34,7 +34,7 @@ enum role id_token_role(const struct openid_config *config, const json_t *claims
 /* Returns true if the claims contain the user's groups. */
 bool id_token_has_groups(const struct openid_config *config, const json_t *claims);
 /* Writes the user's name for lists and journals: the name claim, else the e-mail address, else the claim `sub`. Returns false
-   if none of them can be displayed. */
+   if no such claim can be displayed. */
 bool id_token_name(const struct openid_config *config, const json_t *claims, char *out, size_t size);
 
 #endif

@@ -14,7 +14,7 @@ struct colormap {
     /* largest change of lightness L* that shading may cause, up or down: at most COLORMAP_SHADING, less for maps that encode
        much of the value in lightness */
     double shading;
-    /* true if 95 of 100 shaded pixels are read correctly to within 3 % of the range, also after JPEG compression and by deuteranopes */
+    /* true if 95 of 100 shaded pixels are read correctly to within 3 % of the range, even after JPEG compression and by deuteranopes */
     bool safe;
     uint8_t below[3], above[3]; /* colours for values below MIN and above MAX; they differ clearly from all colours of the map */
 };

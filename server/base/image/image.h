@@ -13,7 +13,7 @@ extern "C" {
 #define IMAGE_WHY_BYTES 200
 
 struct image {
-    uint8_t *rgba; /* pixels in rows from the top; colours in sRGB or as the file has them; alpha not premultiplied; free with mem_free() */
+    uint8_t *rgba; /* pixels in rows from the top; colours in sRGB or in the file's space; alpha not premultiplied; free with mem_free() */
     uint32_t width_px, height_px;
 };
 struct image_float {

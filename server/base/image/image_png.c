@@ -36,7 +36,7 @@ static void read_bytes(png_structp png, png_bytep to, size_t count)
     reader->left -= count;
 }
 
-/* Reads header and pixels as eight bits of RGBA. Returns false if the size is refused; libpng's errors do not return. */
+/* Reads the header and the pixels (RGBA, 8 bits each). Returns false if the size is refused; libpng's errors do not return. */
 static bool read_all(png_structp png, png_infop info, struct image *image, size_t size, char *why)
 {
     png_read_info(png, info);

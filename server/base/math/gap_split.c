@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Separates a model's main part from stray pieces: splits its triangles at gaps along the axes, found in histograms of their corners. */
+/* Separates a model's main part from stray pieces: splits its triangles at gaps along the axes, found in histograms. */
 #include "base/math/gap_split.h"
 
 #include <math.h>

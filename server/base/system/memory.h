@@ -11,7 +11,7 @@ size_t memory_machine_bytes(void);
 size_t memory_default_bytes(void);
 
 struct memory_use {             /* memory use of the process, in bytes */
-    size_t resident, anonymous; /* resident: bytes in RAM; anonymous: the part of them that is not mapped from files */
+    size_t resident, anonymous; /* resident: bytes in RAM; anonymous: the part not mapped from files */
     size_t allocated;           /* memory that malloc() has allocated */
 };
 void memory_measure(struct memory_use *use); /* Fills *use with the current numbers. */

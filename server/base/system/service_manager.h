@@ -26,10 +26,10 @@ void service_patience_end(struct service_patience **patience);                  
    owns it now. -1: none; -EINVAL: more than one. */
 int service_take_socket(void);
 
-/* Returns true if a descriptor is connected to the journal (JOURNAL_STREAM). */
+/* Returns true if the descriptor is connected to the journal (JOURNAL_STREAM). */
 bool service_is_journal(int fd);
 struct service_field {
-    const char *name, *value; /* name: field name in capitals, as in MESSAGE_ID; value NULL: the field is left out */
+    const char *name, *value; /* name: field name in capitals, such as MESSAGE_ID; value NULL: the field is omitted */
 };
 #define SERVICE_JOURNAL_SOCKET "/run/systemd/journal/socket"
 /* Sends one entry to the journal's socket at socket_path. Returns false if the entry could not be delivered. */

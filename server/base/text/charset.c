@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Knows the names of encodings, and converts texts by iconv. */
+/* Knows the names of encodings, and converts texts with iconv. */
 #include "base/text/charset.h"
 
 #include <ctype.h>
@@ -15,7 +15,7 @@ static const char replacement[] = "\xef\xbf\xbd";
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* Encodings. `name`: our name of the encoding; `iconv_name`: the name for iconv; `written`: further names, in lower case without
+/* Encodings. `name`: our name of the encoding; `iconv_name`: its name in iconv; `written`: further names, in lower case without
    punctuation, separated by blanks. */
 static const struct {
     const char *name, *iconv_name, *written;
@@ -99,8 +99,8 @@ static void take_converted(struct text *out, const char *from, const char *to, s
             ++*damaged;
 }
 
-/* Converts bytes; each undecodable byte becomes one U+FFFD. The last call of iconv() writes a letter that iconv holds back because an
-   accent may follow: Windows-1258 and Windows-1255 have accents after their letters. */
+/* Converts bytes; each undecodable byte becomes one U+FFFD. In Windows-1258 and Windows-1255, an accent follows its letter, so
+   iconv holds back a letter until it sees the next character. The last call of iconv() flushes such a letter. */
 char *charset_convert(const char *bytes, size_t count, const char *encoding, size_t *damaged)
 {
     struct text out = { 0 };
@@ -158,7 +158,7 @@ size_t charset_encode(struct charset_encoder *encoder, const char *utf8, size_t 
     size_t room = out_bytes;
     if (encoder->converter == (iconv_t)-1)
         return 0;
-    iconv(encoder->converter, NULL, NULL, NULL, NULL); /* resets the converter's shift state, which an earlier text may have changed */
+    iconv(encoder->converter, NULL, NULL, NULL, NULL); /* resets the converter's shift state, which an earlier text may have left changed */
     bool good = iconv(encoder->converter, &from, &count, &to, &room) == 0 && count == 0;
     return good ? out_bytes - room : 0;
 }

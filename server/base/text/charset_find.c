@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Detects the encoding of a text by its byte order mark, by its validity as UTF-8, or else by the likelihood of its bytes under a
-   statistical model of each encoding. The models use characters that are common in tag lists and drawings, the frequency levels of the
-   encodings' standards, and the letters around a character. The proposal of the library uchardet raises one score. */
+/* Detects the encoding of a text by its byte order mark, by its validity as UTF-8, or else by the likelihood of its bytes under
+   a statistical model of each encoding. The models use characters that are common in tag lists and drawings, the frequency
+   levels of the encodings' standards, and the letters around a character. The encoding that the library uchardet proposes gets
+   a higher score. */
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
@@ -17,8 +18,8 @@ enum { SAMPLE_BYTES = 1 << 16, MAX_LINE = 512 };
 
 /* --- statistical models of two-byte encodings ------------------------------------------------------------------------------- */
 
-/* Frequent characters in texts about process plants: simplified and traditional Chinese, Japanese, Korean. The models assume that they
-   make up half of a text. */
+/* Frequent characters in texts about process plants: simplified and traditional Chinese, Japanese, Korean. The models assume
+   that these characters make up half of a text. */
 static const char simplified[] =
     "℃温度压力流量液位泵阀门罐塔炉汽水油气管线进出口入电机轴承高低报警设备单"
     "元号说明名称地址标签描述位置类型工程值反应器换热冷却循环"
@@ -56,12 +57,12 @@ static const char korean[] =
 struct wide_model {
     const char *name, *frequent;
     double prior;
-    /* Returns the logarithm of the probability of the character with these two bytes, if it is not in `frequent`; 0: there is no such
-       character. second 0: the character has one byte. */
+    /* Returns the log probability of a character that is not in `frequent`, given its two bytes (second 0: a one-byte
+       character); 0: there is no such character. */
     double (*rate)(unsigned first, unsigned second);
 };
 
-/* Returns the logarithm of the probability of one character of a class. The class has `cells` characters, which together make up the
+/* Returns the log probability of one character of a class. The class has `cells` characters, which together make up the
    fraction `share` of a text. */
 static double of_class(double share, double cells)
 {
@@ -73,8 +74,8 @@ static bool in(unsigned byte, unsigned from, unsigned to)
     return byte >= from && byte <= to;
 }
 
-/* Rates a byte pair of GBK. In GB 2312, rows 16 to 55 hold the common characters, rows 56 to 87 the others; GBK adds rare ones around
-   them. */
+/* Returns the log probability of a byte pair in GBK. In GB 2312, rows 16 to 55 hold the common characters, rows 56 to 87 the
+   others; GBK adds rare ones around them. */
 static double rate_gb(unsigned first, unsigned second)
 {
     bool gb2312 = in(second, 0xa1, 0xfe);
@@ -89,7 +90,7 @@ static double rate_gb(unsigned first, unsigned second)
     return gb2312 && in(first, 0xa4, 0xa9) ? of_class(0.002, 500) : of_class(0.004, 14000);
 }
 
-/* Rates a byte pair of cp949. KS X 1001 has 2,350 syllables, and Chinese characters, which are rare; cp949 adds rare syllables. */
+/* Returns the log probability of a cp949 byte pair. KS X 1001 has 2,350 syllables and rare Chinese characters; cp949 adds rare ones. */
 static double rate_ks(unsigned first, unsigned second)
 {
     bool ks = in(second, 0xa1, 0xfe);
@@ -114,7 +115,7 @@ static double rate_big5(unsigned first, unsigned second)
     return in(first, 0xa1, 0xa3) ? of_class(0.06, 400) : 0;
 }
 
-/* Rates a byte or byte pair of Shift JIS. Half-width katakana are one byte; the kanji of JIS X 0208 have two frequency levels. */
+/* Returns the log probability of a Shift JIS byte or byte pair. Half-width katakana are one byte; kanji have two frequency levels. */
 static double rate_sjis(unsigned first, unsigned second)
 {
     if (in(first, 0xa1, 0xdf))
@@ -155,7 +156,7 @@ static const struct wide_model wide_models[] = {
 /* --- statistical models of one-byte encodings ------------------------------------------------------------------------------- */
 
 struct narrow_model {
-    const char *name, *lower, *upper, *rare; /* lower, upper: letters, the most frequent first; rare: rare letters */
+    const char *name, *lower, *upper, *rare; /* lower, upper: letters, most frequent first; rare: rare letters */
     double prior;
     bool latin; /* true: words in this encoding mix its own letters with ASCII letters */
 };
@@ -185,14 +186,14 @@ static const struct narrow_model narrow_models[] = {
 enum byte_kind { ASCII_OTHER, ASCII_LOWER, ASCII_UPPER, HIGH_LOWER, HIGH_UPPER, HIGH_SIGN, HIGH_NONE };
 
 struct narrow_table {
-    double rate[256]; /* logarithm of the probability of each byte; 0 for ASCII */
+    double rate[256]; /* log probability of each byte; 0 for ASCII */
     enum byte_kind kind[256];
 };
 
 typedef void take_encoded(void *data, const unsigned char *bytes, size_t count, int rank);
 
-/* Calls each() for every character of a UTF-8 text that the encoder can convert, with its bytes in the encoding and its position in the
-   text (`rank`). */
+/* Calls each() for every character of a UTF-8 text that the encoder can convert, with the character's bytes in the encoding and
+   its index in the text (`rank`). */
 static void each_encoded(const char *utf8, struct charset_encoder *encoder, take_encoded *each, void *data)
 {
     for (int rank = 0; *utf8; rank++) {
@@ -242,7 +243,7 @@ static bool is_letter(enum byte_kind kind)
     return kind != ASCII_OTHER && kind != HIGH_SIGN && kind != HIGH_NONE;
 }
 
-/* Returns how much the bytes before and after a high byte (0x80 and above) add to the score of an encoding. */
+/* Returns the score that the bytes before and after a high byte (0x80 and above) add to an encoding. */
 static double rate_around(const struct narrow_table *table, bool latin, const unsigned char *at, const unsigned char *from,
                           const unsigned char *to)
 {
@@ -271,7 +272,7 @@ static double rate_around(const struct narrow_table *table, bool latin, const un
     return rate;
 }
 
-/* Returns the logarithm of the probability of the high bytes of a text. */
+/* Returns the log probability of a text's high bytes (0x80 and above). */
 static double score_narrow(const struct narrow_model *model, const unsigned char *at, size_t count)
 {
     struct narrow_table table;
@@ -303,8 +304,8 @@ static void add_frequent(void *data, const unsigned char *bytes, size_t count, i
     }
 }
 
-/* Returns a penalty for a two-byte character next to lower-case ASCII letters: each of its bytes is then more likely a letter of a
-   one-byte encoding. */
+/* Returns a penalty for a two-byte character next to lower-case ASCII letters, because its bytes are then more likely to be two
+   letters of a one-byte encoding. */
 static double rate_beside(unsigned before, unsigned after)
 {
     return (islower(before) ? -2.5 : 0) + (islower(after) ? -2.5 : 0);
@@ -332,7 +333,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            rate += 3; /* compensates for a second byte that is ASCII, because the one-byte models do not score ASCII bytes */
+            rate += 3; /* compensates for an ASCII second byte, which the one-byte models do not score */
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
             length = 4; /* a four-byte character of GB 18030 that GBK lacks */
             rate = -14;
@@ -347,7 +348,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
 
 /* --- choosing an encoding ----------------------------------------------------------------------------------------------------- */
 
-/* Copies those parts of the lines that have high bytes (0x80 and above), at most SAMPLE_BYTES. Returns their length. */
+/* Copies the parts of the lines that contain high bytes (0x80 and above), at most SAMPLE_BYTES. Returns their length. */
 static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BYTES])
 {
     size_t taken = 0;
@@ -371,7 +372,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
     return taken;
 }
 
-/* Writes our name of the encoding that uchardet proposes; an empty name if it proposes none that we know. */
+/* Writes our name of the encoding that uchardet proposes; "" if it proposes none or one that we do not know. */
 static void ask_uchardet(const char *sample, size_t count, char name[CHARSET_NAME_BYTES])
 {
     uchardet_t detector = uchardet_new();
@@ -431,7 +432,7 @@ static struct charset_choice find_legacy(const char *bytes, size_t count)
 
 /* --- detecting byte order marks, UTF-8 and UTF-16 ------------------------------------------------------------------------------ */
 
-/* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
+/* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of invalid bytes. */
 static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)
 {
     size_t characters = 0;
@@ -445,8 +446,8 @@ static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)
     return characters;
 }
 
-/* Detects UTF-16 without a byte order mark: digits, separators and line ends have a zero byte, always at odd or always at even
-   positions. Returns the name of the encoding, or NULL. */
+/* Detects UTF-16 without a byte order mark: digits, separators and line ends contain a zero byte, either always at odd or
+   always at even positions. Returns the name of the encoding, or NULL. */
 static const char *find_utf16(const char *bytes, size_t count)
 {
     size_t zeros[2] = { 0 }, looked_at = (count < 65536 ? count : 65536) & ~(size_t)1;
@@ -490,7 +491,7 @@ struct charset_choice charset_find(const char *bytes, size_t count)
         choice.ascii = characters == 0 && invalid == 0;
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";
-        else if (invalid * 4 > characters) /* a text that is mostly valid counts as UTF-8, since it may be damaged or truncated */
+        else if (invalid * 4 > characters) /* a text that is mostly valid UTF-8 counts as UTF-8: it may be damaged or truncated */
             return find_legacy(bytes, count);
     }
     if (name) {

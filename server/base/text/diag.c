@@ -45,8 +45,8 @@ static int by_place(const void *pa, const void *pb)
 }
 
 enum { PLACES_BYTES = 100 };
-/* number of similar findings that are printed on one line each. Of more errors, only the first 20 are printed; more warnings become one
-   line with all positions */
+/* number of similar findings that are printed on a line each. If there are more errors, only the first 20 are printed; more
+   warnings are merged into one line with all positions */
 static const size_t most_alike[] = { [DIAG_ERROR] = 20, [DIAG_WARNING] = 3 };
 
 static bool is_alike(const struct diag_item *a, const struct diag_item *b)
@@ -54,7 +54,7 @@ static bool is_alike(const struct diag_item *a, const struct diag_item *b)
     return a->severity == b->severity && a->form == b->form && !strcmp(a->file, b->file);
 }
 
-/* Prints the line numbers of the findings that follow `shown` and are similar to it, such as "4-66, 70". */
+/* Prints the line numbers of the findings after `shown` that are similar to it, such as "4-66, 70". */
 static void print_places(const struct diag_item *const *sorted, size_t shown, size_t count, FILE *out)
 {
     size_t length = 0;
@@ -87,7 +87,7 @@ static void print_item(const struct diag_item *item, FILE *out)
     fprintf(out, ": %s: %s", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
 }
 
-struct finding_group { /* findings in one file with the same format string, printed together */
+struct finding_group { /* similar findings (same format string) in one file, printed together */
     size_t first, count, shown;
 };
 

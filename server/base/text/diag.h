@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects diagnostics about files that people wrote: errors and warnings with file, line and column. Thread: one. */
+/* Collects diagnostics about files written by people: errors and warnings with file, line and column. Thread: one. */
 #ifndef BASE_TEXT_DIAG_H
 #define BASE_TEXT_DIAG_H
 #include <stdio.h>
@@ -9,7 +9,7 @@ enum diag_severity { DIAG_ERROR, DIAG_WARNING };
 struct diag_item {
     enum diag_severity severity;
     char *file;
-    int line, column; /* position of the finding in the file, from 1; 0: none */
+    int line, column; /* position of the finding in the file, from 1; 0: no position */
     char *text;
     const char *form; /* format string of the text; findings with the same format string are grouped as similar */
 };
@@ -27,8 +27,8 @@ void diag_add(struct diag *diag, enum diag_severity severity, const char *file, 
 void diag_copy(struct diag *diag, const struct diag_item *item);
 #define diag_error(diag, file, line, column, ...) diag_add(diag, DIAG_ERROR, file, line, column, __VA_ARGS__)
 #define diag_warning(diag, file, line, column, ...) diag_add(diag, DIAG_WARNING, file, line, column, __VA_ARGS__)
-/* Prints all diagnostics as `file:line:column: error: text`, ordered by file and position. Many similar warnings in one file become one
-   line that lists the positions; of many similar errors the first ones are printed, one a line. */
+/* Prints all diagnostics as `file:line:column: error: text`, ordered by file and position. Many similar warnings in one file
+   are merged into one line with their positions; of many similar errors only the first are printed. */
 void diag_print(const struct diag *diag, FILE *out);
 void diag_finish(struct diag *diag);
 

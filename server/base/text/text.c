@@ -55,8 +55,8 @@ void text_add_quoted(struct text *text, const char *cell)
     text_add(text, "\"");
 }
 
-/* Returns true if a spreadsheet would take the cell for a formula. A single sign such as "-" counts as no formula, because it may be the
-   unit of a dimensionless quantity. */
+/* Returns true if a spreadsheet would interpret the cell as a formula. A lone sign such as "-" does not count, because it may
+   be the unit of a dimensionless quantity. */
 bool text_is_formula(const char *cell)
 {
     return *cell && strchr("=+-@\t\r", *cell) && cell[1];

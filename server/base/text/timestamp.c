@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses and prints timestamps independent of the locale and, except for local times, of this computer's time zone. */
+/* Parses and prints timestamps, independently of the locale and, except for local times, of this computer's time zone. */
 #include "base/text/timestamp.h"
 
 #include <stdio.h>
@@ -9,8 +9,8 @@
 
 #define US_PER_S INT64_C(1000000)
 
-/* Reads at least `least` and at most `most` digits as a number, and advances *text. Returns false if there are fewer than `least`
-   digits. */
+/* Parses a number of at least `least` and at most `most` digits, and advances *text. Returns false if there are fewer than
+   `least` digits. */
 static bool digits(const char **text, int least, int most, int *out)
 {
     int count = 0;
@@ -25,7 +25,7 @@ static bool sign(const char **text, char wanted)
     return *(*text)++ == wanted;
 }
 
-/* Reads a fraction of a second such as `.5` and returns microseconds; finer digits are ignored. */
+/* Parses a fraction of a second such as `.5` and returns it in microseconds; further digits are ignored. */
 static int64_t fraction(const char **text)
 {
     int64_t us = 0, unit = US_PER_S / 10;
@@ -60,8 +60,8 @@ static int days_of(int year, int month)
     return days[month - 1] + (month == 2 && leap);
 }
 
-/* Converts a local time of the process's time zone. If the clocks show that time twice, in autumn, chooses the earlier instant that is
-   later than after_us. Returns false if the clocks skip that time. */
+/* Converts a local time in the process's time zone. If the local time occurs twice, as in autumn, chooses the earlier of the
+   instants that are later than after_us. Returns false if the clocks skip that time. */
 static bool from_local(const struct tm *shown, int64_t after_us, int64_t us, int64_t *t_us)
 {
     int64_t found_us[2];
@@ -144,7 +144,7 @@ static bool parse_seconds(const char *text, int64_t *t_us)
     for (; *text >= '0' && *text <= '9' && count < 11; count++, text++)
         seconds = seconds * 10 + (*text - '0');
     *t_us = seconds * US_PER_S + fraction(&text);
-    return count > 0 && !*text && seconds < INT64_C(7258118400); /* refuses seconds from 7258118400, the start of the year 2200, on */
+    return count > 0 && !*text && seconds < INT64_C(7258118400); /* refuses times from the start of the year 2200 (7258118400) on */
 }
 
 bool timestamp_parse(const char *text, int64_t now_us, int64_t *t_us)

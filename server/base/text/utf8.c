@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes UTF-8: the first byte tells how many bytes follow and which values the second may have. */
+/* Decodes UTF-8: the first byte determines the number of following bytes and the range of the second one. */
 #include "base/text/utf8.h"
 
 #include <string.h>

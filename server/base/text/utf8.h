@@ -6,8 +6,8 @@
 
 /* Returns the number of bytes of the first character of `text`, which has `left` bytes (at least 1); 0: invalid UTF-8, or the byte 0. */
 size_t utf8_length(const char *text, size_t left);
-/* Removes bytes that are not part of a character, such as the beginning of a character that a format's precision ("%.60s") or a buffer
-   cut off. */
+/* Removes bytes that are not part of a complete character, for example after a format's precision ("%.60s") or a buffer has cut
+   a character. */
 void utf8_drop_invalid(char *text);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that sends the points in the outboxes of the months' history files to PostgreSQL. */
+/* The thread that sends the points in the outboxes of the monthly history files to PostgreSQL. */
 #include "history/postgres/postgres.h"
 
 #include <errno.h>
@@ -20,11 +20,12 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* upper bound of the time between the ends of different tags' recorded lines. If it is not known when this daemon last mirrored a sample
-   of the leader, points are read from the database from this long before the newest recorded point */
+/* upper bound on the time between the ends of different tags' recorded lines. If it is unknown when this daemon last mirrored a
+   sample of the leader, reading from the database starts this long before the newest recorded point */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* upper bound of the delay until a sample is a point in the files of both the leader and the standby. The thread waits this long before
-   it deletes points that the leader has sent, and before it reads points from the database that this machine lacks */
+/* upper bound on the delay until a sample is a point in the files of both the leader and the standby. The thread waits this
+   long before it deletes points that the leader has sent, and before it reads points from the database that this machine lacks
+   */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
@@ -33,8 +34,8 @@ struct waiting_month {
     int64_t count;
 };
 
-/* Used on a standby: the newest sequence number in a month's outbox at the time at_ns. Once the leader has sent all points up to that
-   time, the standby deletes the points up to this number. */
+/* For a standby: the newest sequence number in a month's outbox at the time at_ns. Once the leader has sent all points up to
+   that time, the standby deletes the points up to this number. */
 struct outbox_note {
     int64_t at_ns, seq;
     int month;
@@ -65,9 +66,9 @@ struct postgres {
     size_t month_count;
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
     int64_t lost;                  /* number of points that were deleted unsent and are not logged yet */
-    char said[POSTGRES_WHY_BYTES]; /* text of the last error that was logged; empty: no error */
-    /* alone: this daemon has the lock by which only it writes to the database; flushed: all points that an earlier run left in the
-       outboxes are sent */
+    char said[POSTGRES_WHY_BYTES]; /* text of the last logged error; empty: no error */
+    /* alone: this daemon holds the lock that makes it the only writer to the database; flushed: all points that an earlier run
+       left in the outboxes have been sent */
     bool alone, flushed;
     struct outbox_note notes[NOTES];
     size_t note_count;
@@ -86,7 +87,7 @@ static bool ends(const struct postgres *postgres)
 
 /* --- the connection to PostgreSQL --------------------------------------------------------------------------------------------- */
 
-/* Closes the connection after an error, and sets the time of the next attempt. Logs the error only if its cause has changed. */
+/* Closes the connection after an error, and schedules the next attempt. Logs the error only if its cause has changed. */
 static void give_up(struct postgres *postgres, const char *why)
 {
     char cause[POSTGRES_WHY_BYTES];
@@ -120,8 +121,8 @@ static void connect_now(struct postgres *postgres)
     postgres->newest_ns = 0;
 }
 
-/* Resets the error state. Call it only after a successful write: a connection alone proves nothing, because a server with a full disk
-   accepts connections. */
+/* Resets the error state. Call it only after a successful write: a connection alone proves nothing, because even a server with
+   a full disk accepts connections. */
 static void is_well(struct postgres *postgres)
 {
     postgres->backoff = (struct backoff){ 0 };
@@ -146,8 +147,8 @@ static void restore(struct postgres *postgres)
         postgres->params.restored(postgres->params.arg);
 }
 
-/* If this daemon has become the leader: reconnects with the lock that makes it the only writer, and ends the lines in the database that
-   no daemon continues. */
+/* If this daemon has become the leader: reconnects with the lock that makes it the only writer, and ends the lines in the
+   database that no daemon continues. */
 static void take_lead(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -171,8 +172,8 @@ static void take_lead(struct postgres *postgres)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Returns true if the points of a span can be read: the other daemon has had time to send them, and this daemon has sent its own. Call
-   it with the lock held. */
+/* Returns true if the points of a span can be read: the other daemon has had time to send them, and this daemon has sent its
+   own. The caller holds the lock. */
 static bool is_due(const struct postgres *postgres, const struct postgres_span *span)
 {
     return clock_mono_ns() >= span->at_ns + OVERLAP_NS && postgres->sent_ns >= span->at_ns;
