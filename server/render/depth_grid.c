@@ -18,8 +18,8 @@ enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
 enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
 /* bytes reserved for the ends of deflate blocks in a depth grid's payload, which deflateBound() does not count: one block per part */
 enum { MOST_BLOCK_BYTES = 100 };
-/* Camera movement, as a fraction of the distance from the camera to the surface, for which the depth grid must let clients warp
-   a picture to within a fraction of a pixel. 0.1 corresponds to orbiting by six degrees. */
+/* Camera movement for which the depth grid must let clients warp a picture to within a fraction of a pixel. Unit: distance from
+   the camera to the surface. 0.1 corresponds to orbiting by six degrees. */
 static const double MOVEMENT = 0.1;
 /* Shifts on the screen, in pixels, when the camera moves by MOVEMENT. STEP_SHIFT_PX: two depths that shift apart by at least
    this much form a step. UNIT_SHIFT_PX: two depths whose codes differ by 1 shift apart by this much. */
@@ -211,8 +211,8 @@ static uint8_t *put_divided(const struct coder *coder, uint8_t *out)
     return out + bytes;
 }
 
-/* Predicts a cell's depth code as the median of three predictions: the left neighbour, the upper neighbour, and the plane through the left,
-   upper and upper left neighbours (LOCO-I; Weinberger et al., 2000). */
+/* Predicts a cell's depth code as the median of three values (LOCO-I; Weinberger et al., 2000): the code to the left, the code
+   above, and the code that continues the plane through these two and the upper left one. */
 static inline int predicted_back(int left, int up, int corner)
 {
     if (!left || !up || !corner)
@@ -233,8 +233,8 @@ static uint8_t *put_back(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Writes the near code (depth code of the nearer side) of each cell that contains a depth step. The prediction is the near code
-   of the left, upper or upper left neighbour: the first of these that is nearer than the cell's far side. */
+/* Writes the near code (depth code of the nearer side) of each cell that contains a depth step. The prediction is the first of
+   the left, upper and upper left neighbours' near codes that is nearer than the cell's far side. */
 static uint8_t *put_near(const struct coder *coder, uint8_t *out)
 {
     size_t i = 0, columns = (size_t)coder->columns;
@@ -250,9 +250,9 @@ static uint8_t *put_near(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Reduces a cell's mask, one bit per pixel, to MASK_SIDE x MASK_SIDE bits, each 1 if at least one of 2 x 2 pixels belongs to
-   the near surface. Some pixels of the far surface thus move with the near one. The opposite error would be more visible: a
-   thin near object, such as a handrail, would appear twice. */
+/* Reduces a cell's mask from one bit per pixel to MASK_SIDE x MASK_SIDE bits. A bit is 1 if at least one of 2 x 2 pixels
+   belongs to the near surface. Some pixels of the far surface thus move with the near one. The opposite error would be more
+   visible: a thin near object, such as a handrail, would appear twice. */
 static unsigned coarse_mask(uint64_t mask)
 {
     /* this line and the next merge each square of 2 x 2 pixels into one bit, set if any of the four is near. The results are
@@ -266,8 +266,8 @@ static unsigned coarse_mask(uint64_t mask)
     return (unsigned)((mask | mask >> 24) & 0xffff);
 }
 
-/* Returns the mask that serves as prediction for cell `i`: that of a neighbouring cell. A neighbour without a depth step has no
-   mask: the result is then all ones if its depth is closer to the near side of cell `i` than to the far side, else 0. */
+/* Returns the mask of a neighbouring cell, which serves as prediction for cell `i`. A neighbour without a depth step has no
+   mask. The result is then all ones if its depth is closer to the near side of cell `i` than to the far side, else 0. */
 static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t i)
 {
     int back = coder->far[neighbour];
@@ -297,8 +297,7 @@ static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Deflates the parts of the payload (codes of the far sides, of the near sides, and so on) separately, so that each gets its
-   own Huffman codes. */
+/* Deflates the parts of the payload (far codes, near codes, and so on) separately, so that each gets its own Huffman codes. */
 static uint8_t *deflated(const uint8_t *data, uint8_t *const ends[PARTS], size_t *bytes)
 {
     enum { RAW = -15, MEMORY = 8, LEVEL = 1 };

@@ -13,12 +13,12 @@ struct depth_cell {
     /* near: depth at the centre of the cell; if a step in depth divides the cell, depth of the nearer side. far: depth of the farther side,
        equal to `near` if there is no step */
     float near, far;
-    /* one bit per pixel of the cell, row by row; 1: the pixel belongs to the nearer side of the depth step that divides the cell */
+    /* one bit per pixel of the cell, row by row; 1: the pixel is on the nearer side of the cell's depth step */
     uint64_t mask;
 };
 
-/* Converts values in the depth buffer to distances from the camera. (depth - offset) / factor is 1 / distance in a perspective view, and
-   the distance in an orthographic one, in metres along the direction of view. */
+/* Converts values in the depth buffer to distances from the camera. (depth - offset) / factor is 1 / distance in a perspective
+   view, and the distance in an orthographic one. Distances are in metres along the direction of view. */
 struct depth_lens {
     bool orthographic;
     double offset, factor;
@@ -26,8 +26,7 @@ struct depth_lens {
     float step, least_step;
     /* the ground that receives shadows: its depth at the pixel (x, y) is ground[0] x + ground[1] y + ground[2] */
     bool has_ground;
-    /* ground_from_pixel: homogeneous matrix, column by column, from a pixel (x, y, 1) to the position (u s, v s, s) on the ground; u, v:
-       0..1 */
+    /* ground_from_pixel: column-major homogeneous matrix from a pixel (x, y, 1) to the position (u s, v s, s) on the ground; u, v: 0..1 */
     double ground[3], ground_from_pixel[3][3];
 };
 

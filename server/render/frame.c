@@ -13,8 +13,8 @@
 #include "render/frame_record.h"
 #include "value/quality.h"
 
-/* Maximum distance in pixels from a marker's position to any pixel of its symbol: a part of a frame includes markers up to this
-   far outside. */
+/* Maximum distance in pixels from a marker's position to any pixel of its symbol. A part of a frame includes markers up to this
+   far outside it. */
 static const float MARK_PX = 48;
 
 static size_t pixel_bytes(const struct frame *frame)
@@ -113,8 +113,8 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 
 /* The baseline that one half of a split view subtracts from its readings, if the half shows differences. */
 struct then {
-    /* wanted: the half shows differences from a baseline; distance: the half shows distances from a sensor, which are not computed from
-       readings and which its markers already hold */
+    /* wanted: the half shows differences from a baseline. distance: the half shows distances from a sensor, which its markers
+       already hold and which do not depend on readings */
     bool wanted, distance;
     /* readings of the baseline, which are subtracted from those of the view; NULL: the baseline no longer exists */
     const struct snapshot *snapshot;

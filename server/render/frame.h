@@ -28,8 +28,8 @@ struct frame_label { /* a visible point on an isoline, where the label of the is
        from the viewer. 0, 0: direction unknown */
     float dx, dy;
     uint8_t half, arrow, uncertain;
-    /* index of the stroke (a short streamline) within its half of the view, equal for all points of the stroke; 0: not a stroke but an
-       arrow */
+    /* index of the stroke (a short streamline) within its half of the view; all points of a stroke have the same; 0: an arrow,
+       not a stroke */
     uint16_t stroke;
 };
 /* minimum distance in pixels between the arrows of a frame; the longest arrow is almost that long */
@@ -52,8 +52,8 @@ struct frame {
     struct frame_pool *pool;      /* pool to which this frame's pixel buffer returns; NULL: the buffer does not belong to a pool */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    /* visible points on isolines at which the isoline's value may be written (more points than labels fit), and the arrows of fields that
-       have a direction */
+    /* visible points on isolines at which the isoline's value may be written (more than labels fit), and the arrows of
+       directional fields */
     struct frame_label *labels;
     size_t label_count;
     int64_t data_utc_ns;   /* UTC time in nanoseconds of the snapshot of readings that the frame shows */
@@ -67,8 +67,7 @@ struct frame {
     struct baseline baseline;    /* baseline from which the frame shows differences; id 0: none */
     /* copies of the readings from which the frame was drawn (render/frame_record.h); NULL: none were requested */
     struct frame_record *record;
-    /* depth grid of the frame, or of each half of a split view: coarse depth with which clients warp the picture for a moved
-       camera; NULL: none */
+    /* depth grid of the frame, or of each half of a split view, with which clients warp the picture for a moved camera; NULL: none */
     struct depth_grid *depth[2];
     /* hash of the view and of the versions of its fields, without sequence numbers and times; two frames with the same hash look the
        same */

@@ -13,8 +13,7 @@ struct frame_context {
     const struct gpu_scene *gpu_scene;
     const struct view *view;
     struct view_constants constants;
-    /* key of the light set (baked light) that lights this frame: the set that the view asks for or, while that is not ready, the most
-       similar one */
+    /* key of the light set (baked light) that lights this frame: the view's own or, while that is not ready, the most similar one */
     struct light_key lit_by;
     const struct light_set *light;
     const struct target *target;

@@ -85,8 +85,8 @@ void renderer_init_context(struct renderer *renderer, const struct frame_plan *p
                                        .shape = plan->shape };
 }
 
-/* Returns the largest field error of the visible assets, rounded up to 1, 2 or 5 times a power of ten so that it seldom changes while
-   readings do. */
+/* Returns the largest field error of the visible assets. It is rounded up to 1, 2 or 5 times a power of ten, so that it seldom
+   changes while readings do. */
 static double drawn_error_of(const struct frame_context *context)
 {
     double most = 0;
@@ -196,7 +196,7 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = frame_plan_wanted_light(view);
-    /* bakes nothing while a user drags a section plane: each position of the plane needs another light set, which would be outdated before
+    /* bakes nothing while a user drags a section plane: each position needs another light set, which would be outdated before
        it is ready */
     bool steady = visibility_equal(&wanted.shown, &renderer->shown);
     if (renderer->bake_budget_ns && steady)

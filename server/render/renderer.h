@@ -22,8 +22,8 @@ struct frame_pool *renderer_frames(const struct renderer *renderer);
 /* Returns the planner that makes this renderer's frame plans (render/plan/frame_planner.h). Owned by the renderer. */
 const struct frame_planner *renderer_planner(const struct renderer *renderer);
 
-/* Returns whether renderer_draw() is about as fast as for a preview. It is if the frame is a preview, if it differs only in
-   values and colours from a refined frame drawn recently, or if the GPU is fast enough. */
+/* Returns whether renderer_draw() is about as fast as for a preview. True for previews, on a fast GPU, and for frames that
+   differ only in values and colours from a recent refined frame. */
 bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan);
 /* Draws the frame in a single call. The caller owns it (frame_unref). NULL on failure, logged. */
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan);

@@ -38,8 +38,8 @@ struct renderer {
 /* Fills in a frame context from the plan. Light, colour map and target are set later. The context points into the plan, which must outlive
    it. */
 void renderer_init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
-/* Uploads the fields of context->fields to the GPU. The array context->fields must belong to the caller, because a field that does not fit
-   is replaced in it by one that shows no data; the frame's content hash and age are then updated. */
+/* Uploads the fields of context->fields to the GPU. A field that does not fit is replaced in that array by one that shows no
+   data, so the array must belong to the caller. The frame's content hash and age are then updated. */
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
                             struct frame *frame);
 /* Sets the context's colour map and, unless it is set already, its light set (baked light). Returns false when out of GPU memory,

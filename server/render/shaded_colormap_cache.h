@@ -14,8 +14,8 @@ struct shaded_colormap_cache_entry {
 
 enum { SHADED_COLORMAPS = 16, COLORMAPS_MOST = COLORMAPS_BUILT_IN + PLANT_COLORMAPS };
 struct shaded_colormap_cache { /* zero-initialise */
-    /* tables of a colour map's colours at all brightness steps, by index of the colour map; the last one is for views that show values
-       relative to alarm limits; NULL: not used yet */
+    /* by colour map: its colours at all brightness steps; the last element is for views of values relative to alarm limits;
+       NULL: not used yet */
     struct colormap_shades *shades[COLORMAPS_MOST + 1];
     struct shaded_colormap_cache_entry at[SHADED_COLORMAPS];
     int count;

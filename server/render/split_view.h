@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws views that may be split into two halves under one camera: each half is planned and drawn as a frame of its own, then
+/* Draws views that may be split into two halves under one camera. Each half is planned and drawn as a frame of its own; then
    the two are joined side by side. A view that is not split has one half. Thread: the one of the GL context. */
 #ifndef RENDER_SPLIT_VIEW_H
 #define RENDER_SPLIT_VIEW_H

@@ -53,8 +53,8 @@ struct view {
     uint32_t camera_seq; /* the client's sequence number of this camera, echoed in the frame */
     uint32_t params_seq; /* the client's sequence number of the parameters, echoed in the frame */
     int64_t input_ns;    /* monotonic time at which the newest input of the user arrived */
-    /* device pixels per CSS pixel of the page; the area around a marker in which a click picks it is proportional to this; 0: counts as
-       1 */
+    /* device pixels per CSS pixel of the page. The size of the area in which a click picks a marker is proportional to this; 0:
+       counts as 1 */
     double pixel_ratio;
     struct field_params field;
     int colormap;                /* index of the colour map */
@@ -80,8 +80,8 @@ struct view {
 /* Returns the unit of the shown values: the group's unit, or "m" for distances. */
 const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
-/* Sets the default scale for the quantity that the view shows: the group's range, isolines and logarithm, or those of a
-   distance or of a difference from a baseline. */
+/* Sets the default scale for the quantity that the view shows: the group's range, isolines and logarithm, or those for
+   distances or for differences from a baseline. */
 void view_default_scale(const struct scene *scene, struct view *view);
 /* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has its own colours, isolines and
    legend, and ignores colormap and color_scale. */

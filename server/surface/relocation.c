@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Live sensor relocation (relocation.h): builds an asset's surface in the background, and computes the distances of moved sensors on the
-   surface, one request after the other. */
+/* Live sensor relocation (relocation.h): builds an asset's surface in the background. Then computes the distances of moved
+   sensors on that surface, one request after the other. */
 #include "surface/relocation.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@ struct relocation {
     enum relocation_state state;
     /* surface of the asset, on which distances are computed; once it is built, it is read without the mutex */
     struct surface *surface;
-    /* positions of the asset's vertices on the surface; once the surface is built, they are read without the mutex; NULL: not needed,
+    /* positions of the asset's vertices on the surface, read without the mutex once the surface is built. NULL: not needed,
        because the surface was built from these vertices */
     struct vertex_embedding *embedding;
     /* waiting and running requests for the distances from a sensor position, oldest first */

@@ -15,25 +15,25 @@ struct relocation;
 /* triangles of an asset's finest level; the arrays must outlive the relocation object */
 struct relocation_shape {
     const float (*positions_m)[3];
-    /* vertex normals, which tell on which side of a thin wall a vertex of a coarser level of detail is; NULL: such vertices are assigned to
-       the nearest face */
+    /* vertex normals, which tell on which side of a thin wall the vertices of coarser levels of detail are; NULL: such vertices
+       are assigned to the nearest face */
     const float (*normals)[3];
     size_t vertex_count;
     const uint32_t *triangles; /* three vertex indices each */
     size_t triangle_count;
-    /* largest gap in metres that is bridged when distances are computed, as in the plant file, so that relocation bridges the same gaps as
-       plantcast-prep; 0: chosen from the model */
+    /* largest gap in metres that is bridged, as in the plant file, so that relocation bridges the same gaps as plantcast-prep;
+       0: chosen from the model */
     double tolerance_m;
-    /* The surface that plantcast-prep stored for the asset (surface_store.h). With this file, distances equal those that plantcast-prep
-     * would store (except for a few vertices where coincident faces belong to two parts), and the surface is ready sooner. Without the
-     * file, the surface is built from the asset's triangles. These have more vertices than the model, so parts within the tolerance of each
-     * other are bridged at more points. Distances then differ by 0.03 % of the largest distance on average, by a few percent at single
-     * points. */
+    /* The surface that plantcast-prep stored for the asset (surface_store.h). With this file, the surface is ready sooner.
+     * Distances then equal those that plantcast-prep would store, except at a few vertices where coincident faces belong to two
+     * parts. Without the file, the surface is built from the asset's triangles. These have more vertices than the model, so
+     * parts within the tolerance of each other are bridged at more points. Distances then differ by 0.03 % of the largest
+     * distance on average, by a few percent at single points. */
     const char *surface_path; /* path of the stored surface; NULL: none. Only read during relocation_create() */
     uint64_t surface_key;
 };
-/* Starts to build the asset's surface on a worker (seconds for a large asset, and a few hundred bytes per triangle); requests wait until it
- * is built. Never returns NULL. Thread: create and destroy from one thread, all other functions from any. */
+/* Starts to build the asset's surface on a worker; requests wait until it is built. Takes seconds for a large asset, and a few
+ * hundred bytes per triangle. Never returns NULL. Thread: create and destroy from one thread, all other functions from any. */
 struct relocation *relocation_create(struct log *log, struct workers *workers, const struct relocation_shape *shape);
 /* Cancels waiting requests, waits for running ones, frees everything and sets *relocation to NULL. *relocation may be NULL. Must not be
  * called from a `done` callback. */

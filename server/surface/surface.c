@@ -228,8 +228,8 @@ static void join_parts(struct surface *surface, struct body_parts *parts)
     mem_free(made.crossings);
 }
 
-/* Moves triangles that reach from the asset's main part to a stray vertex (one far from all others) to the end of the mesh: those with an
- * edge longer than the main part. Returns the number of moved triangles. */
+/* Moves triangles that reach from the asset's main part to a stray vertex (one far from all others) to the end of the mesh.
+ * These have an edge longer than the main part. Returns the number of moved triangles. */
 static size_t set_aside_needles(struct surface *surface)
 {
     struct trimesh *mesh = &surface->mesh;
@@ -243,10 +243,10 @@ static size_t set_aside_needles(struct surface *surface)
     return count;
 }
 
-/* Samples the surface evenly: adds points until edges are no longer than the spacing. Rods and narrow strips take more points than their
- * area suggests. If there are too many points, the spacing grows for all parts: a single unsampled part would keep edges as long as the
- * asset, and have poor distances. Triangles that reach from the main part to a stray vertex are not sampled, because they would use up all
- * points. */
+/* Samples the surface evenly: adds points until edges are no longer than the spacing. Rods and narrow strips take more points
+ * than their area suggests. If there are too many points, the spacing grows for all parts. A single unsampled part would keep
+ * edges as long as the asset, and have poor distances. Triangles that reach from the main part to a stray vertex are not
+ * sampled, because they would use up all points. */
 static void sample(struct surface *surface)
 {
     struct surface_report *report = &surface->report;

@@ -46,8 +46,8 @@ struct surface_report {
     int k;
     size_t samples;         /* points added */
     size_t hidden_vertices; /* number of model vertices inside another closed part, or covered by one */
-    /* difference between the computed distances and those of the heat method: root mean square, relative to the largest distance, of the
-       checked source with the largest difference. heat_disagreement and time_m2 are NaN until surface_check() */
+    /* root mean square difference between the distances and those of the heat method, relative to the largest distance. It is
+       that of the checked source with the largest difference. heat_disagreement and time_m2 are NaN until surface_check() */
     double heat_disagreement;
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };
@@ -92,14 +92,14 @@ struct surface_point {
     /* weights: barycentric, of the triangle's corners; distance_m: distance from the point that was projected */
     double weights[3], point_m[3], distance_m;
 };
-/* Finds the surface point nearest to point_m. With `normal`, prefers, among triangles about equally near, one whose normal is close to it,
- * so that the far side of a thin wall is not taken (NULL: no preference). */
+/* Finds the surface point nearest to point_m. Among triangles about equally near, prefers one whose normal is close to
+ * `normal`, so that the far side of a thin wall is not taken (NULL: no preference). */
 void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *hit);
 /* Finds the surface point nearest to point_m within limit_m, like surface_find_point(). Returns false if no point is that near. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
                                struct surface_point *hit);
-/* Finds the nearest visible surface point within limit_m that is on one of two model triangles (which may be the same), or on a coplanar
-   one merged with them. Returns false if there is none. */
+/* Finds the nearest visible surface point within limit_m on one of two model triangles (which may be the same), or on a
+   coplanar one merged with them. Returns false if there is none. */
 bool surface_find_point_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
                            struct surface_point *hit);
 /* Finds the nearest visible surface point within limit_m that is on a model triangle for which allowed(arg, triangle) returns true. Returns
@@ -111,9 +111,10 @@ bool surface_find_point_among(const struct surface *surface, const double point_
    result equals that of the search. Returns false if there is no such triangle, or the point is farther than limit_m. */
 bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *hit);
 
-/* Computes the geodesic distance in metres from each point (projected onto the surface) to every model vertex: out[point * vertex_count +
- * vertex], INFINITY where the surface does not connect them. Runs on all workers. Returns false when out of memory, logged. Thread: any
- * number of concurrent calls, of this and all functions below, unless their comment says otherwise. */
+/* Computes the geodesic distance in metres from each point (projected onto the surface) to every model vertex: out[point *
+ * vertex_count + vertex]. It is INFINITY where the surface does not connect them. Runs on all workers. Returns false when out
+ * of memory, logged. Thread: any number of concurrent calls, of this and all functions below, unless their comment says
+ * otherwise. */
 bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
 
 /* Distances of every point of the sampled surface from a set of sources. Distances of other surface points are interpolated from these. */

@@ -10,8 +10,8 @@
 #include "surface/surface_impl.h"
 
 #define TIME_OF_SPACING 3.0 /* diffusion time t of the heat method, in multiples of the squared mean edge length */
-/* sqrt(t) is at least twice the size of the surface (largest distance) divided by this: on large surfaces, t is enlarged so that heat does
-   not underflow */
+/* sqrt(t) is at least twice the size of the surface (largest distance) divided by this. On large surfaces, this enlarges t so
+   that heat does not underflow */
 #define MAX_DECAY 500.0
 #define MAX_SOURCES 32 /* number of sources that are checked; they are spread evenly over all sources */
 #define BLOCK 8        /* number of sources for which the heat method solves at a time */
@@ -39,7 +39,7 @@ static double reach_of(const struct surface *surface)
 
 /* Returns the root mean square difference between the distances of the two methods, relative to the largest distance. Heat
  * distances have a free constant, chosen so that the two methods agree on average. The heat method smooths ridges and borders
- * over about sqrt(t), so a few percent at single points are normal; more indicates that the surface is not connected the way it
+ * over about sqrt(t), so a few percent at single points are normal. More indicates that the surface is not connected the way it
  * looks. */
 static double disagreement_of(const struct propagation *propagation, const struct surface_field *field, size_t source, const double *heat_m)
 {

@@ -182,8 +182,8 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
         out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
-/* An edge a-b of the triangle that contains a surface point. side: length of the edge; x, y: position of the point in the triangle's plane,
-   in which a is at (0, 0) and b at (side, 0). */
+/* An edge a-b of the triangle that contains a surface point. side: length of the edge. x, y: position of the point in the
+   triangle's plane; a is at (0, 0) and b at (side, 0). */
 struct edge_window {
     float side, half, per, x, y;
 };
@@ -212,8 +212,8 @@ SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db
     return straight2 < best2 ? straight2 : best2;
 }
 
-/* Fills a row of distances (one per source) for a surface point. Each is the shortest of two kinds of paths: the straight path that enters
- * the point's triangle through an edge, if it passes within that edge, and the path through a corner of the triangle. */
+/* Fills a row of distances (one per source) for a surface point. A path to the point may enter its triangle straight through an
+ * edge, if it passes within that edge, or through a corner. The shortest one counts. */
 SIMD_BODY void fill_row(const struct edge_window sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {

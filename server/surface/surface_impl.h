@@ -36,8 +36,9 @@ struct surface {
     size_t bridge_count, bridge_capacity;
 };
 
-/* Builds the data that searches and distances need: the bounding volume hierarchy, the propagation fans (neighbours around each point), the
- * lists of triangles by model triangle, and the intrinsic triangulation if the stored surface had none. */
+/* Builds the data for searches and distances: the bounding volume hierarchy, the propagation fans (neighbours around each
+ * point), and the lists of triangles by model triangle. Also builds the intrinsic triangulation if the stored surface had none.
+ * */
 void surface_index(struct surface *surface);
 
 /* Argument of surface_faces(), which accepts only triangles whose front faces along `normal`. */

@@ -37,7 +37,7 @@ static size_t hash_of(const struct point_table *table, const double place_m[3])
     return XXH3_64bits(place_m, 3 * sizeof(*place_m)) & table->mask;
 }
 
-/* Returns the index of the hash table's slot with the point at this position, or of the free slot where such a point would be inserted. */
+/* Returns the index of the hash table's slot for this position: the slot with the point, or the free slot where it would be inserted. */
 static size_t slot_of(const struct point_table *table, const double place_m[3])
 {
     size_t slot = hash_of(table, place_m);
@@ -67,8 +67,8 @@ struct embedding_job {
     struct point_table table;
     const float (*positions_m)[3];
     double (*normals)[3]; /* not normalised */
-    /* by vertex: 1 if no triangle of the finest level of detail uses it, only coarser ones; such a vertex may be nearer to the other side
-       of a wall than to its own */
+    /* by vertex: 1 if only coarser levels of detail use it, not the finest. Such a vertex may be nearer to the other side of a
+       wall than to its own */
     char *is_off;
 };
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects the draw commands of a render pass into batches that need the same GL state, so that each batch is one GL call, however many
-   assets it draws. Data that differ between assets are in GPU buffers: the placement per instance, light and field values per vertex
-   (gpu/pool.h). Order of calls to draw_batches_*: begin, choose and add, upload, draw. Thread: the one of the GL context. */
+/* Collects the draw commands of a render pass into batches that need the same GL state. Each batch is one GL call, however many
+   assets it draws. Data that differ between assets are in GPU buffers: the placement per instance, light and field values per
+   vertex (gpu/pool.h). Order of calls to draw_batches_*: begin, choose and add, upload, draw. Thread: the one of the GL
+   context. */
 #ifndef RENDER_GL_DRAW_BATCHES_H
 #define RENDER_GL_DRAW_BATCHES_H
 #include "gpu/mesh.h"
@@ -10,8 +11,8 @@
 #include "render/gl/model.h"
 
 struct draw_instance { /* as in shaders/instance.glsl */
-    /* Rows of the matrix that transforms the asset's normals to eye space. The fourth elements of rows 0 and 1 are the index of
-       the asset's first block in the baked light buffer and in the field value buffer; that of row 2 is unused. */
+    /* Rows of the matrix that transforms the asset's normals to eye space. normals[0][3] is the index of the asset's first
+       block in the baked light buffer, normals[1][3] that in the field value buffer; normals[2][3] is unused. */
     float normals[3][4];
     float clip_from_file[16];
     float from_file[3][4]; /* rows */

@@ -10,8 +10,8 @@ struct frame_tiles {
     /* block_px: side of a square block of cells in pixels; columns, rows: number of blocks. The cells of a block are in Z-order, so that
        the cells of a tile of any size are contiguous */
     int block_px, columns, rows;
-    /* next: index of the next cell (square of pixels) to draw, counted through both passes (enum gl_pass); span: number of cells of the
-       tile that begins there, 0: not chosen yet */
+    /* next: index of the next cell (square of pixels) to draw, counted through both passes (enum gl_pass). span: number of
+       cells in the tile that begins there; 0: not chosen yet */
     int next, span;
     int *in_tile; /* indices of the assets that the current tile shows */
 };
@@ -24,8 +24,8 @@ void frame_tiles_init(struct frame_tiles *tiles, const struct frame_context *con
 void frame_tiles_finish(struct frame_tiles *tiles);
 /* returns the number of cells (squares of pixels) that cover the frame; each pass (enum gl_pass) draws each cell once */
 int frame_tiles_cells(const struct frame_tiles *tiles);
-/* Returns the largest tile that begins with the next cell (square of pixels) and has at most most_px pixels, or a tile of one cell if
-   even that has more pixels. A tile outside the frame has size 0. */
+/* Returns the largest tile of at most most_px pixels that begins with the next cell (square of pixels), but never less than one
+   cell. A tile outside the frame has size 0. */
 struct tile frame_tiles_choose(struct frame_tiles *tiles, double most_px);
 /* Returns the frame's context with its list of visible assets reduced to those inside the tile. Valid until the next call. */
 struct frame_context frame_tiles_context(struct frame_tiles *tiles, const struct frame_context *frame, const struct tile *tile);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The GL render backend: draws a frame as a whole if GL runs on a GPU, and tile by tile if GL runs on the processor. */
+/* The GL render backend: draws a frame as a whole on a GPU, and tile by tile if GL runs on the processor. */
 #include "render/gl/gl_backend.h"
 
 #include <limits.h>
@@ -224,8 +224,8 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        /* the light set or the colour map could not be bound (no GPU memory): no further tiles are drawn; end() tries again and reports the
-           error */
+        /* the light set or the colour map could not be bound (no GPU memory): draws no further tiles; end() tries again and
+           reports the error */
         own->tiles.next = cells;
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();

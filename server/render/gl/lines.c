@@ -22,8 +22,8 @@ void lines_finish(struct gl_lines *lines)
     glDeleteVertexArrays(1, &lines->vao);
 }
 
-/* Draws lines over the resolved frame: runs a shader program that computes edges or an outline at every pixel, and blends its result over
-   the picture. */
+/* Draws lines over the resolved frame: runs a shader program that finds edges or an outline at every pixel, and blends the
+   result over the picture. */
 static void draw_over(const struct gl_lines *lines, const struct frame_context *context, GLuint program)
 {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, context->target->over_framebuffer);

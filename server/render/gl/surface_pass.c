@@ -304,8 +304,8 @@ static bool leaves_out(struct surface_pass *pass, const struct frame_context *co
     return !context->measured && !context->reference && occlusion_begin(&pass->occlusion, context, pass->least_hiding);
 }
 
-/* Draws opaque assets with occlusion culling, in rounds, nearest first: before each round, the bounding boxes of its assets are tested
-   against the depth of all earlier rounds. */
+/* Draws opaque assets with occlusion culling, in rounds, nearest first. Before each round, the bounding boxes of its assets are
+   tested against the depth of all earlier rounds. */
 static void draw_seen(struct surface_pass *pass, const struct frame_context *context)
 {
     struct occlusion *occlusion = &pass->occlusion;

@@ -45,9 +45,9 @@ struct surface_pass {
 /* Compiles the programs of SURFACE_PICTURE. Returns false on failure, logged. */
 bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
-/* Draw the visible assets in steps. surface_pass_draw_some() draws opaque submeshes of the visible assets from index `first` on until about
-   `triangles` triangles are drawn, and returns the index at which to continue. surface_pass_draw_blended() then draws all transparent
-   ones. */
+/* Draw the visible assets in steps. surface_pass_draw_some() draws opaque submeshes from the visible asset `first` on, until it
+   has drawn about `triangles` triangles; it returns the index at which to continue. surface_pass_draw_blended() then draws all
+   transparent submeshes. */
 size_t surface_pass_draw_some(struct surface_pass *pass, const struct frame_context *context, size_t first, int triangles);
 void surface_pass_draw_blended(struct surface_pass *pass, const struct frame_context *context);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bakes light with depth maps and compute shaders, in small steps. A step draws one asset into one depth map, or computes the light of a
-   few thousand vertices or of some rows of the ground texture. */
+/* Bakes light with depth maps and compute shaders, in small steps. A step draws one asset into one depth map, or lights a few
+   thousand vertices, or some rows of the ground texture. */
 #include "render/light/bake.h"
 
 #include <math.h>
@@ -19,8 +19,8 @@ static const uint8_t ROUGH_OPENNESS = 190;
 static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width: a filtered lookup also reads the texels around a point */
 static const double SUN_MARGIN = 0.002;
-/* lower bound of openness (0: no sky is visible from a point, 1: the whole sky) if the hidden assets are as large as the plant;
-   proportionally less if they are smaller */
+/* lower bound of openness (0: no sky is visible, 1: the whole sky) when the hidden assets are as large as the plant;
+   proportionally less for smaller ones */
 static const double OPEN_AT_LEAST = 0.6;
 /* Size of one step of the bake where GL runs on a processor. _VERTICES: number of vertices, or of sample points in large triangles; _ROWS:
    number of rows of the ground texture. SKY_: for bakes that include openness; SUN_: for bakes of sunlight only. A GPU bakes everything in

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bakes one light set in small steps, so that frames can be drawn in between: a shadow map of the sun, and the light that
-   reaches each vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps in 32 directions.
-   Openness depends on neither sun nor environment, so it is copied from another set, or read from a file. Openness is always
-   that of the whole plant; hiding assets only raises its lower bound. Thread: the one of the GL context. */
+/* Bakes one light set in small steps, so that frames can be drawn in between. The set has a shadow map of the sun, and the
+   light that reaches each vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps in 32
+   directions. Openness depends on neither sun nor environment, so it is copied from another set, or read from a file. Openness
+   is always that of the whole plant; hiding assets only raises its lower bound. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
@@ -24,8 +24,8 @@ struct light_set {
     GLuint sun_map;
     GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness (visible part of the sky) */
     struct pool *pool;
-    /* baked light per asset, 4 bytes per vertex: brightness of sun and sky together, sky light, openness (visible part of the
-       sky), cosine of the angle to the sun */
+    /* baked light per asset, 4 bytes per vertex: sun and sky together, sky only, openness (visible part of the sky), cosine of
+       the angle to the sun */
     struct pool_slice **baked;
     size_t bytes;
     uint64_t used;

@@ -13,8 +13,8 @@
    harmonics */
 enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 };
 enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
-/* Radiance is clipped at this multiple of the environment map's mean radiance: brighter spots are the sun or lamps, and the renderer adds
-   the sun as a separate light. */
+/* Radiance is clipped at this multiple of the environment map's mean radiance. Brighter spots are the sun or lamps, and the
+   renderer adds the sun as a separate light. */
 static const double MAX_RADIANCE_FACTOR = 24;
 /* Side in pixels of the reflection map for each roughness layer: rough layers are smooth, so they are computed at low resolution and
    enlarged. */
@@ -130,8 +130,8 @@ static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
     memcpy(terms, all, sizeof(all));
 }
 
-/* For each spherical harmonic that terms_of() computes: the square of its constant factor, times the cosine lobe's coefficient of its
-   order (Ramamoorthi and Hanrahan, 2001), divided by pi. */
+/* For each spherical harmonic of terms_of(): the square of its constant factor, times the cosine lobe's coefficient for its
+   order, divided by pi (Ramamoorthi and Hanrahan, 2001). */
 static const double term_factors[ENVIRONMENT_TERMS] = {
     0.079577472,
     0.238732415 * 2 / 3,

@@ -13,23 +13,23 @@
 
 enum { ENVIRONMENT_PX = 128, ENVIRONMENT_LAYERS = 8, ENVIRONMENT_TERMS = 9 };
 struct environment {
-    /* Coefficients of irradiance over pi, in the order of the terms 1, y, z, x, xy, yz, 3zz-1, xz, xx-yy of a direction's components, with
-       the basis functions' constant factors multiplied in. */
+    /* Coefficients of irradiance over pi, in the order of the terms 1, y, z, x, xy, yz, 3zz-1, xz, xx-yy of a direction's
+       components. The basis functions' constant factors are multiplied in. */
     float irradiance[ENVIRONMENT_TERMS][4];
     /* Reflection maps: octahedral (shaders/environment.glsl), one per roughness from 0 to 1. A texel holds the mean radiance around the
        reflected ray. */
     float (*mirrored)[4];
 };
 
-/* image: equirectangular, its middle row the horizon, its middle column towards +x of the plant; NULL: the built-in sky. y_up: +y of the
-   plant is up; else +z. Keeps no pointer to the image. Free with environment_finish(). Returns false if no light comes from above in a
-   colour channel: a black image, or one in which a channel, such as blue, is 0 everywhere. */
+/* image: equirectangular, its middle row the horizon, its middle column towards +x of the plant; NULL: the built-in sky. y_up:
+   +y of the plant is up; else +z. Keeps no pointer to the image. Free with environment_finish(). Returns false if no light
+   comes from above in a colour channel: the image is black, or the channel is 0 everywhere. */
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
 
-/* Writes the table of the split-sum approximation: a surface with the reflectance F0 at normal incidence reflects F0 * scale + bias of a
-   uniform environment's light. The table has side x side texels: cosine to the viewer from left to right, roughness from top to bottom,
-   both at texel centres of (0, 1). */
+/* Writes the table of the split-sum approximation. In a uniform environment, a surface with the reflectance F0 at normal
+   incidence reflects F0 * scale + bias of the light. The table has side x side texels: cosine to the viewer from left to right,
+   roughness from top to bottom, both at texel centres of (0, 1). */
 void environment_brdf(int side, float (*scale_bias)[2]);
 
 #endif

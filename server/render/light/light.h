@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cache of baked light: shadow map, and light at each vertex and on the ground, baked once per direction of the sun, environment and
-   visible assets (render/light/bake.h), within a memory limit. Thread: the one of the GL context. */
+/* A cache of baked light within a memory limit: shadow map, and light at each vertex and on the ground. Light is baked once per
+   direction of the sun, environment and visible assets (render/light/bake.h). Thread: the one of the GL context. */
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/light/bake.h"
@@ -31,16 +31,16 @@ void light_finish(struct light *light);
 /* Returns the light set (baked light) for `key`; if it is not cached, bakes it and waits. With key->rough, the bake takes a fraction of the
    time; frames show such a rough set until the first full set is ready. Returns NULL when the GPU is out of memory, logged. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
-/* Returns the cached light set (baked light) most similar to `key`: sets of the same environment come first, among them sets with the same
-   visible assets, then the nearest direction of the sun. NULL: none is cached. */
+/* Returns the cached light set (baked light) most similar to `key`. Sets of the same environment come first, then sets with the
+   same visible assets, then the nearest direction of the sun. NULL: none is cached. */
 struct light_set *light_near(struct light *light, const struct light_key *key);
 /* Bakes the light set for `key` for about budget_ns, at least one step, unless another set is being baked. Returns true if the set is
    cached, so that light_get() does not wait. */
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
 /* Sets the memory limit and drops light sets (baked light) beyond it, but keeps two: one to show while the next is baked. */
 void light_bound(struct light *light, size_t bytes);
-/* Drops all light sets (baked light) but the one for `usual`, or, if that is not cached, the most similar one; abandons the bake in
-   progress unless it is for `usual`. */
+/* Drops all light sets (baked light) but the one for `usual` or, if that is not cached, the most similar one. Abandons the bake
+   in progress unless it is for `usual`. */
 void light_drop(struct light *light, const struct light_key *usual);
 /* Hold and release a light set (baked light); a held set is not dropped. light_release() accepts NULL. */
 void light_hold(struct light_set *set);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits the sun's frustum around all assets as seen from the sun, rotated about the sun's direction so that its longer side is
-   as short as possible. */
+/* Fits the sun's frustum around all assets as seen from the sun. Rotates it about the sun's direction so that its longer side
+   is as short as possible. */
 #include "render/light/sun_frame.h"
 
 #include <math.h>
@@ -12,8 +12,7 @@
 enum { TRIED_ANGLES = 32 };
 
 struct sun_extent {
-    /* bounds of the assets that cast shadows, in metres from the scene's centre, along three axes: across and up as seen from the sun, and
-       towards the sun */
+    /* bounds of the assets that cast shadows, in metres from the scene's centre: across and up as seen from the sun, and towards the sun */
     double low[3], high[3];
 };
 

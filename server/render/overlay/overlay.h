@@ -10,8 +10,8 @@
    (frame_record.h), the record's `unproven` flags are used instead. */
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks);
 
-/* Draws legend, clock and data age over the frame, but no markers, sensor labels and alarms: for users who may see the picture but no
-   readings. */
+/* Draws legend, clock and data age over the frame, but no markers, sensor labels and alarms. For users who may see the picture
+   but no readings. */
 void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
                        const struct loop_checks *loop_checks);
 

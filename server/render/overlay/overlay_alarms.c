@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws a list of the active alarms that no visible marker shows: those of hidden or off-screen sensors, of other groups, and
-   of tags without a position. */
+/* Lists the active alarms that no visible marker shows: those of hidden or off-screen sensors, of other groups, and of tags
+   without a position. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,8 +10,8 @@
 #include "value/quality.h"
 
 enum { MAX_ROWS = 5 };
-/* ROW: height of a row of the list, as a multiple of the font size (text_px); MAX_HEIGHT: maximum fraction of the frame's
-   height that the list may take */
+/* ROW: height of a row of the list, as a multiple of the font size (text_px). MAX_HEIGHT: maximum height of the list, as a
+   fraction of the frame's height. */
 static const double ROW = 1.5, MAX_HEIGHT = 0.3;
 
 struct unseen {

@@ -37,7 +37,7 @@ static void round_ticks(struct ticks *ticks, const struct scale *scale, double m
         add_tick(ticks, scale, n * step);
 }
 
-/* Adds ticks of a logarithmic scale: at 1, 2 and 5 times each power of ten, or only at powers of ten if the range spans many. */
+/* Adds ticks of a logarithmic scale: at 1, 2 and 5 times each power of ten, or only at powers of ten if there are many. */
 static void log_ticks(struct ticks *ticks, const struct scale *scale, double most)
 {
     static const double leads[3] = { 1, 2, 5 };

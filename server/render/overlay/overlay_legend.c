@@ -243,7 +243,7 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
-    /* the legend is always wide enough for the row "unknown direction": the space next to the legend is computed before it is known whether
+    /* the legend is always wide enough for the row "unknown direction", because its width is needed before it is known whether
        the frame shows that row */
     if (overlay_has_arrows(pen))
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));

@@ -109,8 +109,8 @@ static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marke
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
 }
 
-/* Formats the label of a tag whose reading is Bad: the alarm that the tag's last usable value raised, and the time of that value (with the
-   date if older than a day). */
+/* Formats the label of a tag whose reading is Bad: the alarm raised by the tag's last usable value, and the time of that value
+   (with the date if older than a day). */
 static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
 {
     enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
@@ -248,8 +248,8 @@ struct callout_text {
     char what[200], worst[200];
 };
 
-/* Writes a call-out's text: the asset with the most alarms if it has several, the number of other assets, the number of alarms, and the
-   most severe. */
+/* Writes a call-out's text: the asset with the most alarms if it has several, the number of other assets, and the number and
+   worst kind of alarms. */
 static void write_callout(const struct marker_labels *wanted, const int *members, size_t count, struct callout_text *text)
 {
     const struct pen *pen = wanted->pen;
@@ -397,8 +397,8 @@ bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marke
     return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
 }
 
-/* Returns whether the marker is drawn even where markers overlap: it has an alarm, is Bad or uncertain, is the chosen sensor, or belongs to
-   the selected asset. */
+/* Returns whether the marker is drawn even where markers overlap: true if it has an alarm, is Bad or uncertain, is the chosen
+   sensor, or belongs to the selected asset. */
 static bool is_kept(const struct pen *pen, const struct frame_marker *marker)
 {
     return has_alarm(pen, marker) || is_bad(marker) || quality_is_uncertain(marker->quality) ||

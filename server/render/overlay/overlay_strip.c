@@ -36,7 +36,7 @@ static void choose_ink(const struct pen *pen, struct strip_ink *ink)
     }
 }
 
-/* Returns the colour at a column, 0 to STRIP_INNER, of the strip's inner cells, which show from left to right: below range, MIN
+/* Returns the colour at a column, 0 to STRIP_INNER, of the strip's inner cells. From left to right these show: below range, MIN
    to MAX, above range. */
 static const uint8_t *color_at(const struct strip_ink *ink, int shade, double column)
 {

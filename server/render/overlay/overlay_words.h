@@ -11,7 +11,7 @@
 #define OVERLAY_MEMBER(name, ...) WORD_##name,
 enum overlay_word {
     OVERLAY_WORDS(OVERLAY_MEMBER) OVERLAY_WORDS,
-    /* index of the text that names the first enum look (way of colouring); the texts of the other looks follow in the order of the enum */
+    /* text of the first enum look (way of colouring); the texts of the other looks follow in the order of the enum */
     WORD_LOOKS = WORD_LOOK_DEFAULT,
     WORD_INTERPOLATIONS = WORD_INTERPOLATION_SHEPARD,
     WORD_DISTANCES = WORD_DISTANCE_GEODESIC,

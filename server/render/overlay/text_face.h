@@ -5,8 +5,8 @@
 #include <cairo.h>
 #include <stdbool.h>
 
-/* If the text has letters beyond Latin, Greek and Cyrillic, sets the installed font that has most of these letters, in the weight set
-   before by cairo_select_font_face(). Otherwise keeps the font. The drawing context caches the fonts found last. */
+/* Sets the installed font that has most of the text's letters if some are beyond Latin, Greek and Cyrillic; otherwise keeps the font.
+   Keeps the weight that cairo_select_font_face() has set. The drawing context caches the fonts found last. */
 void text_face_choose(cairo_t *cairo, const char *text);
 
 /* Returns whether an installed font has all letters of the text. */

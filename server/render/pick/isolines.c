@@ -12,8 +12,8 @@
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
-/* The field along a triangle's edge need not be linear. MAX_PIECES: maximum number of pieces of an edge that are searched for crossings
-   with isolines; MAX_BISECTIONS: steps of bisection that locate a crossing within a piece. */
+/* The field along a triangle's edge need not be linear. MAX_PIECES: maximum number of pieces of an edge that are searched for
+   crossings with isolines. MAX_BISECTIONS: number of bisection steps that locate a crossing within a piece. */
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
 /* minimum distance between the points of isolines at which labels may be placed, as a fraction of the asset's size */
 static const double SPACING = 0.1;
@@ -325,8 +325,8 @@ bool isolines_start(struct point_visibility *queries, const struct frame_context
     return point_visibility_start(queries, context, count);
 }
 
-/* Returns whether the frame may get another label at this point. Labels are sent with each frame, so their number is limited: labels must
-   have a minimum distance from each other, which is larger between labels of one isoline. */
+/* Returns whether the frame may get another label at this point. Labels are sent with each frame, so a minimum distance between
+   them limits their number. It is larger between labels of one isoline. */
 static bool has_room(const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     double lines_px = fmax(40, frame->width_px / 32.0), arrows_px = FRAME_ARROW_PX(frame->width_px);
@@ -343,7 +343,7 @@ static bool has_room(const struct frame *frame, const float place[4], const stru
     return count < (point->arrow ? MAX_ARROWS : MAX_LABELS);
 }
 
-/* Projects a unit vector at the point into the frame, scaled so that its length is 1 if it is parallel to the image plane, and less if it
+/* Projects a unit vector at the point into the frame. Its length becomes 1 if it is parallel to the image plane, and less if it
    points towards or away from the viewer. */
 static void project_arrow(const struct frame_context *context, const struct isoline_point *point, struct frame_label *label)
 {

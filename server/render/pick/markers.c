@@ -156,16 +156,16 @@ void markers_measure(const struct frame_context *context, struct frame *frame)
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame)
 {
     size_t count = count_shown(context);
-    /* ignores the visibility test if more markers are shown now than its buffer holds: a trial (sensors moved on the model) has ended since
-       the test began */
+    /* ignores the visibility test if its buffer is too small for the markers shown now: a trial (sensors moved on the model)
+       has ended since the test began */
     if (count > 0 && count <= queries->capacity)
         emit_markers(context, queries->places, count, frame);
 }
 
 /* --- without GL ------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the farthest depth in the depth buffer among the 3x3 pixels around a pixel: a marker is hidden only if it is behind all these
-   pixels. */
+/* Returns the farthest depth in the depth buffer among the 3x3 pixels around a pixel. A marker is hidden only if it is behind
+   all of these. */
 static float farthest_near(const float *depth, size_t pitch_px, int width_px, int height_px, int x, int y)
 {
     float farthest = 1;

@@ -17,8 +17,8 @@ struct marker_place {
 };
 /* Writes the next sensor and its position to `out`. Returns false after the last one. */
 bool marker_next(struct marker_iterator *iterator, struct marker_place *out);
-/* Returns whether the view shows a marker for this sensor: the view shows the sensor's group, and the sensor's asset is neither hidden nor
-   cut away by a section plane at the sensor. */
+/* Returns whether the view shows a marker for this sensor. The view must show the sensor's group, and the sensor's asset must be
+   neither hidden nor cut away by a section plane at the sensor. */
 bool marker_is_shown(const struct scene *scene, const struct view *view, const struct marker_place *place);
 
 /* Returns the depth tolerance of an asset's markers: how far the drawn surface may lie in front of the position of a sensor on it. */
@@ -32,8 +32,8 @@ void markers_measure(const struct frame_context *context, struct frame *frame);
 /* Tests the visibility of the markers on the CPU and stores the result in the frame. Uses the frame's depth buffer: rows from the top,
    pitch_px floats apart. */
 void markers_find(const struct frame_context *context, const float *depth, size_t pitch_px, struct frame *frame);
-/* Tests the visibility of one point, as shaders/point_visibility.comp does. place, before the call: eye-space position and depth tolerance
-   in metres; after it: x and y in pixels, then 1 if the point is hidden, else 0. */
+/* Tests the visibility of one point, like shaders/point_visibility.comp. place, before the call: eye-space position and depth
+   tolerance in metres; after it: x and y in pixels, then 1 if the point is hidden, else 0. */
 void markers_look(const struct frame_context *context, const float *depth, size_t pitch_px, float place[4]);
 
 #endif

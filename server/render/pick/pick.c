@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Picks the asset and the field's value at a pixel: casts a ray from the eye and interpolates the field in the triangle that the ray
-   hits. */
+/* Picks the asset and the field's value at a pixel: casts a ray from the eye and interpolates the field in the triangle hit. */
 #include "render/pick/pick.h"
 
 #include <math.h>

@@ -7,8 +7,7 @@
 #include "render/view.h"
 
 enum pick_state {
-    /* the picked pixel shows no value of the group: it shows an asset without a sensor of the group, the inner side of a cut, or
-       background */
+    /* the picked pixel shows no value of the group, but an asset without a sensor of the group, the inner side of a cut, or background */
     PICK_CONTEXT,
     PICK_NO_DATA,
     PICK_BETWEEN,

@@ -15,8 +15,9 @@ struct point_visibility {
 /* Returns a mapped buffer for `count` points, which the caller fills: eye-space position and depth tolerance in metres. The previous frame
    that used the buffer must be complete. Returns NULL if the context is lost, or the GPU is out of memory, logged. */
 float (*point_visibility_reserve(struct point_visibility *queries, const struct gl *gl, size_t count))[4];
-/* Starts the visibility test on the GPU; call it after the multisampled frame is resolved. When the GPU is done, each element of the buffer
-   holds a point's x and y in pixels, then 1 if the point is hidden, else 0. Returns false on a GL error, logged. */
+/* Starts the visibility test on the GPU; call it after the multisampled frame is resolved. Once the GPU is done, each element
+   of the buffer holds a point's x and y in pixels, and whether the point is hidden (1 or 0). Returns false on a GL error,
+   logged. */
 bool point_visibility_start(const struct point_visibility *queries, const struct frame_context *context, size_t count);
 void point_visibility_finish(struct point_visibility *queries);
 

@@ -147,8 +147,8 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         const uint32_t next = tracing->set->across[tri][edge];
         if (next == STROKE_NONE)
             return false;
-        /* Finds the crossed edge in the neighbouring triangle: its corners are in the opposite order there, or in the same order if the
-           triangles are wound inconsistently. */
+        /* Finds the crossed edge in the neighbouring triangle. Its corners are in the opposite order there, or in the same
+           order if the triangles are wound inconsistently. */
         double mirror[3], there[3][3], turned[3], share = weights[(edge + 1) % 3] / max_of(weights[edge] + weights[(edge + 1) % 3], 1e-30);
         from = (int)(next % 3);
         corners_of(tracing, next / 3, there, mirror);
@@ -191,8 +191,8 @@ static struct direction midway(const struct stroke_point *last, const struct dir
     return out;
 }
 
-/* Traces all strokes (short streamlines) of the asset together, one step of each at a time, because computing directions for many positions
-   in one call is faster. */
+/* Traces all strokes (short streamlines) of the asset together, one step of each at a time: computing directions for many
+   positions in one call is faster. */
 static void trace(struct stroke_set *set, const struct tracing *tracing, const struct arrow_set *arrows, const struct scene *scene,
                   int asset, const struct fields_entry *field)
 {

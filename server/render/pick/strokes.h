@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Strokes along the directions of a field: short streamlines on the surface of one asset. A stroke begins at an arrow position, follows the
-   interpolated direction from triangle to triangle, and ends where the direction is unknown, where the surface ends, or at its full length.
-   Therefore no stroke crosses a gap or a wall. Thread: the one of the GL context. */
+/* Strokes along the directions of a field: short streamlines on the surface of one asset. A stroke begins at an arrow position
+   and follows the interpolated direction from triangle to triangle. It ends where the direction is unknown, where the surface
+   ends, or at its full length. Therefore no stroke crosses a gap or a wall. Thread: the one of the GL context. */
 #ifndef RENDER_PICK_STROKES_H
 #define RENDER_PICK_STROKES_H
 #include "render/pick/arrows.h"
@@ -13,8 +13,7 @@ struct stroke_point {
     struct direction to;
 };
 struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_finish() */
-    /* [triangle][i]: the neighbour across the edge that begins at corner i, as 3 * index of the triangle + index of its edge; STROKE_NONE:
-       no neighbour */
+    /* [triangle][i]: neighbour across the edge that begins at corner i: 3 * index of the triangle + index of its edge; STROKE_NONE: none */
     uint32_t (*across)[3];
     struct stroke_point (*points)[STROKE_POINTS];
     int *lengths; /* number of points of each stroke (short streamline); 0: the direction at its start is unknown */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Culling of triangle clusters that lie outside the frustum, or all of whose triangles face away (normal cone), for a frame or one tile of
-   a frame. Uses no GL. */
+/* Culling of triangle clusters for a frame or one tile of a frame: those outside the frustum, and those all of whose triangles
+   face away (normal cone). Uses no GL. */
 #ifndef RENDER_PLAN_CULLING_H
 #define RENDER_PLAN_CULLING_H
 #include "render/plan/view_constants.h"

@@ -269,8 +269,8 @@ static void take_sensors(const struct fields *fields, struct fields_entry *entry
         entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
 }
 
-/* Looks up all entries of one parameter set before it updates their pixels, so that no entry of the set evicts another, however small the
-   cache is. A trial may use a parameter set per asset, so its entries are updated one by one. */
+/* Looks up all entries of one parameter set before it updates their pixels. So no entry of the set evicts another, however
+   small the cache is. A trial may use a parameter set per asset, so its entries are updated one by one. */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     struct fields_entry **changed = mem_array(ask->asset_count, sizeof(*changed));

@@ -11,8 +11,7 @@ struct frame_plan {
     const struct gpu_scene *gpu_scene;
     struct view view; /* view that the frame shows; never a split one, because a split view has one plan per half */
     struct view_constants constants;
-    /* key of the light set (baked light) that the frame uses: the set that the view asks for or, while that is not ready, the most similar
-       one */
+    /* key of the light set (baked light) that the frame uses: the view's own or, while that is not ready, the most similar one */
     struct light_key lit_by;
     double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
     int *visible;    /* indices of the visible assets, the nearest asset first */

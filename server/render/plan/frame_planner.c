@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes a frame plan: first culls assets and chooses the light set and levels of detail, then computes the fields at as many vertices as
-   those levels need. */
+/* Makes a frame plan: first culls assets and chooses the light set and levels of detail. Then computes the fields at as many
+   vertices as those levels need. */
 #include "render/plan/frame_planner.h"
 
 #include <math.h>
@@ -63,8 +63,8 @@ static struct light_key choose_light(const struct frame_planner *planner, const 
     return near ? near->key : key;
 }
 
-/* Returns how many of the asset's vertices, counted from the first in the file, need field values for its level of detail,
-   isoline labels and arrows. */
+/* Returns how many of the asset's vertices, counted from the first in the file, need field values for surface, isoline labels
+   and arrows. */
 static size_t count_vertices(const struct frame_plan *plan, int asset)
 {
     double lines[VIEW_ALL_LINES];

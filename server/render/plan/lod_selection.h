@@ -14,8 +14,8 @@ struct lod_params {
     const int *visible; /* indices of the visible assets */
     size_t visible_count;
 };
-/* Returns the error bound of the frame's levels of detail, in pixels; 0: finest levels only. The result depends only on camera and visible
-   assets, so that equal views give equal frames, and is the same for all tiles of a frame. */
+/* Returns the error bound of the frame's levels of detail, in pixels; 0: finest levels only. The result is the same for all
+   tiles of a frame. It depends only on camera and visible assets, so that equal views give equal frames. */
 double lod_error_px(const struct lod_params *params);
 /* Returns the asset's coarsest level with an error of at most error_px; the finest level if error_px is 0. */
 const struct model_level *lod_level(const struct gpu_scene *gpu_scene, const struct view_constants *constants, int asset, double error_px);

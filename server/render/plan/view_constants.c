@@ -24,8 +24,8 @@ static void set(struct view_constants *constants, const double eye_m[3], const d
         }
 }
 
-/* Computes the camera's matrices, with reversed depth (1 near, 0 far): 32-bit floats are most precise near 0, and most of the scene is far
-   away. */
+/* Computes the camera's matrices, with reversed depth (1 near, 0 far). 32-bit floats are most precise near 0, and most of the
+   scene is far away. */
 void view_constants_init(struct view_constants *constants, const struct view *view, const struct scene *scene)
 {
     static const double reverse[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.5, 0, 0, 0, 0.5, 1 };
@@ -59,8 +59,7 @@ void view_constants_narrow(struct view_constants *constants, const double low[2]
 bool view_constants_sees(const struct view_constants *constants, const struct scene_asset *asset)
 {
     for (int p = 0; p < 6; p++) {
-        /* signed distance from the frustum plane to the corner of the asset's box that is farthest on the inner side; below 0:
-           the whole box is outside */
+        /* signed distance from the frustum plane to the innermost corner of the asset's box; below 0: the whole box is outside */
         double far = constants->planes[p][3];
         for (int c = 0; c < 3; c++)
             far += constants->planes[p][c] * (constants->planes[p][c] > 0 ? asset->bounds_max_m[c] : asset->bounds_min_m[c]);

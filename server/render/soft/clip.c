@@ -37,8 +37,8 @@ static float part_way(float in, float out, float part)
     return in + part * (out - in);
 }
 
-/* Returns the point on an edge at the fraction `part` (0..1) of the way from `in`, its end inside a clipping plane, to `out`, its end
-   outside. Both triangles that share the edge get exactly the same point, because both start from the inner end. */
+/* Returns a point on an edge, at the fraction `part` (0..1) of the way from `in` (inside a clipping plane) to `out` (outside).
+   Both triangles that share the edge get exactly the same point, because both start from the inner end. */
 static struct near_corner between(const struct near_corner *in, const struct near_corner *out, float part)
 {
     struct near_corner corner = { .a = part_way(in->a, out->a, part), .b = part_way(in->b, out->b, part) };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clipping of triangles against the near plane, section planes and the guard band (one frame width to either side, one frame height above
-   and below). Corners farther out, such as those just in front of the eye, would leave too few significant digits for the edge functions,
-   which are 32-bit floats. Private to soft/. */
+/* Clipping of triangles against the near plane, section planes and the guard band (one frame width to either side, one frame
+   height above and below). Corners farther out, such as those just in front of the eye, would be too imprecise for the edge
+   functions, which are 32-bit floats. Private to soft/. */
 #ifndef RENDER_SOFT_CLIP_H
 #define RENDER_SOFT_CLIP_H
 #include "render/soft/soft_impl.h"
@@ -9,8 +9,8 @@
 /* NEAR_CORNERS, NEAR_TRIANGLES: maximum numbers of corners and of triangles that result from clipping one triangle by all planes. */
 enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_TRIANGLES = NEAR_CORNERS - 2 };
 
-/* corner of a clipped triangle. at: position in clip space, with x and y in pixels; a and b: column and row of the colour map, or light, as
-   in struct soft_vertex */
+/* corner of a clipped triangle. at: position in clip space, with x and y in pixels. a, b: as in struct soft_vertex: column and
+   row of the colour map, or light */
 struct near_corner {
     float at[4], a, b;
     /* strength, 0..1, of each pattern (no data, uncertain, no limits) at the corner; from the vertex's flags, interpolated

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clips those triangles of a part (group of up to 256 neighbouring triangles, parts.h) that the near plane, the guard band or a section
+/* Clips those triangles of a part (up to 256 neighbouring triangles, parts.h) that the near plane, the guard band or a section
    plane may cut. */
 #include <math.h>
 

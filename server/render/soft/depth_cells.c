@@ -6,8 +6,8 @@
 
 #include "render/soft/lanes.h"
 
-/* Smallest gap between the two sides of a depth step within a depth grid cell, as a fraction of the range of the cell's depths;
-   with a smaller gap the cell is not divided. On a single tilted plane, depths are closer together than that. */
+/* Smallest gap between the two sides of a depth step, as a fraction of the cell's depth range; with a smaller gap the cell is
+   not divided. On a single tilted plane, depths are closer together than that. */
 static const float LEAST_GAP = 0.25f;
 
 SOFT_INLINE float least_of_all(lanes x)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edge functions of triangles (positive on one side of an edge, negative on the other), and values interpolated over triangles, for eight
-   pixels at a time. Private to soft/. */
+/* Edge functions of triangles (positive on one side of an edge, negative on the other), and interpolation over triangles, for
+   eight pixels at a time. Private to soft/. */
 #ifndef RENDER_SOFT_EDGES_H
 #define RENDER_SOFT_EDGES_H
 #include <stdbool.h>
@@ -51,8 +51,7 @@ SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;
 }
 
-/* vectors from the first corner of a triangle to the two others, divided by twice the triangle's area; plane_of() computes from them how a
-   value changes per pixel */
+/* vectors from the first corner of a triangle to the two others, divided by twice the triangle's area; input of plane_of() */
 struct slopes {
     float x1, y1, x2, y2;
 };

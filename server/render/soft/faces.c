@@ -176,8 +176,8 @@ SOFT_INLINE lanes most_of(lanes a, lanes b, lanes c)
     return lanes_most(lanes_most(a, b), c);
 }
 
-/* first_pixel() returns the first pixel whose centre lies at or after x, last_pixel() the last one whose centre lies at or before x;
-   clamped to the tile. Rows use the two functions in the same way, with y. */
+/* first_pixel() returns the first pixel whose centre is at or after x; last_pixel() the last one whose centre is at or before
+   x. Both are clamped to the tile. Rows use these functions in the same way, with y. */
 SOFT_INLINE lanes_int first_pixel(lanes x, int low)
 {
     return lanes_whole(lanes_clamp(x + 0.4999f, (float)low, 1e5f));
@@ -188,8 +188,8 @@ SOFT_INLINE lanes_int last_pixel(lanes x, int high)
     return lanes_whole(lanes_clamp(x + 0.5f, 0, (float)high + 1)) - 1;
 }
 
-/* Returns whether surfaces drawn earlier hide the face: its nearest depth is behind the farthest depth of every 8 x 8 pixel block that it
-   touches. */
+/* Returns whether surfaces drawn earlier hide the face: in every 8 x 8 pixel block that it touches, its nearest depth is behind
+   the block's farthest. */
 SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face *face, float nearest)
 {
     unsigned top = (unsigned)(face->top - tile->rect.top) / BLOCK_PX, bottom = (unsigned)(face->bottom - tile->rect.top) / BLOCK_PX;
@@ -204,8 +204,8 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
 struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    /* per triangle, -1: true. kept: the triangle will be drawn. doubtful: nearer surfaces fill the depth blocks (8 x 8 pixels) at the four
-       corners of its bounding rectangle, but the rectangle has more blocks, which are not tested yet */
+    /* Per triangle; -1: true. kept: the triangle will be drawn. doubtful: nearer surfaces fill the depth blocks (8 x 8 pixels)
+       at the four corners of its bounding rectangle, but further blocks of the rectangle are not tested yet */
     lanes_int kept, doubtful;
     lanes nearest;
 };

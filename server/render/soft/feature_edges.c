@@ -42,8 +42,8 @@ SOFT_INLINE lanes line(lanes rise)
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* Returns the coverage, 0..1, of each of eight pixels by a feature edge: above 0 where the pixel at the offset (dx, dy) is much
-   nearer to the eye. */
+/* Returns a feature edge's coverage, 0..1, of each of eight pixels. It is above 0 where the pixel at the offset (dx, dy) is
+   much nearer to the eye. */
 SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
 {
     lanes next = at(view, x + dx, y + dy), zero = { 0 }, lines = zero;

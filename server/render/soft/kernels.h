@@ -11,8 +11,8 @@ struct shaded_items;
 struct visibility_band;
 
 struct soft_kernels {
-    /* place_part projects the vertices of a part (soft/parts.h). carry_part then computes field value and light of the vertices of the
-       faces that find_faces listed, or of all vertices of the part if some faces are clipped. */
+    /* place_part projects the vertices of a part (soft/parts.h). carry_part then computes field value and light of the vertices
+       used by the faces that find_faces listed. If some faces are clipped, it does so for all vertices of the part. */
     void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     /* Lists the faces (front-facing triangles) of a part (group of triangles) that need no clipping and whose corners are all projected. */
@@ -20,7 +20,7 @@ struct soft_kernels {
     /* Draws all faces that find_faces listed: writes the depth and the mark (32-bit content, soft_impl.h) of each pixel. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
     /* Counts the closed bodies along the view ray of each pixel, for section caps, and stores the count in place of the pixel's
-       colour code (mark): a listed face that faces away from the eye adds 1, a face towards the eye subtracts 1. */
+       colour code (mark). A listed face that faces away from the eye adds 1, a face towards the eye subtracts 1. */
     void (*count_faces)(const struct soft_tile *tile);
     /* Recomputes tile->farthest, the farthest depth in each block of 8 x 8 pixels, for the given blocks of the tile. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);

@@ -63,8 +63,8 @@ static void aim_rays(struct raster *raster, const double clip[16])
    interpolation deviates from the sine of a ray's elevation by at most 0.15 n^2 / f^2. */
 static void choose_stretch(struct raster *raster)
 {
-    /* largest permitted error of the interpolated elevation of the sky, in columns of the table of backdrop colours: half a grey level at
-       the horizon, where the backdrop changes most */
+    /* maximum error of the sky's interpolated elevation, in columns of the table of backdrop colours: half a grey level at the
+       horizon, where colours change most */
     static const double most = 1;
     const float(*m)[3] = raster->ray_from_pixel;
     double step2 = 0, area2 = 0, volume = 0;

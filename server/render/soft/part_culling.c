@@ -121,7 +121,7 @@ static const struct soft_parts *parts_of(struct raster *raster, const struct gl_
 }
 
 /* Computes the eye position used to distinguish front from back faces. In an orthographic view rays are parallel, so the eye is
-   put so far away that its rays are parallel within the precision of a float. */
+   put far enough away for its rays to be parallel in float precision. */
 static void find_eye(const struct raster *raster, double eye_m[3])
 {
     const struct view_constants *constants = &raster->context->constants;

@@ -50,8 +50,8 @@ static bool add_triangle(struct parts_maker *maker, struct soft_part *part, cons
 
 /* --- sorting by direction of the normal ----------------------------------------------------------------------------------- */
 
-/* Triangles are sorted by the direction of their normals: octahedral mapping unfolds all directions into a square, and the index of a cell
-   of this square is the sort key. */
+/* Triangles are sorted by the direction of their normals. Octahedral mapping unfolds all directions into a square; the sort key
+   is the index of a cell of this square. */
 enum { DIRECTION_CELLS = 8, DIRECTION_COUNT = DIRECTION_CELLS * DIRECTION_CELLS };
 
 struct plane_of_triangle {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A level of detail cut into parts of up to 256 neighbouring triangles with locally numbered vertices, so that a part is projected, tested
-   and drawn within the L1 cache. Triangles of similar direction are adjacent in a part, so that back faces are skipped eight at a time.
-   Private to soft/. */
+/* A level of detail cut into parts of up to 256 neighbouring triangles with locally numbered vertices. A part is small enough
+   to be projected, tested and drawn within the L1 cache. Triangles of similar direction are adjacent in a part, so that back
+   faces are skipped eight at a time. Private to soft/. */
 #ifndef RENDER_SOFT_PARTS_H
 #define RENDER_SOFT_PARTS_H
 #include "render/gl/model.h"

@@ -67,8 +67,8 @@ SOFT_INLINE lanes pixel_part(const struct pixel_field *field, lanes square, lane
     return lanes_choose(nearest, one, part);
 }
 
-/* Returns the factor that lowers a sensor's weight to 0 at the end of its reach: ((reach - distance) / (reach - distance of the nearest
-   sensor))^2. Beyond the reach it is 0. */
+/* Returns the factor that lowers a sensor's weight to 0 at the end of its reach: ((reach - distance) / (reach - near))^2, where
+   `near` is the distance of the nearest sensor. Beyond the reach it is 0. */
 SOFT_INLINE lanes pixel_fade(const struct pixel_field *field, lanes square, lanes near2)
 {
     lanes none = { 0 }, one = none + 1.0f, distance = lanes_root(square);
@@ -214,8 +214,8 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pi
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
     lanes_int reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
     pixel_value_of(field, &sums, out);
-    /* view of blindness: height of the smallest hot spot at this point that a sensor would detect, field->seen * e^((d/s)^2 /
-       2), but at most field->most. d: distance of the nearest sensor; s: size of a hot spot */
+    /* view of blindness: height of the smallest hot spot here that a sensor would detect: field->seen * e^((d/s)^2 / 2), at
+       most field->most. d: distance of the nearest sensor; s: size of a hot spot */
     if (field->show == PIXEL_BLIND) {
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);

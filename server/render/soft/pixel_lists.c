@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-/* DEPTH: number of levels of squares, which have sides from 128 to 16 pixels; SHORT_LIST: number of sensors up to which a list is not
+/* DEPTH: number of levels of squares, with sides from 128 to 16 pixels. SHORT_LIST: lists of at most this many sensors are not
    shortened further */
 enum { DEPTH = 4, SHORT_LIST = 8 };
 static const float FAR_M = 1e15f, MOST_SHARE = 0.0625f, LOG2_E = 1.44269504f;
@@ -30,11 +30,11 @@ struct node {
 
 struct building {
     const struct pixel_field *field;
-    /* Bound for the interpolation `shepard`: if a sensor's weight has an error e (as a fraction of the sum of all weights), a
+    /* Bound for the interpolation `shepard`. If a sensor's weight has an error e (as a fraction of the sum of all weights), a
        value changes by at most e * (1/2 + away * |reading - middle|) * spread of the readings. For `paper`, away is 0 */
     float middle, away;
-    /* by index in the parent's list: largest change of a value if this sensor is replaced by a polynomial (becomes far), as a multiple of
-       the readings' spread; INFINITY: the sensor must stay near; -1: the sensor has no weight */
+    /* by index in the parent's list: largest change of a value if a polynomial replaces this sensor (it becomes far), in units
+       of the readings' spread. INFINITY: the sensor must stay near; -1: the sensor has no weight */
     float *errors;
     struct node nodes[DEPTH + 1]; /* by level; [0]: all sensors */
 };
@@ -102,18 +102,18 @@ SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_
     return field->paper ? weight : weight * of->strength;
 }
 
-/* Quadratic approximation of a sensor's weight within a box around the surface points of a square of pixels: value and
-   derivatives with respect to distance, at the box's centre; a bound of the error; and the smallest weight in the box. tilt:
+/* Quadratic approximation of a sensor's weight within a box around the surface points of a square of pixels. It has the value
+   and derivatives with respect to distance at the box's centre, a bound of the error, and the smallest weight in the box. tilt:
    added to the slope to lower the error. */
 struct jet {
     lanes value, first, second, tilt, error, least;
 };
 
-/* Fills *out for weights that are strength / distance^2. q: radius / distance; t: cosine of the angle, seen from the box's centre, between
-   a place and the sensor; p: distance of the place from the centre / radius. The weight at the place is the weight at the centre times the
-   sum over n of U_n(t) (p q)^n. U_n are the Chebyshev polynomials of the second kind, at most n + 1. Two terms are replaced by quadratic
-   ones: U_3(t) p^3 differs from 2 t p by at most 2, and U_4(t) p^4 from 4 (t p)^2 - 1 by at most 2. Higher terms are neglected. out->error
-   bounds all these errors. */
+/* Fills *out for weights that are strength / distance^2. q: radius / distance. p: distance of a place from the box's centre /
+   radius. t: cosine of the angle between the place and the sensor, seen from the centre. The weight at the place is the weight
+   at the centre times the sum over n of U_n(t) (p q)^n. U_n are the Chebyshev polynomials of the second kind, at most n + 1.
+   Two terms are replaced by quadratic ones: U_3(t) p^3 differs from 2 t p by at most 2, and U_4(t) p^4 from 4 (t p)^2 - 1 by at
+   most 2. Higher terms are neglected. out->error bounds all these errors. */
 SOFT_INLINE void inverse_square_jet(const struct eight_sensors *of, lanes distance, float radius, float top, struct jet *out)
 {
     lanes over = 1.0f / lanes_most(distance, all(1e-12f)), last = 1.0f / (distance + radius), q = lanes_least(radius * over, all(0.999f));
@@ -140,9 +140,9 @@ SOFT_INLINE void add_pole(struct logarithm *to, lanes times, lanes left)
     to->third += 2.0f * times * over * over * over;
 }
 
-/* Bounds the derivatives of a weight's logarithm in a box around surface points. near_m, far_m: smallest and largest distance from the
-   sensor there; factors with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at far_m. sign: sign
-   with which the second derivative of the factors evaluated at far_m is added. */
+/* Bounds the derivatives of a weight's logarithm in a box around surface points. near_m, far_m: smallest and largest distance
+   from the sensor there. Factors with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at
+   far_m. sign: sign with which the second derivative of the latter factors is added. */
 SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const struct eight_sensors *of, lanes near_m, lanes far_m,
                                           bool term, float sign)
 {
@@ -261,12 +261,11 @@ SOFT_INLINE lanes distances_of(const struct eight_sensors *of, const struct box 
     return distance;
 }
 
-/* upper bounds of the distance from any surface point of a square of pixels to the nearest sensor of each state (used, lost, no limits);
-   FAR_M: there is no sensor of that state */
+/* upper bounds of the distance from any surface point of a square of pixels to the nearest sensor that is used, lost, or has no
+   limits; FAR_M: there is none */
 struct nearest_bounds {
     float used, lost, no_limits;
-    /* base-2 logarithm of a number close to the largest weight that any sensor has at these points; weights are divided by that number to
-       fit in floats */
+    /* base-2 logarithm of roughly the largest weight of any sensor at these points; weights are divided by that weight to fit in floats */
     float top;
 };
 
@@ -296,8 +295,8 @@ struct centre_sums {
     lanes weights, by_distance, along[3];
 };
 
-/* For weights of the form strength / distance^2: adds eight sensors to the sums from which least_by_centre() computes a lower bound of the
-   sum of all weights. */
+/* Adds eight sensors to the sums from which least_by_centre() computes a lower bound of the sum of all weights. For weights of
+   the form strength / distance^2. */
 SOFT_INLINE void add_at_centre(const struct eight_sensors *of, lanes distance, float radius, float top, const lanes away[3],
                                struct centre_sums *sums)
 {
@@ -393,8 +392,8 @@ SOFT_INLINE void keep(const struct node *from, int sensor, struct node *to)
     to->count++;
 }
 
-/* Splits the list of sensors of the larger square: sensors with an error of at most `most` become far and are added to the polynomials; the
-   others stay in the list. */
+/* Splits the list of sensors of the larger square. Sensors with an error of at most `most` become far and are added to the
+   polynomials; the others stay in the list. */
 SOFT_INLINE void split(const struct building *building, const struct node *from, const struct box *box, float most, float top,
                        struct node *to)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lists of the sensors that matter in a small square of pixels, for fields of many sensors (field/pixel_field.h). The
    contributions of a list's sensors are summed at each pixel; polynomials of the position approximate the sums over all other
-   sensors. Lists are made for squares of 128, 64, 32 and 16 pixels, each from the list of the larger square around it, until
-   they are short. They are rebuilt for each picture, so they need no update when readings change. Private to soft/. */
+   sensors. Lists are made for squares of 128, 64, 32 and 16 pixels, until they are short. Each is made from the list of the
+   larger square around it. They are rebuilt for each picture, so they need no update when readings change. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_LISTS_H
 #define RENDER_SOFT_PIXEL_LISTS_H
 #include <math.h>
@@ -28,9 +28,9 @@ struct pixel_list {
     bool has_far;   /* true: at least one sensor with a reading is not in the list; the polynomials below approximate its weight */
     /* true: at least one far sensor (replaced by a polynomial) has a reading of quality Uncertain, so pixels may be marked as uncertain */
     bool has_marks;
-    /* Polynomials that replace sums over the far sensors: of their weights, of weights times values, and of the weights of those that are
-       Uncertain, all times 2^-top. `unit` is 2^top. Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z in metres from
-       `centre`. */
+    /* Polynomials that replace sums over the far sensors, all times 2^-top (`unit` is 2^top). total: sum of the weights;
+       values: sum of weights times values; marked: sum of the weights of Uncertain sensors. Coefficients of 1, x, y, z, xx, xy,
+       xz, yy, yz, zz, with x, y, z in metres from `centre`. */
     float top, unit, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
     /* mesh and position of the square of pixels (cell) for which the list is made, copied from struct pixel_cell */
     uint32_t mesh, column, row;

@@ -151,8 +151,8 @@ void soft_keep(struct soft *soft, const struct frame_context *context, struct vi
     visibility_store_give(&soft->kept[context->view->tier], context->shape, buffer, visibility_buffer_bytes(buffer), forget);
 }
 
-/* Fills the colour map of the glossy look. For each colour of the plain colour map (its middle row), a column holds the colour
-   from dark to bright, one row per brightness step, like GLOSSY in shaders/preview.frag. */
+/* Fills the colour map of the glossy look. For each colour in the middle row of the plain colour map, a column holds that
+   colour from dark to bright, one row per brightness step, like GLOSSY in shaders/preview.frag. */
 static void make_glossy(struct soft *soft, const struct shaded_colormap *colormap)
 {
     if (soft->glossy_version == colormap->version)

@@ -29,8 +29,7 @@ void ramp_fill(const struct environment_light *sky, const double up[3], const st
     for (int first = 0; first < steps; first += LANES) {
         lanes light = (LANES_IOTA + (float)first) * (1 / (float)(steps - 1));
         lanes sun = most_of(light - 0.45f, all(0)) * (1 / 0.55f);
-        /* share of the sky in a surface's light: light up to a brightness of 0.45 is assumed to come from the sky, any above
-           that from the sun */
+        /* share of the sky in a surface's light: the first 0.45 of the brightness is assumed to come from the sky, the rest from the sun */
         surface.open = (light - (float)LIGHT_SUN * sun) * (1 / (float)LIGHT_AMBIENT);
         vec c = plus(sky_shade(&around, &surface), times(surface.base, sun * ((1 - 0.5f * material->metallic) * (float)SUN_LIGHT)));
         c = tone_map(plus(c, glow));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rasterizes the faces of a part (group of neighbouring triangles, parts.h) into a tile: writes the nearest face's depth at each pixel and
-   its mark (content of a pixel, soft_impl.h). Small faces are set up eight at a time. A pixel on an edge that two triangles share belongs
-   to exactly one of the two triangles: both compute the edge function from the same end in the same way; one takes non-negative values, the
-   other negative ones. */
+/* Rasterizes the faces of a part (group of neighbouring triangles, parts.h) into a tile. Writes the nearest face's depth at
+   each pixel and its mark (content of a pixel, soft_impl.h). Small faces are set up eight at a time. A pixel on an edge that
+   two triangles share belongs to exactly one of the two. Both compute the edge function from the same end in the same way; one
+   takes non-negative values, the other negative ones. */
 #include "render/soft/kernels.h"
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
@@ -161,8 +161,8 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
-    /* last column at which a stamp (block of pixels drawn as a unit) may begin: a later one would reach beyond the tile, into pixels of
-       another thread */
+    /* last column at which a stamp (block of pixels drawn as a unit) may begin: a later one would write pixels of another tile
+       and thread */
     int last = tile->rect.right + 1 - LANES;
     for (int row = face->top; row <= face->bottom; row++) {
         size_t start = place_in(tile, tile->rect.left, row);

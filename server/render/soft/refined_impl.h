@@ -9,8 +9,8 @@
 #include "render/soft/tones.h"
 
 enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS };
-/* Sample positions relative to the pixel's centre: a rotated square, so that an edge of almost any slope passes the samples one at a time,
-   which smooths it. */
+/* Sample positions relative to the pixel's centre: a rotated square. An edge of almost any slope passes the samples one at a
+   time, which smooths it. */
 extern const float refined_samples[SAMPLES][2];
 
 /* Special ids of samples that show no triangle; other values are triangle ids (render/soft/tile.h). */

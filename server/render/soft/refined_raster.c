@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the nearest triangle at each sample of a band (group of pixel rows), tile by tile, and writes the triangles' ids and depths to rows
-   of the frame's width. */
+/* Finds the nearest triangle at each sample of a band (group of pixel rows), tile by tile. Writes the triangles' ids and depths
+   to rows of the frame's width. */
 #include <string.h>
 
 #include "render/soft/refined_impl.h"

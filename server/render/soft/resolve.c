@@ -37,7 +37,7 @@ static uint32_t mix(uint32_t a, uint32_t b, float part)
 }
 
 /* hatch(), stipple() and rule() return a pixel's coverage by dark stripes, by dots, and by horizontal lines, like the functions
-   in shaders/field.glsl; it exceeds 0.5 inside the pattern. */
+   in shaders/field.glsl. The coverage exceeds 0.5 inside the pattern. */
 static float hatch(float x, float y, float pattern_px)
 {
     float phase = (x + y) / (pattern_px * (float)HATCH_SLANT);
@@ -60,8 +60,8 @@ static float rule(float y, float pattern_px)
 
 static const float MIN_SLOPE = 1e-7f, MAX_LINE_COVERAGE = (float)ISOLINE_MOST;
 
-/* Returns how much the position of the field's value on the colour scale (0..1) changes per pixel. here: value at the pixel, as a colour
-   map column, or, on a logarithmic scale, as the field's value; by_x, by_y: change of that value per pixel. */
+/* Returns the change per pixel of the value's position on the colour scale (0..1). here: value at the pixel, as a colour map
+   column or, on a logarithmic scale, as the field's value. by_x, by_y: change of that value per pixel. */
 static float slope_of(const struct coloring *coloring, float by_x, float by_y, float here)
 {
     float slope = hypotf(by_x, by_y);
@@ -152,8 +152,8 @@ static void interpolate_place(const struct coloring *coloring, const uint32_t ve
     out->slope = slope_of(coloring, d1 * steps[0][0] + d2 * steps[1][0], d1 * steps[0][1] + d2 * steps[1][1], out->carried);
 }
 
-/* Evaluates the field at one pixel from its sensors: element 0 of the vectors is for the pixel itself, elements 1 and 2 for points one
-   pixel farther in x and y, which give the slope. */
+/* Evaluates the field at one pixel from its sensors. Element 0 of the vectors is for the pixel itself. Elements 1 and 2 are for
+   points one pixel farther in x and y, which give the slope. */
 static void evaluate_place(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, const float w[3],
                            float steps[2][2], int cell, struct shown_place *out)
 {
@@ -171,8 +171,8 @@ static void evaluate_place(const struct coloring *coloring, const struct visibil
     out->slope = slope_of(coloring, carried[1] - carried[0], carried[2] - carried[0], carried[0]);
 }
 
-/* Returns the colour of one pixel by the slower code path, because a corner of its triangle has flags (flags.h) or an isoline may cross the
-   pixel. */
+/* Returns the colour of one pixel, by the slower code path. Needed if a corner of its triangle has flags (flags.h) or an
+   isoline may cross the pixel. */
 static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
                               uint8_t row, float x, float y)
 {

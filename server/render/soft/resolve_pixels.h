@@ -76,8 +76,8 @@ SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
     return lanes_clamp((values - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
 }
 
-/* Returns the change of the field's values when the points move so that the weights of their triangle's second and third corner
-   grow by w1 and w2. Values are colour map columns or, on a logarithmic scale, field values. carried: values at the points. */
+/* Returns the change of the field's values when the weights of the triangle's second and third corner grow by w1 and w2 at each
+   point. Values are colour map columns or, on a logarithmic scale, field values. carried: values at the points. */
 SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
                                  lanes w1, lanes w2, lanes_int cells, lanes carried)
 {

@@ -235,8 +235,8 @@ SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft
     *by_y = carried_of(pixels, values.value) - carried;
 }
 
-/* Computes the marks (contents of pixels) of eight pixels as if all eight showed the field `pixels`; the caller ignores the results of
-   pixels that show something else. */
+/* Computes the marks (contents of pixels) of eight pixels as if all eight showed the field `pixels`. The caller ignores the
+   results for other pixels. */
 SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struct soft_rect *rect, lanes_int marks, int column, int row)
 {
     const struct raster *raster = pixels->raster;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves one band (group of pixel rows) of a refined frame: finds from the four samples of each pixel which surfaces it shows, and shades
-   them. Triangles that share an edge count as one surface; a pixel that shows a single surface is shaded once. Blended triangles are shaded
-   one by one and composited per sample. */
+/* Resolves one band (group of pixel rows) of a refined frame: determines from its four samples which surfaces each pixel shows,
+   and shades them. Triangles that share an edge count as one surface; a pixel that shows a single surface is shaded once.
+   Blended triangles are shaded one by one and composited per sample. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -187,8 +187,8 @@ static void layers_finish(struct layers *layers)
     mem_free(layers->alphas);
 }
 
-/* Composites the blended fragments of one pixel. over: receives the sum of their colours times coverage; under: receives, for each sample,
-   the area (0..VISIBILITY_SHARES / SAMPLES) through which the surface behind stays visible. */
+/* Composites the blended fragments of one pixel. over: receives the sum of their colours times coverage. under: receives, by
+   sample, the area through which the surface behind stays visible (0..VISIBILITY_SHARES / SAMPLES). */
 static void blend(const struct layers *layers, size_t first, size_t end, uint16_t over[3], uint16_t under[SAMPLES])
 {
     float left[SAMPLES] = { 1, 1, 1, 1 }, sum[3] = { 0 }, gone = 0;

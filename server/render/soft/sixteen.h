@@ -12,7 +12,7 @@ typedef int32_t sixteen_int __attribute__((vector_size(64), aligned(4)));
 
 enum { MANY = 16 };
 
-/* Loads the values of a stamp (block of 16 pixels drawn as a unit) from rows of `width` (4, 8 or 16) pixels that are `pitch` elements
+/* Loads the values of a stamp (block of 16 pixels drawn as a unit) from rows of `width` (4, 8 or 16) pixels, `pitch` elements
    apart. width: a compile-time constant. */
 SOFT_INLINE sixteen many_floats(const float *at, size_t pitch, int width)
 {
@@ -97,8 +97,8 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
     return (sixteen_int)_mm512_min_epi32(whole, _mm512_set1_epi32(high));
 }
 
-/* Draws one stamp (block of 16 pixels drawn as a unit), in rows of `width` pixels, by the same rules by which draw_stamp()
-   draws a stamp of eight. l: index of the face in `small`. */
+/* Draws one stamp (block of 16 pixels drawn as a unit), in rows of `width` pixels. Follows the same rules as draw_stamp(),
+   whose stamps have eight pixels. l: index of the face in `small`. */
 SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
                            bool thin)
@@ -140,8 +140,8 @@ SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sa
     }
 }
 
-/* Returns whether faces may be drawn in stamps (blocks drawn as a unit) of 16 pixels: the tile is large enough for a stamp of any shape,
-   and there are no isolines. */
+/* Returns whether faces may be drawn in stamps (blocks drawn as a unit) of 16 pixels. The tile must be large enough for a stamp
+   of any shape, and there must be no isolines. */
 SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mark_ink *ink)
 {
     return !ink->rich && tile->rect.right - tile->rect.left >= MANY - 1 && tile->rect.bottom - tile->rect.top >= 3;

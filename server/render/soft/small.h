@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small faces that need neither patterns nor perspective correction are set up eight at a time and drawn in stamps (blocks of 8 or 16
-   pixels drawn as a unit). Private to raster.c. */
+/* Small faces that need neither patterns nor perspective correction. They are set up eight at a time and drawn in stamps
+   (blocks of 8 or 16 pixels drawn as a unit). Private to raster.c. */
 #ifndef RENDER_SOFT_SMALL_H
 #define RENDER_SOFT_SMALL_H
 #include "render/soft/pixel_marks.h"
@@ -65,8 +65,8 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     };
 }
 
-/* Sets up the edge functions of eight faces, and the interpolation of depth; shaded: true: also of a and b (colour map column and row, or
-   light). at: for each face, its corners as indices in `corners`. */
+/* Sets up the edge functions of eight faces, and the interpolation of depth. shaded true: also that of a and b (colour map
+   column and row, or light). at: for each face, its corners as indices in `corners`. */
 SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corners, const lanes_int at[3], bool shaded)
 {
     lanes x[3], y[3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The software render backend: draws a preview in a single call, a refined frame in steps, or recolours a refined frame whose visibility
-   buffer is kept. */
+/* The software render backend: draws a preview in a single call and a refined frame in steps, or recolours a refined frame from
+   its visibility buffer. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/render_backend.h"
@@ -55,8 +55,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
     job->of.soft = NULL;
 }
 
-/* Sets the job's light set (baked light) and colour map, and binds its environment, before its next step: other frames may have been drawn
-   in between. Returns false on failure, logged. */
+/* Prepares the job for its next step, since other frames may have been drawn in between. Sets its light set (baked light) and
+   colour map, and binds its environment. Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     if (!renderer_light_job(renderer, job))
@@ -65,8 +65,9 @@ static bool take_up(struct renderer *renderer, struct render_job *job)
     return true;
 }
 
-/* Draws steps until the budget is spent. Starts another step only if twice the duration of the last step fits in the rest of the budget: a
-   step takes a few milliseconds on all cores, and the next may take twice as long. Returns true when no step is left. */
+/* Draws steps until the budget is spent. A step takes a few milliseconds on all cores, and the next may take twice as long as
+   the last. So another step is started only if twice the last step's duration fits in the rest of the budget. Returns true when
+   no step is left. */
 static bool step(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     struct refined *refined = job->of.soft->refined;

@@ -99,8 +99,8 @@ struct soft_found {
 struct soft_light {       /* copy, in main memory, of a light set (baked light) that is on the GPU */
     uint64_t id;          /* id of the light set (baked light) that was copied; 0: the entry is empty */
     uint8_t (**baked)[4]; /* baked light, indexed by asset and then by vertex */
-    /* shadow map of the sun in square tiles; a tile takes two cache lines and is stored row by row, so that neighbouring texels mostly
-       share cache lines */
+    /* shadow map of the sun in square tiles. A tile takes two cache lines and is stored row by row, so that neighbouring texels
+       mostly share cache lines */
     uint16_t *sun_map;
     uint32_t *sun_bounds; /* by tile of the shadow map: smallest texel | largest texel << 16 */
     int sun_map_px;       /* width and height of the shadow map on the GPU, in texels */
@@ -112,8 +112,8 @@ struct soft_light {       /* copy, in main memory, of a light set (baked light) 
     int ground_px; /* width and height, in texels, of the ground's light maps `ground` and `open` */
     uint64_t used;
 };
-/* Width of a tile of the shadow map. Lookups read a texel with its right and lower neighbours, so tiles overlap by one texel: the last row
-   and column of a tile are repeated as the first of the next. */
+/* Width of a tile of the shadow map. Lookups read a texel with its right and lower neighbours, so tiles overlap by one texel: a
+   tile's last row and column are repeated as the first of the next tile. */
 enum { SUN_TILE_PX = 8, SUN_TILE_STEP_PX = SUN_TILE_PX - 1, SUN_TILE_TEXELS = SUN_TILE_PX * SUN_TILE_PX };
 static inline uint32_t soft_sun_bounds(const uint16_t texels[SUN_TILE_TEXELS])
 {
@@ -155,8 +155,8 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     float reach_px;
     float *depth;
     uint32_t *marks;
-    /* by pixel: id of the triangle that it shows (first_id of the part + index in the part); valid where the pixel's mark (colour code) is
-       not 0; NULL: not needed */
+    /* by pixel: id of the triangle that it shows: first_id of the part + index in the part. Valid where the pixel's mark
+       (colour code) is not 0; NULL: not needed */
     uint32_t *ids;
     size_t pixel_capacity;
     uint8_t *out;
@@ -178,8 +178,8 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     size_t cell_capacity;
     bool finds_cells;
     struct depth_lens lens;
-    /* length in pixels of the stretches over which the sky's elevation is interpolated: a power of two from SOFT_STRETCH_LEAST to
-       SOFT_STRETCH_MOST; 1: the elevation is computed for each pixel */
+    /* length in pixels of the stretches over which the sky's elevation is interpolated: a power of two from SOFT_STRETCH_LEAST
+       to SOFT_STRETCH_MOST. 1: the elevation is computed for each pixel */
     int stretch_px;
 };
 
@@ -228,8 +228,8 @@ void raster_aim(struct raster *raster, const struct light *light); /* computes t
 /* Prepares for the depth grid (coarse depth for clients, render/depth_grid.h), if the frame gets one; call it after raster_aim(). Without
    memory for the cells, the frame has no grid. */
 void raster_aim_depth(struct raster *raster, const struct light *light);
-/* Computes the cells (squares of pixels) of the depth grid in a rectangle of the frame, whose top left corner must be the corner of a cell.
-   Runs on a worker. */
+/* Computes the depth grid's cells (squares of pixels) in a rectangle of the frame. The rectangle's top left corner must be the
+   corner of a cell. Runs on a worker. */
 void raster_find_cells(const struct raster *raster, const struct soft_rect *rect);
 /* Makes the frame's depth grid (coarse depth for clients) from raster->cells; the caller owns it. NULL: the frame gets no grid, or memory
    ran out. */
@@ -280,8 +280,8 @@ struct soft_triangle {
 /* Finds the triangle with this id among the found parts (groups of triangles). On entry triangle->mesh is the index of the mesh to try
    first: that of a neighbouring pixel, or 0. */
 void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle);
-/* Computes the weights of the triangle's three corners at any point of the frame, up to a common factor: weight i = weights[i][0] x +
-   weights[i][1] y + weights[i][2]. vertices: indices in the asset file. */
+/* Computes the weights of the triangle's three corners at any point of the frame, up to a common factor. Weight i is
+   weights[i][0] x + weights[i][1] y + weights[i][2]. vertices: indices in the asset file. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
 /* draws the outline of the selected asset, whose pixels are those with a mark (colour code); overwrites raster->depth */
 void raster_outline(const struct raster *raster);

@@ -88,7 +88,7 @@ SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
         e[k] = lanes_choose(outside, best[k], most_of(e[k], all(0)));
 }
 
-/* Computes the perspective-correct weights of the triangle's corners at each point, clamped to the triangle, and moves the
+/* Computes the perspective-correct weights of the triangle's corners at each point, and clamps them to the triangle. Moves the
    point to the position given by the weights. */
 SOFT_INLINE void weigh(struct eight_points *spot, const struct corners *corners)
 {

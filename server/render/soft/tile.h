@@ -22,8 +22,8 @@ struct soft_corners { /* vertices of a part with the members of struct soft_vert
     int count, placed;  /* number of vertices; placed: those that clipping did not add, which come first */
     uint32_t all_flags; /* the OR of all flags */
     bool flat;          /* perspective is negligible */
-    /* true: some vertices are in front of the near plane, or beyond the guard band (a border around the frame, clip.h), so faces must be
-       clipped */
+    /* true: some vertices are in front of the near plane or beyond the guard band (a border around the frame, clip.h), so faces
+       must be clipped */
     bool cut;
 };
 
@@ -104,8 +104,8 @@ bool soft_is_hole(const struct soft_cutout *cutout, float x, float y);
 /* Appends a fragment (a transparent triangle at one sample of a pixel) to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
-/* Counts, in place of the pixels' colour codes (marks), the closed bodies to which the triangles of a part (group of triangles) belong: +1
-   where a ray leaves a body, -1 where it enters one. */
+/* Counts the closed bodies bounded by the triangles of a part (group of triangles): +1 where a ray leaves a body, -1 where it
+   enters one. The counts replace the pixels' colour codes (marks). */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
 /* turns the counts of closed bodies that soft_count_part() left in raster->marks into section caps: their colour codes (marks) and depth */
 void soft_cap_tile(struct soft_tile *tile);

@@ -124,7 +124,7 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
 
 struct band_settling {
     struct visibility_buffer *buffer;
-    /* by index of the vertex among all vertices of the frame: 0: no pixel shows the vertex; otherwise 1 + its index among the visible
+    /* by index among all vertices of the frame: 0: no pixel shows the vertex; otherwise 1 + its index among the visible
        vertices, which are kept */
     uint32_t *numbers;
 };
@@ -251,8 +251,8 @@ static size_t mesh_of_vertex(const struct visibility_buffer *buffer, uint32_t ve
     size_t after;
     if (vertex >= meshes[likely].first_vertex && vertex - meshes[likely].first_vertex < meshes[likely].vertex_count)
         return likely;
-    /* meshes without vertices have the same first vertex as the next mesh; the binary search ends at the last mesh with this first vertex,
-       which has vertices */
+    /* meshes without vertices have the same first vertex as the next mesh. The binary search ends at the last mesh with this
+       first vertex, which has vertices */
     search_sorted(after, buffer->mesh_count, meshes[after].first_vertex <= vertex);
     return after - 1;
 }

@@ -9,9 +9,9 @@
 #include "render/frame_context.h"
 #include "render/soft/pixel_lists.h"
 
-/* Values of surfaces[], by pixel. VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED |
-   index of a struct visibility_mixed in the band (group of pixel rows); or, without a flag, the pixel shows a field, and the value is the
-   index of its triangle in the band. */
+/* Values of surfaces[], by pixel. VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16).
+   VISIBILITY_MIXED | index of a struct visibility_mixed in the band (group of pixel rows). Without a flag, the pixel shows a
+   field, and the value is the index of its triangle in the band. */
 #define VISIBILITY_FIXED 0x80000000u
 #define VISIBILITY_MIXED 0x40000000u
 
@@ -35,7 +35,7 @@ struct visibility_part { /* surface with a field, in a pixel that shows several 
 enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
 struct visibility_mixed {
-    /* blue_red: sum of the colours that no reading changes, each weighted by the area it covers, 16 bits each for blue and red;
+    /* blue_red: sum of the colours that no reading changes, each weighted by the area it covers, 16 bits each for blue and red.
        first_part: index of the pixel's first surface with a field among the `parts` of the band */
     uint32_t blue_red, first_part;
     uint16_t green;  /* the same sum for green */
@@ -43,8 +43,8 @@ struct visibility_mixed {
     uint8_t part_count;
 };
 
-/* Corner weights of a triangle at a point (x, y) of the frame: p1 / s for the second corner and p2 / s for the third, where p1, p2 and s
-   are linear in x and y. w1_x, w1_y: slopes of p1; w2_x, w2_y: slopes of p2; s = sum_x x + sum_y y + sum. */
+/* Corner weights of a triangle at a point (x, y) of the frame: p1 / s for the second corner and p2 / s for the third. p1, p2
+   and s are linear in x and y. w1_x, w1_y: slopes of p1; w2_x, w2_y: slopes of p2; s = sum_x x + sum_y y + sum. */
 struct visibility_slopes {
     float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
 };
@@ -58,8 +58,8 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
     /* indices of the triangles' corners: at first among all vertices of the frame; visibility_buffer_settle() changes them to indices among
        the visible vertices */
     uint32_t (*triangles)[3];
-    /* by triangle: field value at the first corner, difference of the second corner's value from it, difference of the third corner's;
-       fourth element: 0, or, if the mesh's field is evaluated at pixels, 1 + index of the mesh */
+    /* by triangle: [0] field value at the first corner; [1] and [2] how much the values at the second and third corner exceed
+       it; [3] 0, or, if the mesh's field is evaluated at pixels, 1 + index of the mesh */
     float (*corners)[4];
     struct visibility_place *places; /* corner position and edges of each triangle; only filled in if a field is evaluated at pixels */
     /* by triangle: slopes of the corner weights over the frame; only filled in where there are isolines */
@@ -105,14 +105,14 @@ struct visibility_buffer {
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     bool evaluates; /* true: the field of at least one mesh is evaluated at pixels */
-    /* true: resolve_read() must find the cells (squares of pixels that show fields of many sensors) again, because the set of meshes with
-       such fields has changed */
+    /* true: resolve_read() must find the cells (squares of pixels with fields of many sensors) again, because the set of such
+       meshes has changed */
     bool finds_cells;
     /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) with which the values in `carried` were computed */
     float scale[4];
     uint32_t *vertices; /* vertices that some pixel shows, mesh by mesh: index of each in the asset's file */
-    /* value at each visible vertex, which is interpolated over triangles: column of the colour map (on a logarithmic scale the field's
-       value); NAN: a flag of the vertex selects a pattern */
+    /* value at each visible vertex, interpolated over triangles: column of the colour map or, on a logarithmic scale, the
+       field's value. NAN: a flag of the vertex selects a pattern */
     float *carried;
     float *plain;                 /* the values of `carried`, also at vertices where `carried` is NAN because a pattern is shown */
     uint32_t *flags;              /* from soft_flags() */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds, in stored visibility buffers, the cells (squares of pixels) that show fields of many sensors, and the bounding boxes of the
-   surface points that each cell shows (pixel_lists.h). */
+/* Finds the cells (squares of pixels) that show fields of many sensors in stored visibility buffers. Also finds the bounding
+   boxes of the surface points that each cell shows (pixel_lists.h). */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,8 +10,8 @@
 struct cell_search {
     const struct visibility_buffer *buffer;
     struct visibility_band *band;
-    /* index in band->cells of the first cell (square of pixels) at this column and row; if several meshes are visible there, each has a
-       cell, one after the other */
+    /* index in band->cells of the first cell (square of pixels) at this column and row. If several meshes are visible there,
+       each has a cell, one after the other */
     size_t first;
     uint16_t column, row;
 };

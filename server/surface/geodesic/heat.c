@@ -24,7 +24,7 @@ struct heat {
     cholmod_common common;
 };
 
-/* Returns the regularisation of each row of the heat method's matrices, which is added to the diagonal element: REGULARISATION
+/* Returns the regularisation added to the diagonal element of each row of the heat method's matrices. It is REGULARISATION
    times the area at the row's point, divided by the area of the point's connected component. The caller frees the array. */
 static double *regularisation(const struct heat *heat, const uint32_t *component)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The heat method (Crane, Weischedel, Wardetzky 2013) on an intrinsic triangulation: approximate geodesic distances from two sparse linear
-   systems, whose matrices are factored once and solved for many sources at a time. */
+/* The heat method (Crane, Weischedel, Wardetzky 2013) on an intrinsic triangulation: approximate geodesic distances from two
+   sparse linear systems. Their matrices are factored once and solved for many sources at a time. */
 #ifndef SURFACE_GEODESIC_HEAT_H
 #define SURFACE_GEODESIC_HEAT_H
 #include "base/log/log.h"
@@ -8,8 +8,9 @@
 
 struct heat;
 
-/* Builds and factors the systems (M + t L) u = source (u: heat, M: areas, L: Laplacian, t = time_m2) and L d = div(grad u / |grad u|) (d:
- * distance). component[point]: connected component of the point. `in` must outlive the result. Returns NULL when out of memory, logged. */
+/* Builds and factors the systems (M + t L) u = source and L d = div(grad u / |grad u|). M: areas, L: Laplacian, t = time_m2, u:
+ * heat, d: distance. component[point]: connected component of the point. `in` must outlive the result. Returns NULL when out of
+ * memory, logged. */
 struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint32_t *component, double time_m2);
 /* Frees the factored systems and sets *heat to NULL. *heat may be NULL. */
 void heat_destroy(struct heat **heat);

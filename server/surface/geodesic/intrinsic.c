@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the intrinsic Delaunay triangulation (intrinsic.h): connects triangles to patches across edges with two faces, and flips these
-   edges until the triangulation is Delaunay, as far as edges can be flipped. */
+/* Builds the intrinsic Delaunay triangulation (intrinsic.h). Connects triangles to patches across edges with two faces. Flips
+   these edges, where possible, until the triangulation is Delaunay. */
 #include "surface/geodesic/intrinsic.h"
 
 #include <math.h>
@@ -114,8 +114,9 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     return true;
 }
 
-/* Lengthens all sides of all triangles by the same small amount. In each triangle, two sides together then exceed the third by at least
- * MOLLIFY mean edge lengths, so that no triangle is flat and its cotangents are finite (Sharp & Crane 2020, section 4.5). */
+/* Lengthens all sides of all triangles by the same small amount. In each triangle, two sides together then exceed the third by
+ * at least MOLLIFY mean edge lengths. So no triangle is flat, and its cotangents are finite (Sharp & Crane 2020, section 4.5).
+ * */
 static void mollify(struct intrinsic *in)
 {
     double sum = 0, lack = 0;

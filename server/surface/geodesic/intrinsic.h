@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Intrinsic Delaunay triangulation of a mesh: edge lengths instead of positions; edges are flipped within patches (triangles connected by
- * edges with two faces) until no cotangent weight is negative (Bobenko & Springborn 2007; Fisher et al. 2007). Edges with one face, or more
- * than two, are never flipped. */
+/* Intrinsic Delaunay triangulation of a mesh, which has edge lengths instead of positions. Edges are flipped within patches
+ * (triangles connected by edges with two faces) until no cotangent weight is negative (Bobenko & Springborn 2007; Fisher et al.
+ * 2007). Edges with one face, or more than two, are never flipped. */
 #ifndef SURFACE_GEODESIC_INTRINSIC_H
 #define SURFACE_GEODESIC_INTRINSIC_H
 #include "surface/mesh/trimesh.h"
@@ -22,7 +22,8 @@ void intrinsic_init(struct intrinsic *in, const struct trimesh *mesh);
 /* Frees the triangulation. */
 void intrinsic_finish(struct intrinsic *in);
 
-/* Places a triangle with the side lengths l0, l1, l2 in the plane, with corners at (0, 0), (l0, 0) and (x, y), and writes x and y. */
+/* Places a triangle with the side lengths l0, l1, l2 in the plane: corners 0 and 1 at (0, 0) and (l0, 0). Writes the position (x,
+   y) of corner 2. */
 void intrinsic_layout(const double lengths[3], double *x, double *y);
 
 #endif

@@ -9,8 +9,8 @@
 #include "surface/geodesic/intrinsic.h"
 
 struct laplacian_slope { /* by triangle: gradients of the hat functions of its three corners in the triangle's plane, and its area */
-    /* gradients in the triangle's plane, as components: (x1, y1) of corner 1, (0, y2) of corner 2, and minus the sum of both for corner 0;
-       area: of the triangle */
+    /* gradients in the triangle's plane: (x1, y1) of corner 1, (0, y2) of corner 2, minus the sum of both for corner 0. area:
+       of the triangle */
     double x1, y1, y2, area;
 };
 
@@ -27,8 +27,8 @@ struct laplacian {
 bool laplacian_init(struct laplacian *laplacian, const struct intrinsic *in);
 /* Frees the arrays. */
 void laplacian_finish(struct laplacian *laplacian);
-/* Starts CHOLMOD with settings for factoring Laplacians: no printed messages, AMD as the only ordering of the rows, and single-threaded
- * BLAS, since the workers use all cores. */
+/* Starts CHOLMOD with settings for factoring Laplacians: no printed messages, and AMD as the only ordering of the rows. BLAS
+ * gets a single thread, since the workers use all cores. */
 void laplacian_start(cholmod_common *common);
 /* Returns the matrix diag(mass) + stiffness * L (L: cotangent Laplacian), stored as the lower triangle of a symmetric matrix. The caller
  * frees it. NULL: out of memory. */

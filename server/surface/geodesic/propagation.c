@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares a mesh for the computation of geodesic distances, which pass from each point to its neighbours: lists the neighbours and
+/* Prepares a mesh for computing geodesic distances, which pass from each point to its neighbours. Lists the neighbours and
    triangles around each point in angular order (its fans). */
 #include "surface/geodesic/propagation.h"
 
@@ -8,9 +8,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* number of buckets of the priority queue per mean edge length. Points in one bucket are processed in any order, so buckets must be shorter
-   than most edges, even in meshes with many needle-shaped triangles: with 32 instead of 512 buckets, mean errors on such a mesh were 2 to 3
-   times as large. */
+/* number of buckets of the priority queue per mean edge length. Points in one bucket are processed in any order, so buckets
+   must be shorter than most edges, even in meshes with many needle-shaped triangles. On such a mesh, 32 instead of 512 buckets
+   made mean errors 2 to 3 times as large. */
 #define STEPS_PER_EDGE 512.0
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)

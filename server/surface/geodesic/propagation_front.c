@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "surface/geodesic/propagation.h"
 
-/* smallest barycentric weight of a source; if the source lies on a corner or edge, it is moved into the triangle so that all weights have
-   at least this value */
+/* smallest barycentric weight of a source. A source on a corner or edge is moved into the triangle so that all weights have at
+   least this value */
 #define MIN_WEIGHT 1e-6
 /* lay_out_beyond() follows a straight line to find the triangle that has a corner. The line ends inside the triangle: at this fraction
    of the way from the corner to the middle of the opposite side. */
@@ -63,9 +63,9 @@ static inline void fetch_fans(const struct propagation *propagation, uint32_t po
         __builtin_prefetch(from);
 }
 
-/* Lowers a point's distance to the offered distance, but not below the straight-line distance. An offer can be shorter than the straight
- * line if the distances of an edge's two ends come from different paths around a fold or a rod. The point of the plane that fits both
- * distances is then too near. */
+/* Lowers a point's distance to the offered distance, but not below the straight-line distance. An offer can be shorter than
+ * that if the distances of an edge's two ends come from different paths around a fold or a rod. The point of the plane that
+ * fits both distances is then too near. */
 static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m)
 {
     float distance_m = offered_m < front->straight_m[point] ? front->straight_m[point] : offered_m;
@@ -108,10 +108,10 @@ SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
     *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
 }
 
-/* Computes, in each lane, the distance that reaches point c through the edge from p to b. p is at distance d from the source, b at db; the
- * edge has length pb, the side from p to c length pc and the cosine and sine of its angle to the edge. The source is placed in the
- * triangle's plane, beyond the edge. The result is INFINITY where the ray from the source to c does not pass between p and b. It is also
- * INFINITY where db exceeds `reached`, because such a distance is not final. */
+/* Computes, in each lane, the distance at which the path through the edge from p to b reaches point c. p is at distance d from
+ * the source, b at db. The edge has length pb, the side from p to c length pc and the cosine and sine of its angle to the edge.
+ * The source is placed in the triangle's plane, beyond the edge. The result is INFINITY where the ray from the source to c does
+ * not pass between p and b. It is also INFINITY where db exceeds `reached`, because such a distance is not final. */
 SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
                             const lanes *cosine, const lanes *sine, lanes *out)
 {
@@ -128,9 +128,9 @@ SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
     choose(&seen, &straight, &infinite, out);
 }
 
-/* Computes the distance that point p, at distance d, offers to each neighbour in a fan: the shorter of two. One is d plus the edge's
- * length. The other passes through the triangle shared with the previous or next neighbour, and exists only if that neighbour is nearer to
- * the source than this one. */
+/* Computes the distance that point p, at distance d, offers to each neighbour in a fan: the shorter of two. One is d plus the
+ * edge's length. The other passes through the triangle shared with the previous or next neighbour. It exists only if that
+ * neighbour is nearer to the source than this one. */
 SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
                          const lanes *sine, lanes *out)
 {
@@ -225,8 +225,7 @@ SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn
  * sees the part of the edge in directions between low and high. */
 struct window {
     double l[2], r[2], low[2], high[2];
-    /* edge as a side of the triangle that lies behind it, seen from the source: 3 * triangle + side; in that triangle the side runs from r
-       to l */
+    /* edge as a side of the triangle behind it, seen from the source: 3 * triangle + side. In that triangle the side runs from r to l */
     uint32_t entered;
 };
 
@@ -325,7 +324,8 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
     return false;
 }
 
-/* Computes the position in the plane, with y >= 0, of a point at the distances to_r_m from r at (0, 0) and to_l_m from l at (side, 0). */
+/* Computes the position in the plane, with y >= 0, of the point at distance to_r_m from r, which is at (0, 0), and to_l_m from l,
+   which is at (side, 0). */
 static void place_above(double side, double to_r_m, double to_l_m, double out[2])
 {
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
@@ -383,8 +383,9 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
     return false;
 }
 
-/* Sets the exact distances of points near the source that a straight line on the unfolded surface reaches. Propagation alone would be wrong
-   there: a ray may pass between two points that are farther from the source than the ray's end, so they are processed after it. */
+/* Sets the exact distances of points near the source that a straight line on the unfolded surface reaches. Propagation alone
+   would be wrong there. A ray may pass between two points that are farther from the source than the ray's end, and are
+   therefore processed after it. */
 static void look_around(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
 {
     const struct intrinsic *in = propagation->in;
@@ -409,7 +410,7 @@ static void look_around(const struct propagation *propagation, struct propagatio
     }
 }
 
-/* Computes the straight-line distances from the source to all points in advance, because offers access points in random order, where
+/* Computes the straight-line distances from the source to all points in advance. Offers access points in random order, where
  * computing them would wait for memory. */
 SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_front *front)
 {

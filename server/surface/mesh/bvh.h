@@ -39,7 +39,7 @@ bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m
 void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),
                   void *arg);
 
-/* Calls visit(arg, tri, t) for every triangle that the ray hits at origin + t * direction for a t > 0, in no particular order. */
+/* Calls visit(arg, tri, t), in no particular order, for every triangle that the ray hits at origin + t * direction with t > 0. */
 void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
              void *arg);
 

@@ -6,14 +6,14 @@
 
 #define BVH_WIDE 8
 #define BVH_IS_TRIANGLE 0x80000000u /* flag in bvh_wide.child: the rest of the number is a triangle's index, not a node's */
-/* maximum number of entries on the traversal stack: each level of the tree leaves at most seven entries there, and nodes with eight
+/* maximum number of entries on the traversal stack: each level of the tree leaves at most seven there, and nodes with eight
    children form at most 10 levels */
 #define BVH_STACK 256
 
 struct bvh_node {
     double low[3], high[3];
-    /* leaf: its `count` triangles begin at order[first]; inner node: count is 0, `first` is the index of the right child, and the left
-       child follows the node directly */
+    /* leaf: its `count` triangles begin at order[first]. Inner node: count is 0, `first` is the index of the right child, and
+       the left child follows the node directly */
     uint32_t first, count;
 };
 

@@ -251,8 +251,9 @@ static inline bool is_skipped(const struct nearest_search *s, uint32_t child)
     return (child & BVH_IS_TRIANGLE ? s->bvh->label[child & ~BVH_IS_TRIANGLE] : s->bvh->wide_label[child]) == s->skipped;
 }
 
-/* Pushes the children whose box is within the limit onto the stack, the nearest on top. An entry has the squared distance in the upper half
- * (bits of non-negative floats sort like the floats) and the child's index in the lower half. Returns the number of entries pushed. */
+/* Pushes the children whose box is within the limit onto the stack, the nearest on top. An entry has the bits of the squared
+ * distance in the upper half, since non-negative floats sort like their bits. The lower half is the child's index. Returns the
+ * number of entries pushed. */
 SIMD_BODY size_t push_near(const struct nearest_search *s, look *look_at, const struct bvh_wide *node, const float p[3], float limit2,
                            uint64_t *stack)
 {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decimates a mesh (decimate.h): collapses an edge onto one of its ends where this only lowers the number of triangles and
-   leaves the shape of the surface unchanged. */
+/* Decimates a mesh (decimate.h): collapses an edge onto one of its ends where this leaves the shape of the surface unchanged. */
 #include "surface/mesh/decimate.h"
 
 #include <string.h>
@@ -19,8 +18,8 @@ struct thin {
     const struct decimate_params *params;
     char *hidden, *gone; /* per triangle */
     uint32_t *plane;
-    /* lists of the triangle corners (3 * triangle + corner) at each point: heads, tails: by point, first and last corner of its list; next:
-     * by corner, next corner of the list */
+    /* lists of the triangle corners (3 * triangle + corner) at each point. heads, tails: by point, first and last corner of its
+     * list; next: by corner, next corner of the list */
     uint32_t *heads, *tails, *next;
 };
 
@@ -164,8 +163,8 @@ static uint32_t find_collapse_target(const struct thin *thin, const struct star 
     return best;
 }
 
-/* Merges the planes (groups of coplanar model triangles) of all triangles around the removed point: the collapse may have moved a piece of
-   one model triangle onto another. */
+/* Merges the planes (groups of coplanar model triangles) of all triangles around the removed point, because the collapse may
+   have moved a piece of one model triangle onto another. */
 static void join_planes(struct thin *thin, const struct star *star)
 {
     for (size_t i = 0; i < star->count; i++)

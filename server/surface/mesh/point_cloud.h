@@ -7,9 +7,9 @@
 
 /* maximum number of neighbours requested per point */
 #define POINT_CLOUD_MAX_K 256
-/* Calls visit(arg, point, other, distance_m) for every ordered pair of points within radius_m of each other, for each point the nearest
- * first. Requests k neighbours of each point from FLANN and doubles k until the farthest lies beyond the radius, all points are found, or k
- * is POINT_CLOUD_MAX_K. Returns that k, or -1 if out of memory. */
+/* Calls visit(arg, point, other, distance_m) for every ordered pair of points within radius_m of each other. For each point,
+ * the nearest others come first. Requests k neighbours of each point from FLANN and doubles k until the farthest lies beyond
+ * the radius, all points are found, or k is POINT_CLOUD_MAX_K. Returns that k, or -1 if out of memory. */
 int point_cloud_neighbours(const double (*points)[3], size_t count, double radius_m,
                            void (*visit)(void *arg, size_t point, size_t other, double distance_m), void *arg);
 

@@ -41,8 +41,8 @@ uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
 /* Appends a triangle of three points that is a piece of the model's triangle `source`. */
 void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t source);
 
-/* Finds points to merge: writes to target[point] the index of an earlier point within within_m of the point, or the point's own index if
- * there is none. A point that is another's target is its own target. Returns false if out of memory. */
+/* Finds points to merge. Writes to target[point] the index of an earlier point within within_m of the point, or the point's own
+ * index if there is none. A point that is another's target is its own target. Returns false if out of memory. */
 bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target);
 /* Replaces each point i by point target[i]. Drops triangles that lost their area (adds their number to *degenerate) or became duplicates
    (adds to *repeated). */

@@ -21,8 +21,8 @@ struct borders {
 
 /* Collects all border edges of a mesh, and the points on them. Keeps no pointer to the mesh. Free with borders_finish(). */
 void borders_init(struct borders *borders, const struct trimesh *mesh);
-/* Collects only those border edges of `seen` (the visible triangles) whose other faces are hidden, and the reach (distance up to which a
- * part counts as touching) of the parts at them. */
+/* Collects only those border edges of `seen` (the visible triangles) whose other faces are hidden. Also finds the reach
+ * (distance up to which a part counts as touching) of the parts at these edges. */
 void borders_init_rims(struct borders *borders, const struct trimesh *seen, const struct trimesh *hidden, const struct body_parts *parts);
 /* Frees the lists. */
 void borders_finish(struct borders *borders);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds faces of a model that may cross other faces (crossing_faces.h), by testing pairs. Two faces do not cross if the plane of one face
-   separates them, or if the segment in which one face cuts the plane of the other is outside one side of that other face. */
+/* Finds faces of a model that may cross other faces (crossing_faces.h), by testing pairs. Two faces do not cross if the plane
+   of one face separates them. Neither do they cross if the segment in which one face cuts the other's plane is outside one side
+   of that other face. */
 #include "surface/repair/crossing_faces.h"
 
 #include "base/math/vec.h"
@@ -54,8 +55,8 @@ static bool lies_to_one_side(const struct crossing_face *plane, const struct cro
     return high_m <= clear_m || low_m >= -clear_m;
 }
 
-/* Returns how far a point in the plane of a face is outside the face's side from corner i to the next; negative: the point is
- * inside that side. */
+/* Returns how far a point in a face's plane is outside the face's side from corner i to the next; negative: the point is inside
+ * that side. */
 static double beyond_side(const struct crossing_face *face, int i, const double place[3])
 {
     double along[3], out[3], from[3];
@@ -66,8 +67,8 @@ static double beyond_side(const struct crossing_face *face, int i, const double 
     return vec_dot(from, out);
 }
 
-/* Returns whether a face lies entirely on one side of the line from a to b, which is in the face's plane, at least margin_m away from
- * it. */
+/* Returns whether a face lies entirely on one side of the line from a to b, at least margin_m away from it. The line is in the
+ * face's plane. */
 static bool lies_beside(const struct crossing_face *face, const double a[3], const double b[3], double margin_m)
 {
     double along[3], across[3], low_m = INFINITY, high_m = -INFINITY;
@@ -93,8 +94,8 @@ static int shared_corner(const struct crossing_face *face, const struct crossing
     return -1;
 }
 
-/* Returns whether the line segment in which a face intersects the plane of `other` stays clear of `other`, except for a corner that both
- * faces share. heights_m: heights of the face's corners above that plane. */
+/* Returns whether the line segment in which a face intersects the plane of `other` stays clear of `other`, except at a corner
+ * of both faces. heights_m: heights of the face's corners above that plane. */
 static bool cuts_beside(const struct crossing_face *face, const double heights_m[3], const struct crossing_face *other, double margin_m)
 {
     const int shared = shared_corner(face, other), from = shared_corner(other, face);

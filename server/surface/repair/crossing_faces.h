@@ -9,9 +9,9 @@
    reach (distance up to which it counts as touching, parts.h). */
 #define CROSSING_CLEAR 0.05
 
-/* Returns an array by model triangle: 1 if an edge of one of its triangles in parts->solid (the surface before sampling) may pass through
- * another face, else 0. May flag a face that does not cross, but misses none that does. Faces of one part that only share a corner or an
- * edge do not cross. NULL: no face crosses. The caller frees the array (mem_free). Thread: any. */
+/* Returns by model triangle: 1 if an edge of one of its triangles in parts->solid (the surface before sampling) may pass
+ * through another face, else 0. May flag a face that does not cross, but misses none that does. Faces of one part that only
+ * share a corner or an edge do not cross. NULL: no face crosses. The caller frees the array (mem_free). Thread: any. */
 char *crossing_faces_find(const struct body_parts *parts);
 
 #endif

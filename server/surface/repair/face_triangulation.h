@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangulation of one face (triangle of the surface) into which points and edges are inserted: points in the face's plane, and triangles
- * between them, all with the same orientation. */
+/* Triangulation of one face (triangle of the surface) into which points and edges are inserted. It has points in the face's
+ * plane, and triangles between them, all with the same orientation. */
 #ifndef SURFACE_REPAIR_FACE_TRIANGULATION_H
 #define SURFACE_REPAIR_FACE_TRIANGULATION_H
 #include <stddef.h>

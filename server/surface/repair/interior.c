@@ -14,14 +14,14 @@
 /* A region is a set of points that are connected without passing another part. Only one in VOTE_EVERY triangles of a region is tested for
    being inside; if the results agree, they hold for the whole region. */
 #define VOTE_EVERY 16
-/* distance of test points from a triangle that lies on another part's surface, to both sides; in multiples of the reach (distance up to
-   which a part counts as touching, parts.h) */
+/* distance of test points from a triangle on another part's surface, on each side. Unit: reach (distance up to which a part
+   counts as touching, parts.h) */
 #define BESIDE 1.5
-/* distance of test points from a triangle that may be inside its own part, to both sides; in multiples of the reach (distance up to which a
+/* distance of test points from a triangle that may be inside its own part, on each side. Unit: reach (distance up to which a
    part counts as touching, parts.h) */
 #define BARELY 0.05
 #define FLUSH 0.9 /* two touching faces count as lying on each other if the cosine between their normals is at least this */
-/* minimum height of a triangle for its normal to count as reliable, in multiples of the reach (distance up to which a part counts as
+/* minimum height of a triangle for its normal to count as reliable. Unit: reach (distance up to which a part counts as
    touching, parts.h) */
 #define SLIVER 2.0
 
@@ -198,8 +198,8 @@ struct interior_face {
     const struct solid *own;
 };
 
-/* Returns whether the face separates two bodies: the inside of `one` is on one side of the face, the inside of `other` on the other
-   side. */
+/* Returns whether the face separates two bodies: whether the inside of `one` is on one side of the face, and the inside of
+   `other` on the other. */
 static bool is_between(const struct interior_face *face, const double normal[3], const struct solid *one, const struct solid *other,
                        double beside_m, double same_m)
 {
@@ -230,8 +230,8 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* lies: the tested face is parallel to the nearest face of the part, and so lies on it; flush: the same, but true also if the tested
-       face is a sliver, whose normal is arbitrary */
+    /* lies: the tested face is parallel to the nearest face of the part, and so lies on it. flush: the same, but also true if
+       the tested face is a sliver, whose normal is arbitrary */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;
@@ -352,9 +352,9 @@ static void ask(struct interior_search *search, struct workers *workers, const s
     workers_for(workers, count, 256, search_some, search);
 }
 
-/* Completes the search for hidden triangles in regions (sets of connected points) of which only a sample was tested, as a few other
-   triangles may differ from the sample. Wherever hidden and visible triangles of a region meet at a point, tests all triangles at that
-   point. Repeats this until all triangles at such points are tested. */
+/* Completes the search for hidden triangles in regions (sets of connected points) of which only a sample was tested, since
+   other triangles may differ from the sample. Wherever hidden and visible triangles of a region meet at a point, tests all
+   triangles at that point. Repeats this until all triangles at such points are tested. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;

@@ -7,19 +7,20 @@
 
 enum interior_kind { INTERIOR_NOT, INTERIOR_INSIDE, INTERIOR_ACROSS };
 
-/* Sets hidden[tri] to a value of enum interior_kind. A triangle is interior if its centre is inside a closed part other than its own,
- * decided by rays in five directions of which four must agree. A triangle on the other part's surface (within both parts' reach, parts.h)
- * is interior if it is covered: if the other part is on one of its sides, and its own part on the other side. In a thin part, where every
- * point is within reach of the surface, a triangle that stands across the part is interior too, unless it alone connects visible triangles.
- * In a part that intersects itself or has internal walls, a triangle with the part's inside on both sides is interior. part: by triangle,
- * its part. crossings: points where a part intersects itself. workers may be NULL. Returns whether any triangle is hidden. */
+/* Sets hidden[tri] to a value of enum interior_kind. A triangle is interior if its centre is inside a closed part other than
+ * its own, as tested by rays in five directions of which four must agree. A triangle on another part's surface (within both
+ * parts' reach, parts.h) is interior if it is covered: if the other part is on one of its sides, and its own part on the other.
+ * In a thin part, every point is within reach of the surface. There, a triangle that stands across the part is interior too,
+ * unless it alone connects visible triangles. In a part that intersects itself or has internal walls, a triangle with the
+ * part's inside on both sides is interior. part: by triangle, its part. crossings: points where a part intersects itself.
+ * workers may be NULL. Returns whether any triangle is hidden. */
 bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct body_parts *parts, const uint32_t *crossings,
                    size_t crossing_count, struct workers *workers, char *hidden);
-/* Decides the triangles marked INTERIOR_ACROSS (standing across a thin part): a group of such triangles that connects visible pieces which
- * nothing else connects becomes visible, all others interior. */
+/* Decides which triangles marked INTERIOR_ACROSS (standing across a thin part) become visible: groups that connect visible
+ * pieces which nothing else connects. All others become interior. */
 void interior_resolve_across(const struct trimesh *mesh, char *hidden);
-/* Hides islands: groups of visible triangles connected by points, if every point of the group touches hidden triangles and these have a
- * larger area than the group. */
+/* Hides islands: groups of visible triangles connected by points. A group is an island if each of its points touches hidden
+ * triangles, and these have a larger area than the group. */
 void interior_islands(const struct trimesh *mesh, char *hidden);
 
 #endif

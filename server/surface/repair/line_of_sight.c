@@ -48,8 +48,8 @@ static bool looks_both_ways(const struct line_of_sight *sight, uint32_t tri)
     return !sight->parts->closed[sight->parts->of_source[sight->mesh->tri_source[tri]]];
 }
 
-/* Computes the outward unit normal; a zero vector if the triangle bounds no body (a wall between two bodies, or a fin: a sheet that stands
- * on a body) and so faces nothing. */
+/* Computes the outward unit normal. It is zero if the triangle bounds no body and so faces nothing: a wall between two bodies,
+ * or a fin (a sheet that stands on a body). */
 static void find_normal(const struct line_of_sight *sight, uint32_t tri, double n[3])
 {
     const struct trimesh *mesh = sight->mesh;

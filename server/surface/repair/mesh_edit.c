@@ -193,8 +193,8 @@ static double distance2(const struct face_triangulation *face, uint32_t a, uint3
     return x * x + y * y;
 }
 
-/* Triangulates a face between two chains of points on its sides, the way a zip closes: `low`, along a-b, the side with most
-   points, and the chain a-c-b. trimesh_sample() uses the same method. */
+/* Triangulates a face between two chains of points on its sides, the way a zip closes. One chain is `low`, along a-b, the side
+   with most points; the other is a-c-b. trimesh_sample() uses the same method. */
 static void zip(struct face_triangulation *face, const uint32_t *low, size_t low_count, const uint32_t *high, size_t high_count)
 {
     size_t i = 1, j = 1, ab = low_count - 1, acb = high_count - 1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Orients the faces of parts outwards, finds walls within parts, and limits the reach (distance up to which a part counts as touching) of
- * thin parts. */
+/* Orients the faces of parts outwards and finds walls within parts. Limits the reach of thin parts, that is, the distance up to
+ * which a part counts as touching. */
 #include "surface/repair/parts.h"
 
 #include <math.h>
@@ -78,8 +78,8 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
 
 /* --- reach: the distance up to which parts count as touching --- */
 
-/* Limits the reach (distance up to which a part counts as touching) of closed parts to half of their thickness, estimated as twice the
- * volume divided by the area. The estimate is exact for plates; other bodies are thicker. */
+/* Limits the reach (distance up to which a part counts as touching) of closed parts to half of their thickness. The thickness
+ * is estimated as twice the volume divided by the area, which is exact for plates; other bodies are thicker. */
 static void limit_reach(struct body_parts *parts, double tolerance_m)
 {
     const struct trimesh *mesh = &parts->solid;

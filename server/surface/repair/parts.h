@@ -10,8 +10,8 @@
 struct body_parts {
     struct trimesh solid;
     uint32_t *of_tri; /* part of each triangle of `solid` */
-    /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed; 0: the triangle bounds nothing (a wall between two bodies,
-     * or a fin: a sheet that stands on a body) */
+    /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed. 0: the triangle bounds nothing: it is a wall
+     * between two bodies, or a fin (a sheet that stands on a body) */
     signed char *side;
     /* by model triangle: number of its part, and number of its body. Part and body differ only where an error in the model
        joins two bodies into one part by a few edges */
@@ -30,10 +30,11 @@ struct body_parts {
     size_t count, source_count; /* count: parts; source_count: model triangles */
 };
 
-/* Finds the parts of `mesh`: the model's source_count triangles after welding and closing seams, with the number of model triangles in each
- * of its triangles (tri_times). Every part's reach (distance up to which it counts as touching) is tolerance_m. If the program chose the
- * tolerance (is_chosen), a closed part's reach is at most half of its thickness. Then a surface that touches one side of a plate does not
- * touch the other side. Surfaces beyond the reach are joined if the part faces them (line_of_sight.h). Free with parts_finish(). */
+/* Finds the parts of `mesh`: the model's source_count triangles after welding and closing seams. tri_times must be the number
+ * of model triangles in each of its triangles. Every part's reach (distance up to which it counts as touching) is tolerance_m.
+ * If the program chose the tolerance (is_chosen), a closed part's reach is at most half of its thickness. Then a surface that
+ * touches one side of a plate does not touch the other side. Surfaces beyond the reach are joined if the part faces them
+ * (line_of_sight.h). Free with parts_finish(). */
 void parts_init(struct body_parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen);
 /* Frees the parts. */
 void parts_finish(struct body_parts *parts);

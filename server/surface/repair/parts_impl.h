@@ -11,8 +11,8 @@ struct parts_finding {
     /* by triangle: its patch (triangles connected by edges with two faces), identified by the lowest triangle index */
     uint32_t *patch;
     struct surface_patch { /* a patch (triangles connected by edges with two faces), stored at the index of its lowest triangle */
-        /* open_m: total length of the patch's edges with one face; branching_m: total length of its edges with three or more faces, of
-         * which only one belongs to the patch */
+        /* open_m: total length of the patch's edges with one face. branching_m: total length of its edges with three or more
+         * faces, if only one of these belongs to the patch */
         double open_m, branching_m, area_m2;
         /* Area of those triangles of the patch that occur in the model at least twice as often as the part's triangle that occurs least
            often. If it is most of the patch's area, the patch may be a wall between two bodies. */
@@ -21,8 +21,8 @@ struct parts_finding {
     } * patches;
 };
 
-/* Finds edges, patches (triangles connected by edges with two faces) and parts of parts->solid, decides which parts are closed, and assigns
- * bodies to the triangles of `mesh`, which are those of parts->solid. */
+/* Finds edges, patches (triangles connected by edges with two faces) and parts of parts->solid, and decides which parts are
+ * closed. Assigns bodies to the triangles of `mesh`, which are those of parts->solid. */
 void parts_number(struct parts_finding *f, const struct trimesh *mesh);
 
 #endif

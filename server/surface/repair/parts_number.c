@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Divides the mesh into parts (parts.h): finds patches (triangles connected by edges with two faces), fins that stand on patches, and which
-   patches form a part. */
+/* Divides the mesh into parts (parts.h). Finds patches (triangles connected by edges with two faces), fins that stand on
+   patches, and the patches that form each part. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +9,11 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* A part counts as closed if its open edges are together at most this long, relative to the square root of its area: longer than the
-   remnants of a hair gap, shorter than the rim of a pipe's end. */
+/* A part counts as closed if the total length of its open edges is at most this, relative to the square root of its area. The
+   limit is above the remnants of a hair gap, but below the rim of a pipe's end. */
 #define MAX_OPEN_OF_SIZE 0.05
-/* A patch (triangles connected by edges with two faces) counts as a body of its own if the edges at which it ends are together at most this
-   long, relative to the square root of its area. */
+/* A patch (triangles connected by edges with two faces) counts as a body of its own if its border is at most this long,
+   relative to the square root of its area. */
 #define MAX_BODY_OPEN_OF_SIZE 0.5
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)
@@ -108,8 +108,8 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-/* sums over a set of patches (triangles connected by edges with two faces), which tell whether the set is closed; its patches are connected
- * at edges through which no patch continues; stored at the index of its lowest triangle */
+/* Sums over a set of patches (triangles connected by edges with two faces), which tell whether the set is closed. The patches
+ * are connected at edges through which no patch continues. Stored at the index of the set's lowest triangle */
 struct core {
     double open_m, area_m2;
     bool stands;
@@ -120,9 +120,9 @@ static bool is_closed(double open_m, double area_m2)
     return open_m <= MAX_OPEN_OF_SIZE * sqrt(area_m2);
 }
 
-/* Joins patches (triangles connected by edges with two faces) that meet at edges into parts. Two closed sets of patches stay separate where
- * one only stands on the other, or on a fin of the other: fins of two bodies, joined by a seam, do not make the bodies one part.
- * of[triangle] on entry: its patch; on return: its part. Both are identified by their lowest triangle. */
+/* Joins patches (triangles connected by edges with two faces) that meet at edges into parts. Two closed sets of patches stay
+ * separate where one only stands on the other, or on a fin of the other. So a seam that joins fins of two bodies does not make
+ * the bodies one part. of[triangle] on entry: its patch; on return: its part. Both are identified by their lowest triangle. */
 static void join_patches(struct parts_finding *f, const struct branches *b, uint32_t *of)
 {
     size_t tri_count = f->parts->solid.tri_count;
@@ -178,8 +178,8 @@ static void find_closed(struct parts_finding *f)
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
     for (size_t t = 0; t < mesh->tri_count; t++) {
         double n[3], open = 0;
-        /* open edges of a triangle do not count if the triangle belongs to a fin, or has an edge at which two other triangles close the
-           surface already */
+        /* open edges of a triangle do not count if it belongs to a fin, or has an edge at which two other triangles already
+           close the surface */
         bool fin = f->patches[f->patch[t]].loose;
         trimesh_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += vec_length(n) / 2;
@@ -198,7 +198,7 @@ static void find_closed(struct parts_finding *f)
 }
 
 /* Assigns bodies: usually the parts. A patch (triangles connected by edges with two faces) that is nearly closed by itself is a
- * body of its own: only a few edges join it to its part, because of an error in the model. */
+ * body of its own. Only a few edges join it to its part, because of an error in the model. */
 static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 {
     struct body_parts *parts = f->parts;

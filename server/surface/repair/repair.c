@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Mesh repair: closes seams, which are gaps between border edges (edges with one face), also between edges that became borders because
-   triangles next to them were hidden. */
+/* Mesh repair: closes seams, which are gaps between border edges (edges with one face). This includes edges that became borders
+   because triangles next to them were hidden. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -14,15 +14,15 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/repair/repair_impl.h"
 
-/* two points are merged only if their distance is at most this fraction of the shortest edge at either point, so that no feature of the
-   model collapses */
+/* two points are merged only if they are at most this fraction of the shortest edge at either point apart, so that no feature
+   of the model collapses */
 #define GAP_OF_EDGE 0.45
 #define EXACT_OF_TOLERANCE 0.01
-/* a border counts as straight if it deviates from a line by at most this, in multiples of the tolerance; welding may cause such deviations,
-   and different points of a border are farther apart */
+/* A border counts as straight if it deviates from a line by at most this, in units of the tolerance. Welding may cause such
+   deviations; distinct points of a border are farther apart */
 #define STRAIGHT 0.1
-/* minimum cosine between the directions of two faces for them to count as lying on each other, and of two edges to count as
-   running alongside each other */
+/* minimum cosine between the directions of two faces that count as lying on each other, and of two edges that count as running
+   alongside each other */
 #define FLUSH 0.99
 
 /* --- seams (gaps between border edges): rounds that merge points alternate with rounds that insert points into edges --- */
@@ -31,8 +31,8 @@ struct seams {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
-    /* tolerance_m: widest gap that is closed; end_m: minimum distance of a point from both ends of an edge into which it is inserted (a
-       nearer point is merged with that end in another round) */
+    /* tolerance_m: widest gap that is closed. end_m: minimum distance of an inserted point from both ends of its edge (a nearer
+       point is merged with that end in another round) */
     double tolerance_m, end_m;
     bool fits;            /* true: the current round joins only borders with nearly no gap between them */
     struct nearest_edge { /* by border point: the nearest position on the border edges, except those that end at the point */
@@ -65,9 +65,9 @@ static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
     return vec_dot(side[0], side[1]) > FLUSH * sqrt(vec_dot(side[0], side[0]) * vec_dot(side[1], side[1]));
 }
 
-/* Returns whether merging border points i and j would join an edge of one with an edge of the other although their faces lie on
-   each other. Such faces belong to two bodies that touch. If they were joined, their edges would no longer be borders, so that
-   neither body could be joined to the surface on the other side of the gap. */
+/* Returns whether merging border points i and j would join their edges although the edges' faces lie on each other. Such faces
+   belong to two bodies that touch. If they were joined, their edges would no longer be borders, so that neither body could be
+   joined to the surface on the other side of the gap. */
 static bool would_fold(const struct seams *s, size_t i, size_t j)
 {
     const struct borders *b = s->borders;
@@ -104,9 +104,9 @@ static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
     return edge[edge[0] == p];
 }
 
-/* Returns whether the border at point p runs along edge e, which means that a neighbour of p on the border is on the line of e too.
-   Required because a single point may be near an edge by chance in a model with many cracks. towards: required direction of the border from
-   p; NULL: either. */
+/* Returns whether the border at point p runs along edge e: whether a neighbour of p on the border is on the line of e too.
+   Required because a single point may be near an edge by chance in a model with many cracks. towards: required direction of the
+   border from p; NULL: either. */
 static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
 {
     const struct borders *b = s->borders;
@@ -124,8 +124,8 @@ static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const doub
     return false;
 }
 
-/* Returns whether the border passes straight through point p along edge e. Such a point is a hanging vertex of e (a vertex that lies inside
-   an edge, not at its end), because the border of a gap is rarely that straight. */
+/* Returns whether the border passes straight through point p along edge e. The border of a gap is rarely that straight, so such
+   a point is a hanging vertex of e (a vertex that lies inside an edge, not at its end). */
 static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
 {
     double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
@@ -153,9 +153,9 @@ static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t en
     return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
 }
 
-/* Tries to insert a border point into edge e. A hanging vertex (a vertex that lies inside an edge, not at its end) is inserted immediately,
-   and so into all edges along which the border runs. If it were inserted into the nearest edge only, some of these edges would be joined to
-   each other and the others would stay open. For another point, records e if it is the nearest edge so far. */
+/* Tries to insert a border point into edge e. A hanging vertex (a vertex that lies inside an edge, not at its end) is inserted
+   immediately, into every edge along which the border runs. If only the nearest edge got it, some of these edges would be
+   joined to each other and the others would stay open. For another point, records e if it is the nearest edge so far. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
@@ -245,8 +245,8 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
     /* Rounds 0 and 1 close exact fits only (points within a hundredth of the tolerance). Their edges are then no longer borders
-     * when rounds 2 and 3 close gaps, and are not pulled to a neighbour. In round 1, a point that is on an edge by chance is
-     * not inserted: it would split the edge into pieces too short to be closed. */
+     * when rounds 2 and 3 close gaps, and are not pulled to a neighbour. Round 1 does not insert a point that is on an edge by
+     * chance: it would split the edge into pieces too short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);

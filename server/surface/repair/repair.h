@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Mesh repair: bridges cracks and joins parts in contact, up to a tolerance, in three steps: seams, contacts between parts, rims (edges
- * that are open because the triangles beyond them are hidden). */
+/* Mesh repair: bridges cracks and joins parts in contact, up to a tolerance. It has three steps: seams, contacts between parts,
+ * and rims (edges that are open because the triangles beyond them are hidden). */
 #ifndef SURFACE_REPAIR_H
 #define SURFACE_REPAIR_H
 #include "surface/repair/parts.h"
 
-/* bridge across a crack: a point of the surface, and the position of the point to which repair joined it; both are equal where an edge
-   crosses a face */
+/* bridge across a crack: a point of the surface, and the position of the point joined to it; both are equal where an edge crosses a face */
 struct crack_bridge {
     double from_m[3], to_m[3];
 };
@@ -28,14 +27,16 @@ struct repair_report {
  * receives the point's new index. */
 void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
-/* Merges points on border edges (edges with one face) within tolerance_m of each other, but not where this would join two faces that lie on
- * each other. Unlike repair_seams(), inserts no points into edges. target[point] receives the point's new index. */
+/* Merges points on border edges (edges with one face) within tolerance_m of each other. Leaves out points whose merging would
+ * join two faces that lie on each other. Unlike repair_seams(), inserts no points into edges. target[point] receives the
+ * point's new index. */
 void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
-/* Joins parts in contact. Where an edge passes through a face, also one of its own part (recorded in parts->crossed), a point is inserted
- * into both. Both faces are cut along their intersection. A point is inserted into another body if the distance is within both parts' reach
- * (distance up to which they count as touching), or within the tolerance and both face each other (line_of_sight.h). Where the rim of a
- * face that lies on another part crosses an edge of that part, a point is inserted into both edges. target: as in repair_seams(). */
+/* Joins parts in contact. Where an edge passes through a face, also one of its own part (recorded in parts->crossed), a point
+ * is inserted into both. Both faces are cut along their intersection. A point is inserted into another body within both parts'
+ * reach (distance up to which they count as touching). It is also inserted within the tolerance if both face each other
+ * (line_of_sight.h). Where the rim of a face that lies on another part crosses an edge of that part, a point is inserted into
+ * both edges. target: as in repair_seams(). */
 void repair_contacts(struct trimesh *mesh, struct body_parts *parts, uint32_t *target, struct repair_report *report);
 
 /* Closes rims: edges that are open only because the triangles beyond them are hidden. Two bodies may share vertices along one stretch of a

@@ -147,8 +147,8 @@ static bool reaches_as_far(const void *arg, uint32_t tri)
     return reach_of(c, tri) >= c->reach_m;
 }
 
-/* Finds the point of another body that is nearest to point_m, within the reach (distance up to which a part counts as touching) of both
- * bodies' parts. place->tri is TRIMESH_NONE if there is none. */
+/* Finds the point of another body that is nearest to point_m. It must be within the reach (distance up to which a part counts
+ * as touching) of both bodies' parts. place->tri is TRIMESH_NONE if there is none. */
 static void find_touch(const struct contacts *c, const double point_m[3], struct bvh_place *place)
 {
     bvh_nearest_unlike(c->bvh, point_m, c->reach_m, c->own, NULL, NULL, place);

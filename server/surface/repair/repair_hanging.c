@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Inserts hanging vertices (vertices that lie inside an edge, not at its end) into edges that have several faces and so are not
-   borders: one of the bodies that meet there has a slit along the edge. */
+   borders. One of the bodies that meet at such an edge has a slit along it. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -12,8 +12,7 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"
 
-/* maximum number of rounds of insertions; if all faces at an edge are split at different points, the edge needs one round fewer than it has
-   faces */
+/* maximum number of rounds of insertions. An edge whose faces are all split at different points needs one round fewer than it has faces */
 #define MAX_ROUNDS 4
 
 struct hanging {
@@ -24,8 +23,8 @@ struct hanging {
     uint32_t *last; /* by border point: index of the edge into which it was inserted last; prevents a second insertion there */
 };
 
-/* Returns how far along the edge a-b the point p lies, as a fraction of its length; *distance_m receives the distance of p from the edge.
-   Returns a negative number if p is not on the edge, or is at an end. */
+/* Returns the position of the point p along the edge a-b, as a fraction of its length; *distance_m receives the distance of p
+   from the edge. Returns a negative number if p is not on the edge, or is at an end. */
 static double place_on(const struct hanging *h, uint32_t p, uint32_t a, uint32_t b, double *distance_m)
 {
     double ab[3], ap[3], at[3];
