@@ -180,7 +180,7 @@ static GLenum next_error(void)
 
 void gl_clear_errors(void)
 {
-    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* at most 8 errors, because a lost GL context reports errors forever */
+    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* reads at most 8 errors: a lost GL context reports errors forever */
     }
 }
 

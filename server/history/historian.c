@@ -36,7 +36,7 @@ enum {
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
-static const int64_t REPEAT_US = 10 * US_PER_S; /* age of a tag's newest sample from which the end of the run records the reading again */
+static const int64_t REPEAT_US = 10 * US_PER_S; /* at the run's end, readings whose newest sample is this old are recorded again */
 
 struct historian_queue {
     struct sample_event *at; /* samples in order of arrival */

@@ -278,7 +278,7 @@ static bool has_begun(const struct gather *gather)
     return gather->out->points.count > 0 || gather->out->buckets.count > 0 || gather->rollup.open;
 }
 
-/* Returns true if the months read so far have no point of the tag after to_us, so that the first one must be searched in later months. */
+/* Returns true if the months read so far have no point of the tag after to_us, so that later months must be searched. */
 static bool lacks_end(const struct gather *gather, int level, int64_t to_us)
 {
     const struct history_points *points = &gather->out->points;

@@ -57,7 +57,7 @@ struct month_file *month_file_open(struct log *log, const char *folder, int mont
 /* Opens the history file of a month, of any version up to this one, for reading. Returns NULL on failure; *error is -ENOENT if
    the file does not exist. */
 struct month_file *month_file_read(struct log *log, const char *folder, int month, int *error);
-/* Converts the points and buckets that are read from now on to the units in which `plant` shows its tags. `plant` must outlive the file. */
+/* From now on, converts points and buckets that are read to the units in which `plant` shows its tags. `plant` must outlive the file. */
 void month_file_show_by(struct month_file *file, const struct plant *plant);
 void month_file_close(struct month_file **file); /* Closes a month's file and sets *file to NULL; accepts a pointer to NULL. */
 /* Closes a damaged file and renames it to history-2026-11.damaged-TIME.sqlite, as month_file_open() does. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The recorder: one swinging-door filter for each tag selects the samples to record. */
+/* The recorder: selects the samples to record, with one swinging-door filter per tag. */
 #include "history/recorder.h"
 
 #include "base/mem.h"
@@ -11,14 +11,14 @@
 struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
-    int64_t sampling_us; /* interval at which the tag's source looks for changes */
-    /* after a longer time without samples, the last value held until sampling_us before the next sample; INT64_MAX: samples are imported,
-       and nothing is recorded for a time without samples */
+    int64_t sampling_us; /* interval at which the tag's source checks for changes */
+    /* after a longer time without samples, the last value counts as unchanged until sampling_us before the next sample;
+       INT64_MAX: samples are imported, and nothing is recorded for a time without samples */
     int64_t silence_us;
-    /* time and quality of the sample that is the latest in time, which need not have arrived last: a source may state an old time */
+    /* time and quality of the sample with the latest time, which need not be the last to arrive: a source may send an old time */
     int64_t latest_us;
     uint32_t quality;
-    bool touched; /* true: recorder->touched lists the tag, because it had samples since the last recorder_held() */
+    bool touched; /* true: the tag is in recorder->touched, because it has had samples since the last recorder_held() */
 };
 
 struct recorder {
@@ -28,8 +28,8 @@ struct recorder {
     int *touched;
 };
 
-/* Returns the width of a tag's range of values: the measuring range of its instrument if that is known, otherwise the colour range of
-   its group; 0: unknown. */
+/* Returns the width of a tag's range of values: its instrument's measuring range if known, otherwise its group's colour range;
+   0: unknown. */
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->scale.has_range)
@@ -37,8 +37,8 @@ static double span_of(const struct plant *plant, const struct plant_tag *tag)
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
 }
 
-/* Returns the longest time between two samples of a tag over which the recorded line may slope. `Stale s` may permit a far longer silence:
-   live pictures show the last value until then. */
+/* Returns the longest time between two samples of a tag over which the recorded line may slope. `Stale s` may allow a far
+   longer silence, during which live pictures show the last value. */
 static int64_t silence_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->validity.stale_s >= PLANT_NEVER_STALE_S || plant_tag_sends_changes(plant, tag))
@@ -76,8 +76,8 @@ struct recorder *recorder_create(const struct plant *plant, int64_t begin_us)
         recorder->lanes[i].sampling_us = (int64_t)plant_tag_scan_ms(plant, &plant->tags[i]) * 1000;
         recorder->lanes[i].silence_us = begin_us == INT64_MIN ? INT64_MAX : silence_of(plant, &plant->tags[i]);
         recorder->lanes[i].params = (struct swinging_door_params){
-            /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2 deadband +
-               deviation, which is 2 within/4 + within/2 here */
+            /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2
+               deadband + deviation, which is 2 within/4 + within/2 here */
             .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),
@@ -120,8 +120,8 @@ static void put(struct recorder *recorder, int tag, const struct history_point *
     add_points(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
 }
 
-/* Records what is known about the time without samples before a sample. Without such a point, the recorded line would slope from the old
-   value to the new one over the whole silence. */
+/* If there were no samples for long before this one, records the state of that time. Otherwise the recorded line would slope
+   from the old value to the new one over the whole silence. */
 static void put_silence(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
 {
     const struct recorder_lane *lane = &recorder->lanes[tag];
@@ -178,8 +178,8 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* if the newest sample was just recorded, the recorded point becomes the tag's held row, so that after a crash it is known where
-           the line ends */
+        /* if the newest sample was just recorded, the recorded point becomes the tag's held row, so that the end of the line is
+           known after a crash */
         recorder_newest(recorder, recorder->touched[i], &point);
         add_points(held, recorder->touched[i], &point, 1);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deletes the history files of whole months by age and size, or only the oldest points of a month if that suffices. */
+/* Deletes history files of whole months by age and size, or only the oldest points of a month if that suffices. */
 #include "history/retention.h"
 
 #include <errno.h>
@@ -15,10 +15,10 @@
 #include "history/month_outbox.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
-/* CUT_BYTES: maximum number of bytes deleted from a month in one call, because the recording thread waits for the call */
+/* CUT_BYTES: maximum number of bytes deleted from a month in one call, because the recording thread has to wait */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
 static const int64_t NEWEST_US = 600 * US_PER_S; /* the last ten minutes of history are never deleted by the size limit */
-#define CUT_BELOW 0.01 /* this fraction of the size limit is freed in addition, so that the limit is not reached again soon */
+#define CUT_BELOW 0.01 /* this fraction of the size limit is freed on top, so that the limit is not soon reached again */
 
 static char *path_of(const char *folder, int month, int part)
 {
@@ -52,8 +52,8 @@ static bool delete_month(struct log *log, const char *folder, int month, const c
     return gone;
 }
 
-/* Returns the used bytes of a month's file. Free space within the file counts as used, except in the newest month, whose new points will
-   fill it. */
+/* Returns the used bytes of a month's file. Free space in the file counts as used, except in the newest month, whose new points
+   will fill it. */
 static int64_t used_bytes(struct log *log, const char *folder, int month, bool newest)
 {
     struct month_file_size size = { 0 };
@@ -71,13 +71,13 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     struct month_file_size size;
     int64_t first_us = INT64_MAX, last_us = INT64_MIN;
     int error;
-    /* opens the file for reading first, because opening a damaged file for writing would rename it */
+    /* opens the file for reading first, because month_file_open() would rename a damaged one */
     struct month_file *file = month_file_read(log, folder, month, &error);
     bool can = file && !month_file_size(file, &size) && !month_file_span(file, &first_us, &last_us) && (size.shrinks || newest);
     month_file_close(&file);
     if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
         return false;
-    if (!newest) /* free space in the file counts as freed, because the cut returns it to the disk together with the points' space */
+    if (!newest) /* free space in the file counts as freed, because the cut returns it to the disk along with the space of the points */
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
@@ -86,8 +86,8 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     return good;
 }
 
-/* Returns the number of points in a month's outbox, which wait to be sent to PostgreSQL. Returns 1 if the outbox cannot be read, so that
-   the month is not deleted for its age. */
+/* Returns the number of points in a month's outbox that are still to be sent to PostgreSQL; 1 if the outbox cannot be read, so
+   that the month is not deleted for its age. */
 static int64_t waiting_in(struct log *log, const char *folder, int month)
 {
     int error;
@@ -99,7 +99,7 @@ static int64_t waiting_in(struct log *log, const char *folder, int month)
     return count;
 }
 
-/* Returns the sum of the used bytes of all months' files, without SQLite's companion files (write-ahead log), whose size is bounded. */
+/* Returns the total of the used bytes of all monthly files, without SQLite's companion files (write-ahead log), whose size is bounded. */
 static int64_t all_used(struct log *log, const char *folder, const int *months, size_t count)
 {
     int64_t bytes = 0;
@@ -108,8 +108,8 @@ static int64_t all_used(struct log *log, const char *folder, const int *months, 
     return bytes;
 }
 
-/* Deletes the files of a whole month, and adds `waiting`, its number of unsent points, to *unsent. Returns false if its file could not
-   be deleted. */
+/* Deletes the files of a whole month, and adds its number of unsent points (`waiting`) to *unsent. Returns false if its file
+   could not be deleted. */
 static bool drop_month(struct log *log, const char *folder, int month, const char *why, int64_t waiting, int64_t *unsent)
 {
     bool gone = delete_month(log, folder, month, why);
@@ -144,8 +144,7 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         mem_free(why);
     }
     if (!limits->sends)
-        *unsent = 0; /* points that an earlier configuration left in an outbox do not count as lost, because no database is configured
-                        now */
+        *unsent = 0; /* points left in an outbox by an earlier configuration do not count as lost, because no database is configured now */
     if (*unsent)
         log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
                   "history: keep_gb: deleted %lld of the oldest points before PostgreSQL had received them", (long long)*unsent);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest points of a month. The last
-   ten minutes are always kept. Thread: the recording thread. */
+/* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest points of a month.
+   The last ten minutes are never deleted. Thread: the recording thread. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
 #include <stdbool.h>
@@ -9,15 +9,16 @@
 #include "base/log/log.h"
 
 struct retention_limits {
-    double days, bytes; /* limits of age in days and of size in bytes; 0: no limit */
-    /* true: points in the outboxes are sent to PostgreSQL (month_outbox.h), so a month with unsent points is not deleted for its age */
+    double days, bytes; /* limits on age in days and on size in bytes; 0: no limit */
+    /* true: points in the outboxes are sent to PostgreSQL (month_outbox.h); a month with unsent points is kept despite its age */
     bool sends;
 };
-/* Deletes history that exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute. Returns the
-   remaining size on disk in bytes. *unsent receives the number of deleted points that had not been sent to PostgreSQL (logged). */
+/* Deletes history that exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute.
+   Returns the remaining size on disk in bytes. *unsent receives the number of points deleted before they were sent to
+   PostgreSQL (logged). */
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us, int64_t *unsent);
-/* Returns for how many days of history the size limit suffices, judged by the newest month that has at least a day of history; INFINITY:
-   unknown. Logs a warning if limits->days is more. Call it at the start. */
+/* Returns the number of days of history that fit the size limit, judged by the newest month with at least a day of history;
+   INFINITY: unknown. Logs a warning if limits->days is more. Call it at the start. */
 double retention_check(struct log *log, const char *folder, const struct retention_limits *limits);
 
 #endif

@@ -27,8 +27,8 @@ static void take_value(struct history_bucket *bucket, double value)
     bucket->high = fmax(bucket->high, value);
 }
 
-/* Adds to the current bucket the part from t0_us to t1_us of the line from rollup->last to `next`. next NULL: the value of rollup->last
-   holds over that time. */
+/* Adds the part of the line from rollup->last to `next` between t0_us and t1_us to the current bucket. next NULL: the value of
+   rollup->last holds over that time. */
 static void take_part(struct rollup *rollup, const struct history_point *next, int64_t t0_us, int64_t t1_us)
 {
     struct history_bucket *bucket = &rollup->bucket;
@@ -87,7 +87,7 @@ bool rollup_put(struct rollup *rollup, const struct history_point *point, struct
         open_bucket(rollup, next.t_us);
         if (rollup->has_last)
             take_part(rollup, &next, rollup->bucket.t_us > rollup->last.t_us ? rollup->bucket.t_us : rollup->last.t_us, next.t_us);
-        /* the point is at the bucket's start, and no straight line leads to it: the previous value holds until then, so it is the
+        /* the point is at the bucket's start and no straight line leads to it: the previous value holds until then, and is the
            bucket's first value */
         if (rollup->has_last && next.t_us == rollup->bucket.t_us && history_point_usable(&rollup->last) &&
             !history_point_joined(&rollup->last, &next, rollup->step))
@@ -106,7 +106,7 @@ bool rollup_rest(const struct rollup *rollup, struct history_bucket *out)
     return rollup->open;
 }
 
-/* Counts good_us more microseconds, with the given mean value, in the bucket's mean. */
+/* Adds good_us microseconds with the given mean value to the bucket's mean. */
 static void add_time(struct history_bucket *bucket, double mean, int64_t good_us)
 {
     if (good_us <= 0)
@@ -139,7 +139,7 @@ void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, 
         into->bad_us += to_us - from_us;
         return;
     }
-    /* the slope is 0 if `b` has no first value: versions before stored none if a point without a value is at the start of `b` */
+    /* the slope is 0 if `b` has no first value: earlier versions stored none if `b` starts with a point without a value */
     double slope = isnan(b->first) ? 0 : (b->first - a->last) / (double)(b->t_us - end_us);
     double enter = a->last + slope * (double)(from_us - end_us), leave = a->last + slope * (double)(to_us - end_us);
     take_value(into, enter);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rollups: minimum, maximum, mean, first and last value of a tag in intervals of equal length (buckets), and how long it had no value.
-   Only an interval that contains a recorded point makes a bucket. Between two buckets the line is straight, from `last` of the one to
-   `first` of the next. No input or output. */
+/* Rollups: minimum, maximum, mean, first and last value of a tag in intervals of equal length (buckets), and how long it had no
+   value. Only an interval that contains a recorded point gets a bucket. Between two buckets the line is straight, from `last`
+   of the first to `first` of the second. No input or output. */
 #ifndef HISTORY_ROLLUP_H
 #define HISTORY_ROLLUP_H
 #include <stddef.h>
@@ -10,11 +10,11 @@
 
 struct history_bucket {
     int64_t t_us; /* start time of the bucket; a multiple of its length */
-    /* minimum and maximum of the line within the bucket, including where the line enters and leaves it; NaN: no usable value */
+    /* minimum and maximum of the line within the bucket, including its ends; NaN: no usable value */
     double low, high;
-    double mean; /* mean over that part of the bucket's time in which there was a value */
-    /* first: value at the bucket's start, before a step there, or of its first point if no line leads into the bucket; last: value at the
-       bucket's end. NaN: no value */
+    double mean; /* mean over the part of the bucket's time that has a value */
+    /* first: value at the bucket's start (before any step there) or, if no line leads into the bucket, of its first point;
+       last: value at the bucket's end. NaN: no value */
     double first, last;
     int64_t good_us;  /* microseconds of the bucket's time with a value */
     int64_t bad_us;   /* microseconds of the bucket's time without a value */
@@ -30,15 +30,15 @@ struct rollup { /* zero-initialise, then set length_us and step */
     double area; /* integral over time of the value in the current bucket, in value times microseconds */
 };
 
-/* Adds the next point in order of time; a point older than the last one counts as if it had the last one's time. Returns true if the
-   point completes a bucket, which *closed receives. */
+/* Adds the next point in order of time; a point older than the last one is treated as if it had the last one's time. Returns
+   true if the point completes a bucket, which is written to *closed. */
 bool rollup_put(struct rollup *rollup, const struct history_point *point, struct history_bucket *closed);
-/* *out receives the incomplete bucket, up to the last point. Returns false if no bucket is incomplete. */
+/* Sets *out to the incomplete bucket, up to the last point. Returns false if there is none. */
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
 /* Merges bucket `b` into bucket `a`. `b` must come later, and both must lie within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
-/* No bucket includes the line from the end of bucket `a` (at end_us) to the start of bucket `b`. This function adds the part of that
-   line between from_us and to_us to the bucket `into`. */
+/* Adds the line from the end of bucket `a` (at end_us) to the start of bucket `b`, which neither includes, to the bucket
+   `into`: the part between from_us and to_us. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,
                    int64_t from_us, int64_t to_us);
 

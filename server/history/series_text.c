@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the points and buckets of history series directly as text, without a JSON tree, because they are large. */
+/* Writes the points and buckets of history series as text directly, not through a JSON tree, because they are large. */
 #include "history/series_text.h"
 
 #include <stdio.h>
@@ -8,8 +8,8 @@
 #include "history/month.h"
 #include "base/text/timestamp.h"
 
-/* Appends a value with ten significant digits, which is more than any transmitter has; values from 1e10 on, such as counters, get
-   fifteen. none: text for a value that is NaN. */
+/* Appends a value with ten significant digits, more than any transmitter has; values from 1e10 on, such as counters, get
+   fifteen. none: text for NaN. */
 static void add_number(struct text *out, double value, const char *none)
 {
     if (isnan(value))

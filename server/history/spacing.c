@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the median time between samples. Stores at most MAX_SPACINGS times between samples: for a longer series only every second one,
-   then only every fourth, and so on. */
+/* Finds the median time between samples. Stores at most MAX_SPACINGS times: of a longer series only every second one, then
+   every fourth, and so on. */
 #include "history/spacing.h"
 
 #include <stdlib.h>

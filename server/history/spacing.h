@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the median time between the usable samples of a series, in bounded memory. No input or output. Thread: one. */
+/* Computes the median time between the usable samples of a series in bounded memory. No input or output. Thread: one. */
 #ifndef HISTORY_SPACING_H
 #define HISTORY_SPACING_H
 #include <stddef.h>
@@ -11,19 +11,19 @@ struct spacing { /* zero-initialise */
     int64_t last_us;
     int64_t *at; /* stored times between two usable samples, in microseconds: every stride-th one */
     size_t count, capacity, stride, passed;
-    size_t between; /* number of times between neighbouring samples, usable or not */
+    size_t between; /* number of times between adjacent samples, usable or not */
 };
 
 /* Adds the next sample in order of time. The time since the previous sample counts only if both are usable. */
 void spacing_put(struct spacing *spacing, const struct history_point *sample);
-/* Returns true if a typical time between samples can be computed: at least three samples, because two alone do not show how often the
-   series has samples. */
+/* Returns true if a typical time between samples can be computed. That takes at least three samples, because two do not show
+   how often the series has samples. */
 static inline bool spacing_has_rhythm(const struct spacing *spacing)
 {
     return spacing->passed > 0 && spacing->between > 1;
 }
-/* Returns the median time between samples in microseconds (the lower of two middle ones); 0 if no such time is known. Sorts the stored
-   times. */
+/* Returns the median time between samples in microseconds (the lower of the two middle ones); 0 if there is none. Sorts the
+   stored times. */
 int64_t spacing_median(struct spacing *spacing);
 void spacing_finish(struct spacing *spacing);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes spool files, text with one line for each unwritten row: kind (recorded or held), time, value, quality and name of the
-   tag. A line of kind `u` precedes the first row of each tag: length of the tag's unit, unit and name. Earlier versions of the program
-   ignore such lines. */
+/* Reads and writes spool files: text with one line per unwritten row: kind (recorded or held), time, value, quality and tag
+   name. A line of kind `u` precedes the first row of each tag: length of the tag's unit, unit and name. Earlier versions of the
+   program ignore such lines. */
 #include "history/spool.h"
 
 #include <errno.h>
@@ -23,7 +23,7 @@ static const char HEAD[] = "plantcast spool 1\n";
 enum {
     PLACES = 3,
     RESERVE_BYTES = 8 << 20,
-    /* the reserve file (disk space kept for a spool file) is made only if the free space on the disk is this many times its size */
+    /* the reserve file (disk space kept for a spool file) is created only if the free disk space is this many times its size */
     PLENTY = 10
 };
 
@@ -53,8 +53,8 @@ static char *reserve_of(const char *folder, int length)
     return mem_printf("%.*s/spool.reserve", length, folder);
 }
 
-/* Creates the reserve file, which keeps disk space for a spool file. It gets its final name once all its blocks are allocated, so that a
-   program killed meanwhile leaves no partial reserve. */
+/* Creates the reserve file, which keeps disk space for a spool file. It gets its final name once all its blocks are allocated,
+   so that a program killed in between leaves no partial reserve. */
 static int make_reserve(const char *path)
 {
     char *made = mem_printf("%s.new", path);
@@ -83,7 +83,7 @@ int spool_reserve(const char *folder)
     return error;
 }
 
-/* Writes the spool's text into the blocks of the reserve file, then renames that file to the spool's name. Used when the disk is full. */
+/* Writes the spool's text over the blocks of the reserve file, then renames that file to the spool's name. Used when the disk is full. */
 static int write_into_reserve(const char *path, const struct text *text)
 {
     const char *slash = strrchr(path, '/');
@@ -107,7 +107,7 @@ static int write_into_reserve(const char *path, const struct text *text)
     return error;
 }
 
-/* Appends a line of text for each row. has_unit: by tag, true once the text has the line with the tag's unit */
+/* Appends a line of text for each row. has_unit: [tag]: true once the text has the line with the tag's unit */
 static void add_rows(struct text *text, const struct plant *plant, const struct recorder_rows *rows, char kind, bool *has_unit)
 {
     for (size_t i = 0; i < rows->count; i++) {
@@ -143,9 +143,9 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
     return error;
 }
 
-struct spool_unit { /* unit of measurement of a tag: in the spool file and in the plant now */
-    bool misfits;              /* true: the unit in the spool file cannot be converted to the tag's present unit */
-    struct unit_change change; /* conversion from the unit in the spool file to the tag's present unit */
+struct spool_unit { /* a tag's unit of measurement: in the spool file, and now in the plant */
+    bool misfits;              /* true: the unit in the spool file cannot be converted to the tag's current unit */
+    struct unit_change change; /* conversion from the unit in the spool file to the tag's current unit */
 };
 
 static void take_unit(const char *text, size_t bytes, const struct plant *plant, struct spool_unit *units)
@@ -183,8 +183,8 @@ static void add_line(const char *line, const struct plant *plant, struct spool_u
     to->at[to->count++] = (struct history_row){ tag, point };
 }
 
-/* Reads the spool file if it is a regular file of this user that nobody else can write. Returns its text, free with mem_free(); NULL
-   with errno on failure. */
+/* Reads the spool file if it is a regular file of this user that nobody else can write to. Returns its text (free with
+   mem_free()); NULL with errno on failure. */
 static char *read_own(const char *path)
 {
     struct stat st;

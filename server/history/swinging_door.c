@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Swinging-door filter: selects the samples to record. Samples within the deadband of the last one that left it are skipped; the
-   swinging door (a range of slopes) decides about the others. */
+/* Swinging-door filter: selects the samples to record. Skips samples within the deadband around the last sample that left it;
+   the swinging door (a range of slopes) decides on the others. */
 #include "history/swinging_door.h"
 
 static void begin(struct swinging_door *door, const struct history_point *at)
@@ -26,8 +26,8 @@ static bool passes(const struct swinging_door *door, const struct history_point 
     return slope >= door->slope_low && slope <= door->slope_high;
 }
 
-/* Passes a sample that left the deadband to the swinging door. The sample must have the anchor's quality and be newer than the held
-   point. Appends points that must be recorded to `kept`, which has `count` points so far. Returns the new count. */
+/* Passes a sample that left the deadband to the swinging door. The sample must have the anchor's quality and be newer than the
+   held point. Appends points to be recorded to `kept`, which already has `count` points. Returns the new count. */
 static int swing(struct swinging_door *door, const struct swinging_door_params *params, const struct history_point *sample,
                  struct history_point *kept, int count)
 {
@@ -77,8 +77,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
-        /* the sample is within the deadband but outside the door: records the held point (newest sample that left the deadband).
-           Otherwise a reader of the current state would see a ramp instead of a step */
+        /* the sample is within the deadband but outside the door: records the held point (newest sample that left the
+           deadband). Otherwise a reader of the current state would see a ramp instead of a step */
         if (usable && door->has_held && !passes(door, sample)) {
             struct history_point held = door->held;
             count = keep(door, &held, kept, count);
@@ -87,8 +87,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
         door->has_skipped = true;
         return due ? keep_last(door, params, kept, count) : count;
     }
-    /* passes the skipped sample (the last one within the deadband) to the door first, so that the recorded line does not rise before the
-       values did */
+    /* first passes the skipped sample (the last one within the deadband) to the door, so that the recorded line does not rise
+       before the values did */
     if (door->has_skipped) {
         struct history_point skipped = door->skipped;
         count = params->step ? 0 : swing(door, params, &skipped, kept, count);

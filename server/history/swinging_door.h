@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Swinging-door filter: decides which samples of a tag are recorded. A deadband, then a swinging door, with an override period (longest
-   time between two recorded points). No input or output; the samples carry the times. At the time of every sample, the line through the
-   recorded points is within `2 deadband + deviation` of the sample; every change of quality is recorded, and a spike beyond that bound
-   is recorded exactly. Source: E. H. Bristol, Swinging door trending, ISA 1990; here the line is checked against all samples it passes,
-   so that the bound is not doubled. */
+/* Swinging-door filter: decides which samples of a tag are recorded. Combines a deadband, a swinging door, and an override
+   period (longest time between two recorded points). No input or output; the samples carry the times. At the time of every
+   sample, the line through the recorded points is within `2 deadband + deviation` of the sample. Every change of quality is
+   recorded, and a spike beyond that bound is recorded exactly. Source: E. H. Bristol, Swinging door trending, ISA 1990; here
+   the line is checked against all samples that it passes, so that the bound is not doubled. */
 #ifndef HISTORY_SWINGING_DOOR_H
 #define HISTORY_SWINGING_DOOR_H
 #include "history/point.h"
 
 struct swinging_door_params {
-    /* in the tag's unit, >= 0; deadband: smaller changes are ignored; deviation: allowed distance of samples from the line */
+    /* in the tag's unit, >= 0; deadband: changes below it are ignored; deviation: largest allowed distance of samples from the line */
     double deadband, deviation;
     int64_t override_us; /* maximum time between two recorded points while samples arrive */
     bool step;           /* true: the tag is a switch: values hold until the next point, and every change beyond the deadband is
@@ -19,23 +19,23 @@ struct swinging_door_params {
 struct swinging_door { /* zero-initialise */
     bool open, has_skipped, has_held;
     struct history_point anchor;  /* point recorded last */
-    struct history_point held;    /* newest sample that left the deadband; recorded when a later sample does not fit the swinging door */
+    struct history_point held;    /* newest sample that left the deadband; recorded when a later one does not fit the swinging door */
     struct history_point skipped; /* newest sample, if it stayed within the deadband around the last sample that left the deadband */
-    /* slopes, in units per microsecond, of the steepest and the flattest line from the anchor that passes within the deviation of all
-       later samples */
+    /* slopes, in units per microsecond, of the steepest and the flattest line from the anchor that pass all later samples
+       within the deviation */
     double slope_low, slope_high;
 };
 
 enum { SWINGING_DOOR_MAX_POINTS = 3 };
-/* Passes a sample to the filter. Writes the points that must now be recorded into `kept`, oldest first, and returns their count. A
+/* Passes a sample to the filter. Writes the points to be recorded now to `kept`, oldest first, and returns their number. A
    sample that is not newer than the last one (the clock was set back) is recorded, and the filter restarts from it. */
 int swinging_door_put(struct swinging_door *door, const struct swinging_door_params *params, const struct history_point *sample,
                       struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
 /* Records the newest sample now, as if override_us had passed since the last recorded point. Returns the number of points in `kept`. */
 int swinging_door_end(struct swinging_door *door, const struct swinging_door_params *params,
                       struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
-/* *out receives the newest sample if it is not recorded yet. Returns false if it is recorded. Readers of history draw the line up to
-   that sample, and the caller stores it so that it survives a crash. */
+/* If the newest sample is not recorded yet, writes it to *out and returns true. Readers of history extend the line to that
+   sample, and the caller stores it so that it survives a crash. */
 bool swinging_door_held(const struct swinging_door *door, struct history_point *out);
 
 #endif

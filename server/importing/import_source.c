@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the data source of a plant (a Modbus device) for an import, and checks that it is safe as program arguments. */
+/* Reads a plant's data source (a Modbus device) for an import, and checks that it is safe to pass as program arguments. */
 #include "importing/import_source.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const orders[] = { "", "ABCD", "CDAB", "BADC", "DCBA" }; /* texts of the byte orders, indexed by enum byte_order */
+static const char *const orders[] = { "", "ABCD", "CDAB", "BADC", "DCBA" }; /* names of the byte orders, indexed by enum byte_order */
 
 static bool is_number(const char *text, int least, int most)
 {

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The data source of an imported plant: one device that speaks Modbus TCP. No input or output. Thread: any. */
+/* The data source of an imported plant: one Modbus TCP device. No input or output. Thread: any. */
 #ifndef IMPORTING_IMPORT_SOURCE_H
 #define IMPORTING_IMPORT_SOURCE_H
 #include <jansson.h>
 
 #include "plant/plant.h"
 
-struct import_source { /* the data source in the form of the arguments of `plantcast match`; an empty text: not stated */
+struct import_source { /* the data source as arguments of `plantcast match`; an empty text: not stated */
     char host[254], port[6], unit[4], order[5], base[2]; /* an empty `host`: no data source */
 };
 
-/* Returns true if the texts are safe as program arguments: `host` is a host name or a numeric IPv4 address, port, unit and base are numbers
-   within their limits, and `order` is a byte order. */
+/* Returns true if the texts are safe as program arguments: `host` is a host name or a numeric IPv4 address, port, unit and base
+   are numbers within their limits, and `order` is a byte order. */
 bool import_source_good(const struct import_source *source);
 /* Returns the data source of a plant. Its host is empty if the plant has no source, several sources, or a source of another kind. */
 struct import_source import_source_of_plant(const struct plant *plant);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps the state of the import that an engineer has ordered on the page, and its messages. */
+/* Keeps the state and the messages of the import that an engineer has ordered on the page. */
 #include "importing/plant_import.h"
 
 #include <errno.h>
@@ -19,19 +19,19 @@
 enum { MAX_OUTPUT_BYTES = 64 * 1024 };
 
 struct plant_import {
-    /* exports: folder of the uploaded files; matches: matches.csv; report: report of `plantcast import`; choice: file that stores the
-       chosen units, axis and encoding, so that they survive a restart of the daemon */
+    /* exports: folder of uploaded files; matches: matches.csv; report: report of `plantcast import`; choice: file that stores
+       the chosen units, axis and encoding, so that they survive a restart of the daemon */
     char *exports, *matches, *report, *choice;
     pthread_mutex_t lock;
     /* --- below: under `lock` */
-    struct import_order order; /* the import order in progress or, if none is, the last one */
-    /* the last successful import order that read models; its units, axis and encoding are those of the present models */
+    struct import_order order; /* the import order in progress or, if there is none, the last one */
+    /* the last successful import order that read models; the current models were read with its units, axis and encoding */
     struct import_order read;
     bool ordered, busy, cancelled;
     enum import_phase phase;
     unsigned number; /* number of import orders so far */
     struct text said;
-    char *why; /* reason why the last import order failed; NULL: it succeeded */
+    char *why; /* why the last import order failed; NULL: it succeeded */
 };
 
 /* Reads the stored choice of units, axis and encoding from its file, whose text is "UNITS/UP/ENCODING/MESH_UNITS"; parts at the end may
@@ -137,8 +137,8 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
-        /* An order that only applies match decisions or sets the data source does not state the encoding of the tag list: keeps the
-           encoding of the last import. */
+        /* An order that only applies match decisions or sets the data source does not state the tag list's encoding: keeps that
+           of the last import. */
         if (order->decides || *order->source.host)
             strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
@@ -196,8 +196,8 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
 
 /* --- functions that the reload thread calls ----------------------------------------------------------------------------- */
 
-/* Appends the output of an import's program to `out`. Writes '?' for each byte that is not UTF-8 or is a control character other than a
-   new line, because names of files and tags may contain such bytes. */
+/* Appends the output of an import program to `out`. Names of files and tags may contain arbitrary bytes, so each invalid UTF-8
+   byte and each control character except newline becomes '?'. */
 static void add_printable(struct text *out, const char *text)
 {
     for (size_t left = strlen(text), bytes; left > 0; text += bytes, left -= bytes) {
@@ -257,7 +257,7 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
     mem_free(import->why);
     import->why = line.at;
     pthread_mutex_unlock(&import->lock);
-    /* errors are ignored: if the file cannot be written, a restart of the daemon only loses the chosen units, axis and encoding */
+    /* ignores errors: if the file cannot be written, a restart of the daemon merely forgets the chosen units, axis and encoding */
     atomic_file_put(import->choice, choice, strlen(choice));
     mem_free(choice);
 }

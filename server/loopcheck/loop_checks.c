@@ -30,11 +30,11 @@ struct loop_checks {
     const struct plant *plant;
     struct file_writer *writer;
     char *folder, *path;
-    struct loop_check *at; /* newest loop check, by index of the tag */
-    uint64_t *numbers;     /* by tag: sequence number (loop_checks_number()) of the tag's newest check */
+    struct loop_check *at; /* [tag]: newest loop check */
+    uint64_t *numbers;     /* [tag]: sequence number (loop_checks_number()) of the tag's newest check */
     uint64_t number;
     bool begun;
-    /* by index of the tag: true if pictures mark the tag as unproven (without a passed loop check); read by the render threads */
+    /* [tag]: true if pictures mark the tag as unproven (without a passed loop check); read by the render threads */
     atomic_bool *unproven;
 };
 
@@ -122,7 +122,7 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
     if (strlen(fingerprint) != 16 ||
-        /* an incomplete row, cut off while it was written, is ignored */
+        /* ignores an incomplete row, left when writing was interrupted */
         (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0))
         return;
     loop_checks->begun = true;
@@ -197,8 +197,8 @@ void loop_checks_close(struct loop_checks **pointer)
 }
 
 struct row_job {
-    /* job of the thread that writes files; must be the first member, because that thread passes a pointer to it. job.owner is the struct
-       loop_checks, or NULL once it is closed */
+    /* job for the thread that writes files; must be the first member, because that thread passes a pointer to it. job.owner is
+       the struct loop_checks, or NULL after that was closed */
     struct file_job job;
     struct loop_checks *loop_checks;
     struct log *log;
@@ -208,13 +208,13 @@ struct row_job {
     struct loop_check check;
 };
 
-/* Appends a row to the file. If the file ends in an incomplete line, for example after a power failure, first ends that line. Creates
-   the folder if needed, because the historian's thread, which also creates it, may not have done so yet. */
+/* Appends a row to the file. If the file ends in an incomplete line, for example after a power failure, ends that line first.
+   Creates the folder if needed, because the historian's thread, which also creates it, may not have run yet. */
 static int append(struct file_job *job)
 {
     const struct row_job *own = (const struct row_job *)job;
     const struct text *row = &own->row;
-    mkdir(own->folder, 0777); /* result ignored: if the folder cannot be created, opening the file reports the reason */
+    mkdir(own->folder, 0777); /* ignores the result: if the folder cannot be created, opening the file reports the reason */
     FILE *file = fopen(own->path, "a+b");
     if (!file)
         return -errno;
@@ -226,7 +226,7 @@ static int append(struct file_job *job)
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = good ? 0 : -errno;
-    /* after an error, removes the incomplete row from the file, because the caller reports the check as not stored */
+    /* after an error, removes the incomplete row, because the caller reports the check as not stored */
     if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
         log_err(own->log, "%s: %s", own->path, strerror(errno));
     fclose(file);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Records of loop checks. A tag passes if a value that an engineer forced at its transmitter arrives as the tag's value, which shows
-   that the tag is wired correctly. The records are in proofs.csv in the history folder, a file to which rows are only appended
+/* Records of loop checks. A tag passes if a value that an engineer forces at its transmitter arrives as the tag's value, which
+   shows that the tag is wired correctly. The records are in proofs.csv in the history folder, an append-only file
    (LOOPCHECK.md). Thread: the event loop. */
 #ifndef LOOPCHECK_LOOP_CHECKS_H
 #define LOOPCHECK_LOOP_CHECKS_H
@@ -17,7 +17,7 @@ enum loop_check_state {
     LOOP_CHECK_FAILED,
     LOOP_CHECK_CHANGED /* the tag was checked, but its address, scaling or position has changed since then, so it counts as not checked */
 };
-extern const char *const loop_check_state_names[]; /* names of the states of a loop check, indexed by enum loop_check_state */
+extern const char *const loop_check_state_names[]; /* names of the loop check states, indexed by enum loop_check_state */
 
 struct loop_check {
     enum loop_check_state state;
@@ -29,13 +29,13 @@ struct loop_check {
 #define LOOP_CHECKS_FILE "proofs.csv"
 
 struct loop_checks;
-/* Reads the loop checks of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes checks to disk;
-   NULL: they are written at once. Never returns NULL. plant and writer must outlive the result. */
+/* Reads the loop checks of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes checks
+   to disk; NULL: checks are written at once. Never returns NULL. plant and writer must outlive the result. */
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 /* Frees the loop checks and sets *loop_checks to NULL; accepts a pointer to NULL. */
 void loop_checks_close(struct loop_checks **loop_checks);
-/* Queues a loop check to be written to disk; once it is, file_writer_collect() makes it the tag's newest check. Returns REFUSAL_NONE, or
-   why it could not be queued. */
+/* Queues a loop check for writing; once it is on disk, file_writer_collect() makes it the tag's newest check. Returns
+   REFUSAL_NONE, or why it could not be queued. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
 /* Returns the newest loop check recorded for a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
@@ -48,11 +48,11 @@ uint64_t loop_checks_number(const struct loop_checks *loop_checks);
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
 /* Appends CSV: a header line, then the newest check of every tag that has a source. */
 void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);
-/* Returns true if pictures must mark the tag as unproven: some tag has been checked, and this one has not passed. Derived tags are never
-   marked. Thread: any. */
+/* Returns true if pictures must mark the tag as unproven: at least one tag has been checked, but this one has not passed.
+   Derived tags are never marked. Thread: any. */
 bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag);
-/* Returns a hash of all settings whose change makes a tag's loop check void: source, address, type, byte order, scaling, asset and
-   position. */
+/* Returns a hash of all settings whose change invalidates a tag's loop check: source, address, type, byte order, scaling, asset
+   and position. */
 uint64_t loop_check_fingerprint(const struct plant *plant, int tag);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses the message `alarm`, with which a user acknowledges, resets or shelves alarms, and carries it out. */
+/* Parses and carries out the message `alarm`, by which a user acknowledges, resets or shelves alarms. */
 #include "message/alarm_message.h"
 
 #include <stdio.h>
@@ -18,8 +18,7 @@ static const struct name names_action[] = { { "acknowledge", ALARM_ACKNOWLEDGE }
                                             { "in_service", ALARM_PUT_BACK },
                                             { NULL, 0 } };
 
-/* Returns the index of the tag with that name; for ALARM_LINK (alarms about connections), the index of the device with that name; -1:
-   none. */
+/* Returns the index of the tag with that name; for ALARM_LINK (connection alarms), the index of the device with that name; -1: none. */
 static int find_named(const struct plant *plant, const char *name, enum alarm_kind kind)
 {
     if (kind != ALARM_LINK)

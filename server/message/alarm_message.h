@@ -7,9 +7,9 @@
 
 /* Parses the message into out->alarm. Returns false with *error saying what is wrong. */
 bool alarm_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Carries out the requested action on each alarm of the request whose state allows it. who: the user's name, for the journal. Returns the
-   answer, `alarmed`, with the number of alarms changed and the reasons for which others were refused; free with mem_free(). The caller must
-   check the user's rights. */
+/* Carries out the requested action on each alarm of the request whose state allows it. who: the user's name, for the journal.
+   Returns the answer, `alarmed`, with the number of changed alarms and the reasons why others were refused; free with
+   mem_free(). The caller must check the user's rights. */
 char *alarm_do(struct alarm_service *alarm_service, const struct plant *plant, const struct message *message, const char *who);
 
 #endif

@@ -247,7 +247,7 @@ char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *p
 struct paging {
     const struct plant *plant;
     json_t *rows;
-    struct text *csv; /* text to which the rows are written as CSV; NULL: the output is JSON */
+    struct text *csv; /* receives the rows as CSV; NULL: the output is JSON */
     int64_t last_id;
     int count;
 };
@@ -271,7 +271,7 @@ static void add_journal_csv(struct text *out, const struct journal_row *row)
     text_add(out, "\n");
 }
 
-/* Returns a journal row with limit and value converted to the tag's present unit, if the row's unit is known and can be converted. */
+/* Returns a journal row with its limit and value converted to the tag's current unit, if the row's unit is known and convertible. */
 static struct journal_row in_present_unit(const struct plant *plant, const struct journal_row *row)
 {
     struct journal_row out = *row;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cameras that show an asset, a tag or the whole plant, from the messages `camera` and `fit`. */
+/* Computes cameras that show an asset, a tag or the whole plant, for the messages `camera` and `fit`. */
 #include "message/fit_message.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ void fit_apply(const struct scene *scene, const struct fit_message *fit, const s
     framing_look(scene, &fit->framing, (double)half.width_px / half.height_px, camera);
 }
 
-/* Returns the plant's initial camera as the JSON of a `camera` message. */
+/* Returns the plant's initial camera as JSON, like a `camera` message. */
 static json_t *camera_json(const struct camera *camera)
 {
     return json_pack("{s:o,s:o,s:o,s:f}", "eye", vector(camera->eye_m), "target", vector(camera->target_m), "up", vector(camera->up), "fov",
@@ -59,8 +59,8 @@ static json_t *given_json(const json_t *list, struct message_error *error)
     return camera;
 }
 
-/* Sets the camera of a view from the members of the JSON object `o`. lens true: also applies the members `projection` and `height_m`.
-   Returns false with *error naming the wrong member. */
+/* Sets a view's camera from the members of the JSON object `o`. lens true: also applies the members `projection` and
+   `height_m`. Returns false with *error naming the wrong member. */
 static bool parse_given(const json_t *o, bool lens, struct view *view, struct message_error *error)
 {
     const json_t *list = json_object_get(o, "camera"), *height = json_object_get(o, "height_m");
@@ -78,14 +78,14 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     return good;
 }
 
-/* Returns true if the JSON object has a member that states a camera. */
+/* Returns true if the JSON object has a member that specifies a camera. */
 static bool has_camera(const json_t *o)
 {
     return json_object_get(o, "camera") || json_object_get(o, "projection") || json_object_get(o, "height_m");
 }
 
-/* Moves the plant's initial camera back so that each half of a split view, which is narrower, shows as much as the whole view. bare: the
-   picture has no legend and no clock. */
+/* Moves the plant's initial camera back, so that each half of a split view, which is narrower, shows as much as the whole view
+   would. bare: the picture has no legend and no clock. */
 static void keep_whole(const struct scene *scene, bool bare, struct view *view)
 {
     struct camera_window window = { 0 };

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions that read one member of a JSON object and check its type and range. Each returns false, with *error saying what was expected,
-   if the member is wrong. Pure. Thread: any. */
+/* Functions that read one member of a JSON object and check its type and range. If the member is wrong, each returns false,
+   with *error saying what was expected. Pure. Thread: any. */
 #ifndef MESSAGE_JSON_FIELDS_H
 #define MESSAGE_JSON_FIELDS_H
 #include "message/message.h"
 #include "message/names.h"
 
-/* Functions need_...: a missing member is an error. Functions may_...: a missing member leaves *out unchanged, and the function returns
-   true. *given, if not NULL, receives whether the member was present. */
+/* Functions need_...: a missing member is an error. Functions may_...: a missing member leaves *out unchanged, and the function
+   returns true. *given, if not NULL, tells whether the member was present. */
 bool need_number(const json_t *o, const char *name, double low, double high, double *out, struct message_error *error);
 bool may_number(const json_t *o, const char *name, double low, double high, double *out, bool *given, struct message_error *error);
-/* Reads the member "seq", an integer of 1..2^32-1. */
+/* Reads the member "seq", an integer in 1..2^32-1. */
 bool need_seq(const json_t *o, uint32_t *out, struct message_error *error);
 bool need_vector(const json_t *o, const char *name, double out[3], struct message_error *error);
 bool may_vector(const json_t *o, const char *name, double out[3], bool *given, struct message_error *error);
@@ -18,10 +18,10 @@ bool may_vector(const json_t *o, const char *name, double out[3], bool *given, s
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* Reads a text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);
-/* Reads a member with a text that a user wrote, of less than `size` bytes without control characters (has_controls()). needed: true: an
+/* Reads a member with a user's text, of less than `size` bytes, without control characters (has_controls()). needed: true: an
    empty or blank text is an error. */
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error);
-/* Returns true if the text has characters that would garble a line of text: control characters, and overrides of the writing direction. */
+/* Returns true if the text has characters that would garble a line: control characters, or overrides of the writing direction. */
 bool has_controls(const char *text);
 /* Copies a client's text into `out` for a log line or an answer: at most 40 bytes, control characters and invalid UTF-8 replaced by '?'.
    Returns `out`. */

@@ -12,7 +12,7 @@ json_t *number(double value)
 json_t *reading_number(double value)
 {
     double size = fabs(value);
-    /* writes a large whole number as a JSON integer: json_text() rounds only real numbers, to a limited number of digits */
+    /* writes a large whole number as a JSON integer, because json_text() rounds real numbers to a limited number of digits */
     if (size >= 1e7 && size < 9e15 && value == trunc(value))
         return json_integer((json_int_t)value);
     return number(round_reading(value));

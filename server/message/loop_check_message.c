@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Records loop checks: an engineer tests that a tag shows the value of the right transmitter. The result depends on the reading that this
-   daemon receives, not on a value that a user enters. */
+/* Records loop checks: an engineer tests that a tag shows the value of the right transmitter. The result depends on the reading
+   that this daemon receives, not on a value entered by a user. */
 #include "message/loop_check_message.h"
 
 #include <math.h>

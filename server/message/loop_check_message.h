@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The message `prove`, with which a user records a loop check of a tag. Thread: the event loop. */
+/* The message `prove`, by which a user records a loop check of a tag. Thread: the event loop. */
 #ifndef MESSAGE_LOOP_CHECK_MESSAGE_H
 #define MESSAGE_LOOP_CHECK_MESSAGE_H
 #include "loopcheck/loop_checks.h"
@@ -8,8 +8,8 @@
 
 /* Parses the message into out->loop_check. Returns false with *error saying what is wrong. */
 bool loop_check_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-/* Compares the tag's present reading with the expected value and records the result. who: the user's name. Returns the answer; free with
-   mem_free(). */
+/* Compares the tag's current reading with the expected value and records the result. who: the user's name. Returns the answer;
+   free with mem_free(). */
 char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
                     const char *who);
 /* Returns the message `proofs`: the newest loop check of each tag; since > 0: only checks with sequence numbers (loop_checks_number())

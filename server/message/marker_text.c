@@ -53,8 +53,8 @@ static bool same_places(const struct frame *frame, const struct known_markers *k
     return true;
 }
 
-/* Returns the next label in `labels` that belongs to an arrow (arrows true) or to an isoline, from index *at on, and advances *at; NULL: no
-   more. */
+/* Returns the next label in `labels` of an arrow (arrows true) or of an isoline, from index *at on, and advances *at; NULL:
+   there are no more. */
 static const struct frame_label *next_label(const struct frame_label *labels, size_t count, size_t *at, bool arrow)
 {
     while (*at < count && labels[*at].arrow != arrow)
@@ -88,7 +88,7 @@ static json_t *all_markers(const struct frame *frame)
     return list;
 }
 
-/* Returns the values of the markers that changed since the client was told, without positions. */
+/* Returns the values of the markers that have changed since they were last sent to the client, without positions. */
 static json_t *changed_values(const struct frame *frame, const struct known_markers *known)
 {
     json_t *list = json_array();
@@ -164,8 +164,8 @@ static void add_list(struct text *text, const char *name, const char *list)
     text_add_bytes(text, list, strlen(list));
 }
 
-/* Appends the JSON list of the frame's sensor markers: all with their positions or, if the client knows the positions, only changed
-   values. */
+/* Appends the JSON list of the frame's sensor markers: all with their positions or, if the client has the positions, only
+   changed values. */
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
     if (!same_places(frame, known)) {

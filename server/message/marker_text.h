@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The message `markers` that precedes a frame: positions and values of the frame's markers and labels. The first message to a client has
-   all markers and labels, later ones only changes. Pure. Thread: the event loop. */
+/* The message `markers`, which precedes a frame: positions and values of the frame's markers and labels. A client's first
+   message has all markers and labels, later ones only changes. Pure. Thread: the event loop. */
 #ifndef MESSAGE_MARKER_TEXT_H
 #define MESSAGE_MARKER_TEXT_H
 #include "render/frame.h"
 
-struct known_markers { /* the sensor markers and labels that a client was sent before; zero-initialise; end with known_markers_finish() */
+struct known_markers { /* sensor markers and labels already sent to a client; zero-initialise; end with known_markers_finish() */
     bool any;
     struct frame_marker *markers;
     size_t marker_count, marker_capacity;

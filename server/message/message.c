@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks that several messages share. */
+/* Checks shared by several messages. */
 #include "message/message.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A client's message: its JSON text is parsed and checked, and becomes a struct. No other code parses messages of clients. Pure. Thread:
-   any. */
+/* A client's message: its JSON text is parsed and checked, and becomes a struct. No other code parses clients' messages. Pure.
+   Thread: any. */
 #ifndef MESSAGE_MESSAGE_H
 #define MESSAGE_MESSAGE_H
 #include <jansson.h>
@@ -53,14 +53,14 @@ enum message_type {
     MESSAGE_SIGN
 };
 
-/* frames of a session that the server signs: none, the refined ones, or all */
+/* the session's frames that the server signs: none, the refined ones, or all */
 enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL };
 
-/* RESUME_CHARS: length of a resume token, with which a client continues its session after a lost connection. RESUME_MOST_CHARS: largest
-   length of a resume token that also contains the session's view */
+/* RESUME_CHARS: length of a resume token, by which a client continues its session after a lost connection. RESUME_MOST_CHARS:
+   maximum length of a resume token that also contains the session's view */
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 };
 
-enum params_given { /* bits of params_change.given, one for each member that a params message may have */
+enum params_given { /* bits of params_change.given, one for each possible member of a params message */
                     GIVEN_GROUP = 1 << 0,
                     GIVEN_INTERPOLATION = 1 << 1,
                     GIVEN_DISTANCE = 1 << 2,
@@ -97,12 +97,12 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 
 struct params_change {
     uint32_t seq;
-    unsigned given;            /* bit mask of the members that the message states (enum params_given) */
-    struct field_params field; /* this member and all below are new values of parameters, each valid only if its bit is set in `given` */
+    unsigned given;            /* bit mask of the members present in the message (enum params_given) */
+    struct field_params field; /* this member and all that follow are new parameter values, each valid only if its bit is set in `given` */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
-    double isoline_step; /* difference between neighbouring isolines, in the unit of the values; 0: color_scale lists the isolines */
+    double isoline_step; /* difference between adjacent isolines, in the unit of the values; 0: color_scale lists the isolines */
     bool breaks_of_group, breaks_of_limits;
     bool range_of_group; /* true: the message had `range: null`, which means the group's range */
     double range_min, range_max;
@@ -113,7 +113,7 @@ struct params_change {
     double light_dir[3];
     int environment;
     int selected_asset;
-    /* with GIVEN_SENSORS, field.overrides holds the sensors that the message names. A strength or decay that the message omits is
+    /* with GIVEN_SENSORS, field.overrides holds the sensors named in the message. A strength or decay that the message omits is
        FIELD_AS_CONFIGURED; if it omits both, the sensor's override is removed */
     bool only_these_sensors; /* true: the message had `sensors: null`, so all other overrides are removed */
     enum baseline_change baseline;
@@ -123,7 +123,7 @@ struct params_change {
 
 struct fit_message {
     struct framing framing;
-    int projection; /* enum projection; PROJECTION_AS_IT_IS: the message states none, so the view keeps its own */
+    int projection; /* enum projection; PROJECTION_AS_IT_IS: not in the message, so the view keeps its own */
 };
 
 struct split_change {
@@ -133,14 +133,14 @@ struct split_change {
 
 struct pick_request {
     double x_px, y_px;
-    bool has_camera; /* true: the client asks what is at a pixel of a picture from `camera`; false: of a picture from its newest camera */
+    bool has_camera; /* true: the client asks what is at a pixel of a picture taken from `camera`; false: from its newest camera */
     struct camera camera;
 };
 
 enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
     int action;                          /* action of the user on the alarms (enum alarm_event) */
-    /* tags whose alarms the request names, as indices; for alarms of kind ALARM_LINK, indices of devices (alarm/devices.h) */
+    /* indices of the tags whose alarms the request names; for alarms of kind ALARM_LINK, indices of devices (alarm/devices.h) */
     int tags[ALARM_REQUEST_MOST], count;
     uint8_t kinds[ALARM_REQUEST_MOST]; /* kind of each alarm (enum alarm_kind), in the order of `tags` */
     double for_s;
@@ -150,15 +150,15 @@ struct alarm_request {
 #define TIME_MOST_SPEED 3600
 struct time_request {
     bool has_at;   /* true: the session goes to the instant at_us; false: it stays at the instant shown now */
-    int64_t at_us; /* microseconds UTC; 0: the present */
+    int64_t at_us; /* microseconds UTC; 0: live */
     double speed;  /* seconds of history per second of playback; negative: backwards; 0: paused */
 };
 
 enum { CODEC_LIST_MOST = 4 };
-struct codec_list { /* codecs that a client can decode, the preferred one first */
+struct codec_list { /* codecs that a client can decode, preferred one first */
     enum wire_codec at[CODEC_LIST_MOST];
     int count;
-    bool choose; /* true: the server may choose any codec of this list, and change the choice later */
+    bool choose; /* true: the server may choose any codec in this list, and change its choice later */
 };
 
 struct place_request {
@@ -167,14 +167,14 @@ struct place_request {
 };
 
 struct coverage_request {
-    int group;    /* index of the group whose sensors are judged; -1: the group shown in the view */
+    int group;    /* index of the group whose sensor coverage is assessed; -1: the group shown in the view */
     double far_m; /* metres from the nearest sensor beyond which a surface counts as uncovered; 0: the default */
 };
 
 struct loop_check_request {
     int tag;
     double expected, tolerance;
-    bool fail; /* true: the loop check is recorded as failed, whatever the reading is */
+    bool fail; /* true: the loop check is recorded as failed, regardless of the reading */
     char remark[LOOP_CHECK_REMARK_BYTES];
 };
 
@@ -184,7 +184,7 @@ struct note_request {
     int tag, asset; /* index of the tag or asset to which the note is attached; -1: none */
     bool has_position;
     double position_m[3];
-    int64_t until_us; /* time at which the note ends, microseconds UTC; 0: it stays until a user removes it */
+    int64_t until_us; /* time when the note expires, microseconds UTC; 0: it stays until a user removes it */
 };
 
 struct wall_request {
@@ -195,7 +195,7 @@ struct wall_request {
 };
 
 struct pair_request {
-    /* digits: message pair: the number that the display shows; device: message unpair: name of the display's device */
+    /* digits: message pair: the digits that the display shows; device: message unpair: name of the display's device */
     char digits[7], device[64];
 };
 
@@ -203,11 +203,11 @@ struct hello_request {
     /* access token, and the resume token of an earlier session; empty: none */
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1];
     double idle_ms; /* milliseconds since the user was last active; negative: not stated */
-    bool tokens;    /* true: the server shall send the view as a token whenever it changes */
+    bool tokens;    /* true: the server must send the view as a token whenever the view changes */
     bool depth;     /* true: the client wants depth grids with its frames */
-    bool anew;      /* true: the client resumes only the session's id and its followers, not its view */
+    bool anew;      /* true: the client resumes only the session's id and its followers, but not its view */
     bool has_camera, has_params;
-    /* tile of a picture that is spread over many displays, which this display shows; display 0: this client shows no tile */
+    /* the tile that this display shows of a picture spread over many displays; display 0: this client shows no tile */
     struct wall_place tile;
 };
 
@@ -219,66 +219,65 @@ struct message {
     double pixel_ratio;              /* messages hello and resize: device pixels per CSS pixel of the page; 0: not stated */
     char named[NAMED_VIEW_ID_BYTES]; /* messages hello, look and params: id of a named view; empty: no view (only in hello and params) */
     struct camera camera;            /* messages camera and hello: the new camera */
-    /* sequence number that the client gave its message camera, ack, fit, pick or look; message hello: sequence number of its camera */
+    /* the client's sequence number of its message camera, ack, fit, pick or look; message hello: that of its camera */
     uint32_t seq;
     struct params_change params;     /* messages params and hello: parameters of the view to change */
-    struct split_change split;       /* messages params and hello: change of the right half of a split view, applied after `params` */
+    struct split_change split;       /* messages params and hello: change to the right half of a split view, applied after `params` */
     struct fit_message fit;
     struct pick_request pick;
     bool visible;
     double decode_ms; /* message ack: milliseconds that the client needed to decode the frame; negative: not stated */
-    double t;         /* message ping: time stamp of the client, which the server returns in its answer */
+    double t;         /* message ping: the client's time stamp, which the server returns in its answer */
     bool active;      /* message ping: true: the user was active since the last ping */
     uint64_t follow;  /* messages follow and lead: number of another session; 0: no session */
     struct alarm_request alarm;
     struct time_request time; /* messages time and hello: the time that the view shows */
     struct place_request place;
     struct coverage_request coverage;
-    /* messages save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirms; empty: not confirmed yet */
+    /* messages save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirmed; empty: not confirmed yet */
     char confirm[17];
-    struct assumed_filter accept; /* message accept_places: which assumed positions are accepted */
-    char kept[65];                /* message restore_tags: name of the earlier version of the tag list to restore */
+    struct assumed_filter accept; /* message accept_places: which assumed positions to accept */
+    char kept[65];                /* message restore_tags: name of the earlier tag list version to restore */
     struct loop_check_request loop_check;
-    /* messages that edit or share a named view. save_view sets all members, remove_view only the id, share_view only the address,
-       send_to_wall only view and title */
+    /* messages that edit or share a named view: save_view sets all members, remove_view only the id, share_view only the
+       address, send_to_wall only view and title */
     struct named_view_edit view_edit;
     struct note_request note;         /* messages note and remove_note: the note */
-    struct wall_request wall;         /* messages display, send_to_wall and point: the pane or display of a wall that is meant */
+    struct wall_request wall;         /* messages display, send_to_wall and point: the pane or display of a wall in question */
     struct pair_request pair;         /* messages pair and unpair: the display to be paired */
-    enum signed_frames signed_frames; /* messages hello and sign: frames that the server shall sign */
+    enum signed_frames signed_frames; /* messages hello and sign: frames that the server must sign */
 };
 
-/* Reads a timestamp (timestamp.h) from the text of the argument `name`; *out receives microseconds UTC. Returns false, with *error set,
-   if the text is no timestamp. */
+/* Parses the argument `name` as a timestamp (timestamp.h) into *out, microseconds UTC. Returns false, with *error set, if the
+   text is not a timestamp. */
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error);
 
-/* Reads the members of a params message from an object, which may also have other members. Returns false with *error naming the wrong
-   member. */
+/* Parses the members of a params message from an object, which may also have other members. Returns false with *error naming
+   the wrong member. */
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
 struct params_context {
     const struct scene *scene;
     struct baselines *baselines;     /* stored baselines of the plant; NULL: there are none */
-    const struct snapshot *snapshot; /* readings from which a change of parameters may store a baseline; NULL: there are none */
-    int64_t now_us;                  /* UTC time in microseconds against which times in the arguments of a query are checked */
+    const struct snapshot *snapshot; /* readings that a change of parameters may store as a baseline; NULL: there are none */
+    int64_t now_us;                  /* current UTC time in microseconds, against which times in a query's arguments are checked */
     bool bare;                       /* true (only in queries): the picture has no legend and no clock */
 };
-/* Applies a change of parameters to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. If the
-   change names another group, the view first gets that group's default parameters. */
+/* Applies a change of parameters to a view. If part of the change is invalid, returns false with *error and leaves the view
+   unchanged. If the change names another group, the view first gets that group's default parameters. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
-/* Parts of params_parse() and params_apply() that handle the members `show`, `sensor`, `baseline` and `sensors`. */
+/* The parts of params_parse() and params_apply() for the members `show`, `sensor`, `baseline` and `sensors`. */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
 /* Stores or removes the baseline that a change names. Call it last, after all checks of the change, because it cannot be undone. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* Parts of params_parse() and params_apply() that handle the members `scale`, `breaks` (limits between colour bands) and
-   `isolines`. */
+/* The parts of params_parse() and params_apply() for the members `scale`, `breaks` (limits between colour bands) and `isolines`. */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
 /* split_parse() and split_apply() parse and apply the member `split`, which describes the right half of a split view (params_split.c). */
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error);
 bool split_apply(const struct params_context *context, const struct split_change *change, struct view *view, struct message_error *error);
-/* Returns true if a view may have that width and height in pixels. */
+/* Returns true if that width and height in pixels are valid for a view. */
 bool view_size_valid(double width_px, double height_px);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Error texts for messages that the server refuses. */
+/* Error texts for messages refused by the server. */
 #include "message/message_error.h"
 
 #include <stdarg.h>

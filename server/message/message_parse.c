@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses a client's JSON message into a struct message whose values are checked. */
+/* Parses a client's JSON message into a struct message and checks its values. */
 #include "message/message_parse.h"
 
 #include <math.h>
@@ -55,7 +55,7 @@ static void add_codec(struct codec_list *list, int codec)
         list->at[list->count++] = (enum wire_codec)codec;
 }
 
-/* Reads a list of codecs. Ignores unknown names, which may be from a later version of the protocol. */
+/* Reads a list of codecs. Ignores unknown names, which may come from a later version of the protocol. */
 static bool parse_codecs(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     (void)plant;
@@ -83,8 +83,7 @@ static bool parse_key_frame(const struct plant *plant, const json_t *o, struct m
     return true;
 }
 
-/* Reads the message `time`. Reading JSON yields its microseconds as a double, which represents the microseconds of any valid time
-   exactly. */
+/* Reads the message `time`. JSON gives its microseconds as a double, which is exact for any valid time. */
 static bool parse_time(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *at = json_object_get(o, "at_us");

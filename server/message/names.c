@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of the names that messages and queries use for the options of a view, for example codecs and interpolations. */
+/* Tables of the names used in messages and queries for the options of a view, such as codecs and interpolations. */
 #include "message/names.h"
 
 #include <stdbool.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and carries out messages about notes. A note is attached to a tag, an asset, a position or the whole plant. */
+/* Parses and carries out messages about notes. A note is attached to a tag, an asset, a position or the whole plant. */
 #include "message/note_message.h"
 
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
 
-/* Looks up the index of the tag or asset that a member of the message names; *out is -1 if the member is absent. Returns false with
-   *error if the name is unknown. */
+/* Looks up the index of the tag or asset named by a member of the message; *out is -1 if the member is absent. Returns false
+ * with error if the name is unknown. */
 static bool find_named(const json_t *o, const struct plant *plant, const char *member,
                        int (*find)(const struct plant *plant, const char *name), enum refusal_code missing, int *out,
                        struct message_error *error)
@@ -54,7 +54,7 @@ bool remove_note_parse(const struct plant *plant, const json_t *o, struct messag
     return given;
 }
 
-/* Adds to a JSON answer whether a note was added or ended. A refusal that concerns a note of another user also names the note's author. */
+/* Adds the result of adding or ending a note to a JSON answer. If the refusal concerns another user's note, also names its author. */
 static void add_result(json_t *answer, enum refusal_code code, const char *author)
 {
     struct refusal why = { .code = code };

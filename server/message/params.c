@@ -9,7 +9,7 @@
 
 static const double NUMBER_MAX = 1e12, RANGE_LEAST = 1e-9;
 
-/* Refuses the member `field` because nothing in the plant has the name that is its value. Always returns false. */
+/* Refuses the member `field` because the plant has nothing named like its value. Always returns false. */
 static bool refuse_name(const char *field, const json_t *value, enum refusal_code code, struct message_error *error)
 {
     char name[48];
@@ -185,8 +185,8 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
-/* Changes the group (quantity) that a view shows, and sets that group's default parameters. A view that shows values relative to alarm
-   limits continues to do so. */
+/* Changes the group (quantity) that a view shows, and sets that group's default parameters. A view of values relative to alarm
+   limits stays one. */
 static void take_group(const struct scene *scene, int group, bool is_operator, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);

@@ -20,7 +20,7 @@ static bool parse_scale(const json_t *o, struct params_change *out, struct messa
     return true;
 }
 
-/* Reads a JSON array of ascending numbers, at most `most`. Returns false if the value is anything else. */
+/* Reads a JSON array of at most `most` ascending numbers. Returns false if the value is anything else. */
 static bool take_list(const json_t *list, double *numbers, int most, int *count)
 {
     *count = 0;
@@ -34,7 +34,7 @@ static bool take_list(const json_t *list, double *numbers, int most, int *count)
     return json_is_array(list);
 }
 
-/* Sets *error to the reason for which take_list() refused the list. */
+/* Sets *error to the reason why take_list() refused the list. */
 static void fail_list(const json_t *list, const char *name, int most, struct message_error *error)
 {
     for (size_t i = 0; i < json_array_size(list); i++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses and applies parameters that select the quantity shown (values, distance from a sensor, difference from a baseline), and overrides
-   of single sensors. */
+/* Parses and applies the parameters that select the quantity shown (values, distance from a sensor, difference from a
+   baseline), and overrides for single sensors. */
 #include <string.h>
 
 #include "message/json_fields.h"
@@ -144,8 +144,8 @@ static bool apply_sensors(const struct params_change *change, struct field_param
     return true;
 }
 
-/* Sets field->baseline to the id of the baseline that the change names. A baseline that the change is about to store gets a placeholder id,
-   which params_apply_baseline() replaces. Returns false with *error if there is no such baseline. */
+/* Sets field->baseline to the id of the baseline named in the change. A baseline that the change is about to store gets a
+   placeholder id, which params_apply_baseline() replaces. Returns false with *error if there is no such baseline. */
 static bool find_baseline(const struct params_context *context, const struct params_change *change, struct field_params *field,
                           struct message_error *error)
 {
@@ -173,8 +173,7 @@ static bool find_baseline(const struct params_context *context, const struct par
     return true;
 }
 
-/* If the change makes the view show another kind of numbers (values, distances, differences), sets the range and the colours that fit
-   them. */
+/* If the change makes the view show another kind of number (values, distances, differences), sets a range and colours that suit it. */
 static void take_quantity(const struct params_context *context, const struct field_params *before, struct view *view)
 {
     const struct field_params *now = &view->field;
@@ -187,8 +186,9 @@ static void take_quantity(const struct params_context *context, const struct fie
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find(context->scene->plant, "diverging") : 0;
 }
 
-/* Returns true if the view can be drawn correctly, otherwise fills *error. An asset with a single sensor may have a surface whose triangles
-   are not subdivided (plant_cuts_singles()); the interpolation `paper` and distances from a sensor cannot be drawn on such a surface. */
+/* Returns true if the view can be drawn correctly, otherwise fills *error. An asset with only one sensor may have a surface
+   whose triangles are not subdivided (plant_cuts_singles()); the interpolation `paper` and distances from a sensor cannot be
+   drawn correctly on such a surface. */
 static bool may_show(const struct plant *plant, const struct field_params *field, struct message_error *error)
 {
     char group[48], asset[48];

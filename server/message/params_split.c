@@ -4,7 +4,7 @@
 
 #include "message/json_fields.h"
 
-/* parameters that both halves of a split view share, so they are not allowed inside `split` */
+/* parameters shared by both halves of a split view, and therefore not allowed inside `split` */
 static const char *const common[] = { "light",    "environment", "backdrop", "strip", "language", "arrows",
                                       "selected", "hidden",      "isolate",  "ghost", "clip",     "split" };
 
@@ -45,7 +45,7 @@ bool split_apply(const struct params_context *context, const struct split_change
         message_refuse(error, "bad_field", "split", REFUSAL_NARROW);
         return false;
     }
-    view_half(view, 1, &right); /* the view was not split before: the right half starts with a copy of the left half's parameters */
+    view_half(view, 1, &right); /* the view was not split before, so the right half starts as a copy of the left half's parameters */
     if (!params_apply(context, &change->right, &right, error))
         return false;
     view_split(view, &right);

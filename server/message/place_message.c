@@ -14,8 +14,8 @@
 #include "plant/tags/tag_edit.h"
 #include "scene/far_sensors.h"
 
-/* Returns the path of the tag list's file with symlinks resolved, because saving replaces that file and stores earlier versions next to
-   it. */
+/* Returns the path of the tag list's file with symlinks resolved, because saving replaces the target file and stores earlier
+   versions next to it. */
 static const char *list_path(const struct plant *plant, char real[PATH_MAX])
 {
     const char *path = plant->files.tags_path ? realpath(plant->files.tags_path, real) : NULL;
@@ -74,8 +74,7 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
     return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
 }
 
-/* Returns true if a glob pattern has few enough stars for matching to be fast: each star multiplies the time that matching a long name may
-   take. */
+/* Returns true if a glob pattern has few enough stars to be matched fast: each star multiplies the time that a long name may take. */
 static bool is_simple(const char *pattern)
 {
     int stars = 0;
@@ -143,7 +142,7 @@ static void add_far(json_t *list, const struct plant *plant, int tag, int asset,
         json_array_append_new(list, json_pack("[s,s,f,f]", plant->tags[tag].name, plant->assets[asset].id, distance_m, limit_m));
 }
 
-/* Lists sensors of a group whose position is too far from their asset's surface, as JSON. For a sensor that the user moves on trial, the
+/* Lists the sensors of a group whose position is too far from their asset's surface, as JSON. For a sensor moved on trial, the
    trial position counts. */
 static json_t *far_list(const struct scene *scene, const struct place_set *set, int group)
 {
@@ -205,8 +204,8 @@ static json_t *lines_of(const char *before, const char *after, size_t *more)
     return list;
 }
 
-/* Returns the tag list `before` with the positions of the sensors in `set` replaced (free with mem_free()); NULL with the reason in
-   *why. */
+/* Returns the tag list `before` with the positions of the sensors in `set` replaced (free with mem_free()), or NULL with the
+ * reason in why. */
 static char *edited(const struct plant *plant, const char *before, const struct place_set *set, struct refusal *why)
 {
     struct tag_edit edits[PLACING_MOVES];
@@ -243,8 +242,8 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
                      9);
 }
 
-/* Returns a request to save the tag list `after` if the user confirmed that list (the message has its hash); otherwise NULL. Takes
-   ownership of `after`. */
+/* Returns a request to save the tag list `after` if the user has confirmed that list (the message has its hash), otherwise
+   NULL. Takes ownership of `after`. */
 static struct tag_save *order_of(const struct plant *plant, const char *before, char *after, const struct message *message, const char *who)
 {
     char hash[17], real[PATH_MAX];
@@ -262,7 +261,7 @@ static struct tag_save *order_of(const struct plant *plant, const char *before, 
     return order;
 }
 
-/* Returns the tag list that the message asks for, made from the list `before` (free with mem_free()); NULL with the reason in *why. */
+/* Returns the tag list requested by the message, made from the list `before` (free with mem_free()), or NULL with the reason in *why. */
 static char *wanted_list(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                          uint8_t *outcome, struct refusal *why)
 {

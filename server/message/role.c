@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "engineers.h" /* generated from clients/web/core/session.js: which parameters are for engineers */
+#include "engineers.h" /* generated from clients/web/core/session.js: the list of parameters for engineers only */
 #include "message/names.h"
 #include "message/view_address.h"
 
@@ -13,7 +13,7 @@ const struct name names_role[] = {
     { "viewer", ROLE_VIEWER }, { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
 };
 
-/* List of the parameters that only engineers may change, because each combination of values makes the server compute another field
+/* The parameters that only engineers may change, because each combination of values makes the server compute another field
    (interpolated values), and choosing them needs expertise. */
 #define BIT(name, bit) | GIVEN_##bit
 #define NAME(name, bit) #name,
@@ -97,8 +97,7 @@ bool role_may_send(enum role role, const struct message *message, struct message
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);
 }
 
-/* Returns whether an argument NAME=VALUE of a query, or one of several that `;` separates, sets a parameter that only engineers may
-   change. */
+/* Returns true if a query's argument NAME=VALUE, or one of several separated by `;`, sets a parameter that only engineers may change. */
 static bool is_for_engineers(const char *arg)
 {
     for (size_t i = 0; i < sizeof(ENGINEERS_NAMES) / sizeof(ENGINEERS_NAMES[0]); i++)
@@ -119,7 +118,7 @@ bool role_may_save(enum role role, const char *address, struct message_error *er
     struct view_address fields;
     struct message_error wrong;
     bool good = true;
-    /* a view address that the server cannot read may be saved, because the server never shows it */
+    /* an unreadable view address may be saved, because the server never shows it */
     if (view_address_read(&fields, address, &wrong))
         for (size_t i = 0; i < fields.count && good; i++)
             good = role_may_ask(role, fields.args[i], error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The roles of clients, and which messages each may send. PROTOCOL.md has the same table for authors of clients. Pure; any thread. */
+/* The roles of clients, and the messages that each may send. PROTOCOL.md has the same table for authors of clients. Pure; any thread. */
 #ifndef MESSAGE_ROLE_H
 #define MESSAGE_ROLE_H
 #include "message/message.h"
@@ -23,21 +23,21 @@ static inline bool role_is_node(enum role role)
 
 extern const struct name names_role[]; /* names of the roles; the last entry's text is NULL */
 
-/* Returns true if a client of that role may send the message. If not, *error says why. */
+/* Returns true if that role may send the message; if not, *error says why. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);
 
-/* Returns true if that role may use an argument NAME=VALUE in the HTTP query of a picture. If not, *error says why. */
+/* Returns true if that role may use an argument NAME=VALUE in the HTTP query for a picture; if not, *error says why. */
 bool role_may_ask(enum role role, const char *arg, struct message_error *error);
 
-/* Returns true if that role may save a view with this address. Saved views are shown to all users with the rights of an engineer, so an
-   address with parameters for engineers needs an engineer. If not, *error says why. */
+/* Returns true if that role may save a view with this address; if not, *error says why. All users see saved views with an
+   engineer's rights, so only engineers may save an address with parameters for engineers. */
 bool role_may_save(enum role role, const char *address, struct message_error *error);
 
-/* Returns the plant in which names of a message from that role are looked up. For roles below viewer it is *copy, the same plant without
-   tags, so that refusals do not reveal which tags exist. *copy shares everything else with `plant`. */
+/* Returns the plant in which names in a message from that role are looked up. For roles below viewer it is *copy, the same
+   plant without tags, so that refusals do not reveal which tags exist. *copy shares everything else with `plant`. */
 const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy);
 
-/* Returns true if a renderer must forward messages of that type to its core, because they change state that the core owns. */
+/* Returns true if a renderer must forward messages of that type to its core, because they change state owned by the core. */
 bool message_is_handed_on(const struct message *message);
 
 #endif

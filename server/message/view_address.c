@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Translates the fields of the page's URL (clients/web/core/address.js) into arguments of the HTTP query for the same picture. */
+/* Translates the fields of the page's URL (clients/web/core/address.js) into the arguments of an HTTP query for the same picture. */
 #include "message/view_address.h"
 
 #include <stdio.h>
@@ -8,13 +8,13 @@
 
 #include "base/mem.h"
 
-/* number of comma-separated values of a camera in a URL: 3 each for eye, target and up, the angle, and the height of a parallel
-   projection */
+/* number of comma-separated values of a camera in a URL: 3 each for eye, target and up, then the angle, and the height of a
+   parallel projection */
 enum { CAMERA_NUMBERS = 11 };
 
 static const struct {
-    /* name: field in the page's URL; of_query: argument of an HTTP query with the same meaning; NULL: there is none, so the field is left
-       out */
+    /* name: field in the page's URL; of_query: argument of an HTTP query with the same meaning, NULL: there is none, so the
+       field is dropped */
     const char *name, *of_query;
 } names[] = {
     { "group", "group" },
@@ -62,7 +62,7 @@ static int hex_of(char c)
     return !at ? -1 : at - digits < 16 ? (int)(at - digits) : (int)(at - digits) - 6;
 }
 
-/* Replaces percent-escapes and plus signs by the characters that they encode, in place. */
+/* Decodes percent-escapes and plus signs in place. */
 static void decode(char *text)
 {
     char *to = text;
@@ -74,7 +74,7 @@ static void decode(char *text)
     *to = 0;
 }
 
-/* Reads comma-separated numbers into `out`. Returns how many were read; 0 if there are none, more than `most`, or other text. */
+/* Reads comma-separated numbers into `out`. Returns how many were read; 0 if there are none, more than `most`, or any other text. */
 static int read_numbers(const char *text, double *out, int most)
 {
     for (int count = 0; count < most;) {
@@ -115,8 +115,8 @@ static bool add_clip(struct view_address *out, const char *value)
     return view_address_add(out, !strchr(value, ';') && commas == 5 ? "clip_box" : "clip", value);
 }
 
-/* Adds the parameters of the right half of a split view as the argument `split`. The value `same` (both halves have equal parameters)
-   becomes an empty argument. */
+/* Adds the parameters for the right half of a split view as the argument `split`. The value `same` (both halves have equal
+   parameters) becomes an empty argument. */
 static bool add_split(struct view_address *out, char *value)
 {
     for (char *at = value, *colon; (colon = strchr(at, ':')); at = colon + strcspn(colon, ";"))
@@ -149,8 +149,7 @@ static bool add_field(struct view_address *out, const char *name, char *value, s
    stop. */
 typedef bool field_fn(void *arg, const char *name, char *value);
 
-/* Calls `take` for each field NAME=VALUE of a view's address. Returns false if `take` returned false, after which no more fields are
-   passed. */
+/* Calls `take` for each field NAME=VALUE of a view's address. Stops and returns false if `take` returns false. */
 static bool each_field(const char *address, field_fn *take, void *arg)
 {
     char *copy = mem_strdup(address), *rest = copy;
@@ -221,7 +220,7 @@ bool view_address_set(struct view_address *address, const char *arg)
         else
             address->args[left++] = address->args[i];
     address->count = left;
-    if (!strcmp(arg, "at=now")) /* `at=now` means the present, for which queries have no argument */
+    if (!strcmp(arg, "at=now")) /* `at=now` means live, for which queries have no argument */
         return true;
     if (left == VIEW_ADDRESS_ARGS)
         return false;

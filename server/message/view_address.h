@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Address of a view: the part of the page's URL after `#`. Splits an address into fields, and translates them into arguments of
+/* Address of a view: the part of the page's URL after `#`. Splits it into fields, and translates these into arguments for
    view_query_parse(). Pure. */
 #ifndef MESSAGE_VIEW_ADDRESS_H
 #define MESSAGE_VIEW_ADDRESS_H
@@ -11,22 +11,22 @@
 enum { VIEW_ADDRESS_ARGS = 40 };
 
 struct view_address {
-    char *args[VIEW_ADDRESS_ARGS]; /* arguments of the address as decoded texts NAME=VALUE */
+    char *args[VIEW_ADDRESS_ARGS]; /* arguments from the address, as decoded texts NAME=VALUE */
     size_t count;
 };
 
-/* Translates the address of a view into arguments of an HTTP query for a picture. The selected tag and the tilt of the camera are dropped,
-   because pictures do not show them. Returns false with *error if a picture cannot show the address. Call view_address_finish() in any
-   case. */
+/* Translates a view's address into arguments of an HTTP query for a picture. Drops the selected tag and the camera's tilt,
+   because pictures do not show them. Returns false with *error if a picture cannot show the address. Call view_address_finish()
+   in any case. */
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error);
 /* Adds the argument NAME=VALUE. Returns false if there is no room for more. */
 bool view_address_add(struct view_address *address, const char *name, const char *value);
-/* Returns whether an argument NAME=VALUE has this name. */
+/* Returns true if an argument NAME=VALUE has this name. */
 bool view_address_is_named(const char *arg, const char *name);
-/* Returns whether the argument `given` of a query replaces the argument `name` of a saved view: it is the same argument, or it makes the
-   other one meaningless, as `fit` does with `camera`. Both texts may be followed by `=` and a value. */
+/* Returns true if a query's argument `given` replaces a saved view's argument `name`: it is the same argument, or it makes the
+   other meaningless, as `fit` does with `camera`. Either text may be followed by `=` and a value. */
 bool view_address_replaces(const char *given, const char *name);
-/* Adds an argument NAME=VALUE in place of those that it replaces. Returns false if there is no room for more. */
+/* Adds an argument NAME=VALUE in place of those that it supersedes. Returns false if there is no room for more. */
 bool view_address_set(struct view_address *address, const char *arg);
 void view_address_finish(struct view_address *address);
 

@@ -7,8 +7,8 @@
 #include "message/view_address.h"
 #include "message/view_query.h"
 
-/* picture size and time used while checking the address of a named view. Any size will do, since the address does not depend on it; the
-   time only must be later than the instant in the address. */
+/* picture size and time for checking the address of a named view. Any size will do, because the address does not depend on it;
+   the time must only be later than any instant in the address. */
 enum { CHECKED_WIDTH_PX = 1280, CHECKED_HEIGHT_PX = 720 };
 static const int64_t CHECKED_US = INT64_C(4000000000000000); /* an instant in the year 2096, microseconds UTC */
 

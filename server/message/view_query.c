@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the query of /snapshot.png to the JSON of the messages `camera` and `params`, so that the same code checks queries and
+/* Converts a query of /snapshot.png to the JSON of the messages `camera` and `params`, so that the same code checks queries and
    messages. */
 #include "message/view_query.h"
 
@@ -64,7 +64,7 @@ static const struct {
     { "at", STRING },
 };
 
-/* Reads a number at the beginning of `text`; *end then points behind the number. Returns NULL if there is no number. */
+/* Reads a number at the start of `text` and sets *end to just after it. Returns NULL if there is no number. */
 static json_t *number(const char *text, const char **end)
 {
     char *stop;
@@ -89,7 +89,7 @@ static json_t *numbers(const char *text)
     return NULL;
 }
 
-/* Reads a sensor's strength and decay: `2`, `2:0.5` or `:0.5`. */
+/* Reads one sensor's strength and decay: `2`, `2:0.5` or `:0.5`. */
 static json_t *sensor(const char *text)
 {
     json_t *object = json_object();
@@ -108,7 +108,7 @@ static json_t *sensor(const char *text)
     return NULL;
 }
 
-/* Reads strength and decay of several sensors: TAG=STRENGTH[:DECAY],... */
+/* Reads several sensors' strengths and decays: TAG=STRENGTH[:DECAY],... */
 static json_t *sensors(const char *text)
 {
     json_t *all = json_object();
@@ -153,7 +153,7 @@ static json_t *lines(const char *text)
 
 static bool add_argument(json_t *o, const char *arg, struct message_error *error);
 
-/* Reads the arguments of the right half of a split view: NAME=VALUE;... */
+/* Reads the arguments for the right half of a split view: NAME=VALUE;... */
 static json_t *split(const char *text, struct message_error *error)
 {
     json_t *all = json_object();
@@ -179,7 +179,7 @@ static json_t *strings(const char *text)
     return array;
 }
 
-/* Reads the planes that cut the model: four numbers each, separated by semicolons. Returns NULL if the text is anything else. */
+/* Reads the clipping planes: four numbers each, separated by semicolons. Returns NULL if the text is anything else. */
 static json_t *planes(const char *text)
 {
     json_t *array = json_array();

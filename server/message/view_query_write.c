@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a view as the arguments of an HTTP query. Values that equal the plant's defaults are written too, since the defaults may change
-   later. */
+/* Writes a view as arguments of an HTTP query. Includes values that equal the plant's defaults, because the defaults may change later. */
 #include "message/view_query_write.h"
 
 #include <math.h>
@@ -10,7 +9,7 @@
 #include "message/names.h"
 #include "plant/colormaps.h"
 
-/* tolerance for comparing unit vectors of a view, because reading the written query normalises them again */
+/* tolerance for comparing a view's unit vectors, because parsing the written query normalises them again */
 static const double ROUNDING = 1e-12;
 
 /* --- lists of arguments ------------------------------------------------------------------------------------------------------- */
@@ -26,8 +25,8 @@ static void add_numbers(struct text *text, const double *values, size_t count)
         add_number(text, i > 0 ? "," : "", values[i]);
 }
 
-/* Adds the argument NAME=TEXT, where `text` holds TEXT, and empties `text` for the next argument. Returns false if `out` has no room for
-   more. */
+/* Adds the argument NAME=TEXT, with TEXT from `text`, and empties `text` for the next argument. Returns false if `out` has no
+   room for more. */
 static bool flush(struct view_address *out, const char *name, struct text *text)
 {
     bool good = view_address_add(out, name, text->length > 0 ? text->at : "");

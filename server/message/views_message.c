@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses and carries out messages about saved views, and describes as JSON what the displays of control-room walls show. */
+/* Parses and carries out messages about saved views, and describes the content of control-room walls as JSON. */
 #include "message/views_message.h"
 
 #include <stdio.h>
@@ -75,8 +75,8 @@ char *share_view_do(struct short_links *links, const struct message *message, in
     return json_text(answer, 0);
 }
 
-/* Describes a pane (a part of a wall's display) as JSON. A tour, which shows views one after the other, is sent as a list of views with
-   their durations. */
+/* Describes a pane (a part of a wall's display) as JSON. A tour, which shows views in turn, becomes a list of views with their
+   durations. */
 static json_t *pane_of(const struct plant *plant, const struct wall_pane *pane)
 {
     const struct tour *tour = pane->kind == PANE_TOUR ? tour_find(plant, pane->items[0]) : NULL;
@@ -162,8 +162,8 @@ static json_t *display_of(const struct plant *plant, const struct walls_reader *
     return json_pack("{s:o,s:o}", "grid", rows, "panes", panes);
 }
 
-/* Lists the displays of a wall as JSON. A display that the client (reader) may not see is listed without content, so that the others keep
-   their numbers. */
+/* Lists the displays of a wall as JSON. A display that the client (reader) may not see is listed without content, so that the
+   numbers of the others stay the same. */
 static json_t *displays_of(const struct plant *plant, const struct walls_reader *reader, const struct wall *wall)
 {
     json_t *displays = json_array();

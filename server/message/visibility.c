@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts between JSON and struct visibility, which says which assets are hidden, isolated or ghosted, and how the model is cut. */
+/* Converts between JSON and struct visibility, which says which assets are hidden, isolated or ghosted, and how the model is clipped. */
 #include "message/visibility.h"
 
 #include <math.h>

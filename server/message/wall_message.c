@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses messages about wall displays, and sends views to panes, which are parts of displays. Messages name a pane by wall, display and
-   area, as in the plant file. */
+/* Parses messages about wall displays, and sends views to panes, which are parts of displays. Messages identify a pane by wall,
+   display and area, as in the plant file. */
 #include "message/wall_message.h"
 
 #include <string.h>

@@ -179,9 +179,9 @@ static bool is_due(const struct postgres *postgres, const struct postgres_span *
     return clock_mono_ns() >= span->at_ns + OVERLAP_NS && postgres->sent_ns >= span->at_ns;
 }
 
-/* Reads from the database the points that another daemon recorded in a time span. leads: the span is the time just before this daemon
-   became the leader. This daemon then marked the ends of lines in the database; the former leader may have sent later points, so the
-   marks are corrected first. */
+/* Reads the points that another daemon recorded in a time span from the database. leads: the span is the time just before this
+   daemon became the leader. On becoming leader, this daemon marked the ends of lines in the database; the former leader may
+   have sent later points, so the marks are corrected first. */
 static bool fill_span(struct postgres *postgres, const struct postgres_span *span, bool leads, int64_t *points,
                       char why[POSTGRES_WHY_BYTES])
 {
@@ -189,8 +189,8 @@ static bool fill_span(struct postgres *postgres, const struct postgres_span *spa
            postgres_restore_span(&postgres->restore, &postgres->tables, span->from_us, span->to_us, points, why);
 }
 
-/* Reads from the database the points of the oldest owed time span: another daemon recorded them, and this machine lacks them. It first
-   waits until that daemon has had time to send them and our own points are sent. */
+/* Reads the points of the oldest owed time span from the database: another daemon recorded them, and this machine lacks them.
+   First waits until that daemon has had time to send them and our own points are sent. */
 static void fill(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -226,8 +226,8 @@ static void count_month(struct postgres *postgres, struct waiting_month *month)
     month_outbox_close(&outbox);
 }
 
-/* Counts the points in the outboxes. Counts the newest month each time, other months rarely, because only imports and changes of the
-   clock add points there. */
+/* Counts the points in the outboxes. Counts the newest month each time, but the others only rarely, because only imports and
+   clock changes add points there. */
 static void look_for_points(struct postgres *postgres)
 {
     size_t count;
@@ -255,7 +255,7 @@ static int64_t waiting(const struct postgres *postgres)
     return sum;
 }
 
-/* Deletes the oldest points from the outboxes if more than spool_points wait; the history files still have them. */
+/* If more than spool_points wait in the outboxes, deletes the oldest points there; the history files still have them. */
 static void drop_oldest(struct postgres *postgres)
 {
     int64_t over = waiting(postgres) - (int64_t)postgres->params.plant->history.postgres.spool_points, lost = 0;
@@ -284,8 +284,8 @@ static void drop_oldest(struct postgres *postgres)
 
 /* --- sending ------------------------------------------------------------------------------------------------------------------ */
 
-/* Sends one batch of an outbox's points. *more receives true if another batch follows. Returns false if the database or the file failed,
-   so that sending must stop. */
+/* Sends one batch of an outbox's points. *more: true if another batch follows. Returns false if the database or the file
+   failed, so that sending must stop. */
 static bool send_batch(struct postgres *postgres, struct month_outbox *outbox, struct waiting_month *month, bool newest, bool *more)
 {
     struct month_outbox_batch batch = { 0 };
@@ -342,8 +342,8 @@ static void forget_sent(struct postgres *postgres)
     }
 }
 
-/* On a standby: notes the newest sequence number in the newest month's outbox. When a new month begins, points of the older month may be
-   sent twice; the database then replaces each point by its equal. */
+/* On a standby: notes the newest sequence number in the newest month's outbox. When a new month begins, points of the previous
+   month may be sent twice; the database then replaces each point with an identical one. */
 static void note_outbox(struct postgres *postgres)
 {
     int error, month = postgres->month_count ? postgres->months[postgres->month_count - 1].month : 0;
@@ -355,8 +355,8 @@ static void note_outbox(struct postgres *postgres)
     month_outbox_close(&outbox);
 }
 
-/* Sends the points in all outboxes. With the newest month it also sends the newest samples, which are not recorded yet, every few
-   seconds and when the daemon ends. */
+/* Sends the points in all outboxes. With those of the newest month, it also sends the newest samples, which are not recorded
+   yet, every few seconds and when the daemon ends. */
 static void send_all(struct postgres *postgres)
 {
     int64_t now_ns = clock_mono_ns();
@@ -370,7 +370,7 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        /* sent_ns is one round in the past, because the historian may have added points while this round sent the others */
+        /* sent_ns lags by one round, because the historian may have added points while this round sent the others */
         postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS;
         pthread_mutex_unlock(&postgres->lock);
     }
@@ -382,7 +382,7 @@ static void *postgres_main(void *arg)
     struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
     bool last;
     do {
-        /* the last round begins after the stop signal, so that points written before the signal are sent */
+        /* runs one more round after the stop signal, so that points written before the signal are sent */
         last = poll(&fd, 1, ROUND_MS) > 0;
         if (!last || !*postgres->said)
             connect_now(postgres);
@@ -395,8 +395,8 @@ static void *postgres_main(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            /* until the restore of this machine's files has ended the lines that earlier recordings left open in the database, nothing
-               is sent */
+            /* if this machine's files are being restored: sends nothing until the restore has ended the lines that earlier
+               recordings left open in the database */
             if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX)
                 send_all(postgres);
         } else {
@@ -441,7 +441,7 @@ int64_t postgres_sent_age_ns(struct postgres *postgres)
     return sent_ns == INT64_MIN ? INT64_MAX : clock_mono_ns() - sent_ns;
 }
 
-/* Returns the UTC time of the last point in the history files. Without files, returns the oldest time that retention keeps. */
+/* Returns the UTC time of the last point in the history files or, without files, the oldest time that retention keeps. */
 static int64_t end_of_files_us(struct postgres *postgres)
 {
     const int64_t day_us = INT64_C(86400000000);
@@ -458,11 +458,11 @@ static int64_t end_of_files_us(struct postgres *postgres)
     return last_us;
 }
 
-/* Adds a time span whose points must be read from the database. Call it with the lock held. */
+/* Adds a time span whose points must be read from the database. The caller holds the lock. */
 static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
     struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
-    /* the list is full, because the connection breaks often: extends the last span instead of adding one */
+    /* the list is full, because the connection breaks often: extends the last span instead of adding another */
     if (postgres->owed.span_count == SPANS)
         *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
@@ -493,8 +493,9 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Queues another read of the span just before this daemon became the leader. The queue holds at most two such reads: the first keeps its
-   place however often a standby reconnects, and the second runs after the points of the newest connection have arrived. */
+/* Queues another read of the span just before this daemon became the leader. The queue holds at most two such reads: the first
+   keeps its place however often a standby reconnects, and the second runs once the points of the newest connection have
+   arrived. */
 void postgres_fill_again(struct postgres *postgres)
 {
     struct postgres_span *newest = NULL;

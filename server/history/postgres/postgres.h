@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends recorded history to PostgreSQL, on a thread of its own. It sends the points in the outboxes of the months' history files in
-   batches, each point once. While the server is unreachable the points stay in the outboxes, up to a limit. Neither the historian nor
-   live pictures wait for it. */
+/* Sends recorded history to PostgreSQL, on a thread of its own. It sends the points in the outboxes of the monthly history
+   files in batches, each point once. While the server is unreachable, points stay in the outboxes, up to a limit. Neither the
+   historian nor live pictures wait for it. */
 #ifndef HISTORY_POSTGRES_POSTGRES_H
 #define HISTORY_POSTGRES_POSTGRES_H
 #include "base/log/log.h"
@@ -9,29 +9,29 @@
 #include "plant/plant.h"
 
 enum { POSTGRES_SPANS = 16 };
-/* A time span in which another daemon led and this machine recorded nothing. Its points must be read from the database once the other
-   daemon has sent them: at the monotonic time at_ns or later. */
+/* A time span in which another daemon was the leader and this machine recorded nothing. Its points must be read from the
+   database once the other daemon has sent them: at the monotonic time at_ns or later. */
 struct postgres_span {
     int64_t from_us, to_us, at_ns;
 };
 struct postgres_owed { /* the time spans whose points must still be read from the database */
     struct postgres_span spans[POSTGRES_SPANS];
     size_t span_count;
-    struct postgres_span led; /* time span just before this daemon became the leader; its to_us is 0 if this daemon is not the leader */
+    struct postgres_span led; /* time span just before this daemon became the leader; to_us is 0 if this daemon is not the leader */
 };
 
 struct postgres_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant; /* must outlive the struct postgres */
-    const char *folder;        /* folder of the months' history files */
-    /* true: until postgres_lead() is called, another daemon writes to the database, and this one only sends points that an earlier run
-       left */
+    const char *folder;        /* folder of the monthly history files */
+    /* true: until postgres_lead() is called, another daemon writes to the database, and this one only sends points left by an
+       earlier run */
     bool stands_by;
-    /* time spans whose points must still be read from the database, from postgres_stop() of the previous instance for the same folder;
-       copied by the call; NULL: none */
+    /* time spans whose points must still be read from the database, as returned by postgres_stop() of the previous instance for
+       this folder; copied; NULL: none */
     const struct postgres_owed *owed;
-    /* called by the sending thread after it has read points from the database into the history files of this machine, which lacked them */
+    /* called on the sending thread after it has copied points that this machine lacked from the database to its history files */
     void (*restored)(void *arg);
     void *arg;
 };
@@ -39,25 +39,26 @@ struct postgres_params {
 struct postgres;
 /* Starts the sending thread. Call it before anything is recorded in the folder. Returns NULL if the thread cannot be started (logged). */
 struct postgres *postgres_start(const struct postgres_params *params);
-/* Adds to the metric of points that retention deleted from the files before they were sent. Thread: any. */
+/* Adds to the metric that counts points deleted by retention before they were sent. Thread: any. */
 void postgres_count_lost(struct postgres *postgres, int64_t points);
-/* Makes this daemon the only writer to the database from to_us on. from_us: time of the last sample mirrored from the former leader; 0:
-   no sample was mirrored, so the former leader's lines are ended at their last points. If the former leader sent points after from_us,
-   they are read from the database as by postgres_fill(). Thread: any. */
+/* Makes this daemon the only writer to the database from to_us on. from_us: time of the last sample mirrored from the former
+   leader; 0: no sample was mirrored, so the former leader's lines are ended at their last points. Points that the former leader
+   sent after from_us are read from the database as in postgres_fill(). Thread: any. */
 void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Reads once more from the database the span just before this daemon became the leader, because the former leader may have sent more
-   points of that time. Thread: any. */
+/* Once more reads the span just before this daemon became the leader from the database, because the former leader may have sent
+   more points for that time. Thread: any. */
 void postgres_fill_again(struct postgres *postgres);
-/* For a standby: states that the leader has sent to the database all points recorded until age_ns ago. Thread: any. */
+/* For a standby: tells it that the leader has sent the database all points recorded until age_ns ago. Thread: any. */
 void postgres_sent_elsewhere(struct postgres *postgres, int64_t age_ns);
 /* Returns the age in nanoseconds of the newest time T such that all points recorded before T are in the database; INT64_MAX: T is unknown.
    Thread: any. */
 int64_t postgres_sent_age_ns(struct postgres *postgres);
-/* Replaces a gap in the files by the points that another daemon recorded between two times, once that daemon has sent them to the
-   database. from_us 0: from the last point in the files. Thread: any. */
+/* Replaces a gap in the files with the points that another daemon recorded between two times, once that daemon has sent them to
+   the database. from_us 0: from the last point in the files. Thread: any. */
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Sends pending points for at most two seconds, and ends the thread. *owed receives the time spans whose points must still be read from
-   the database; owed NULL: not wanted. *postgres NULL is fine and leaves *owed unchanged. Sets *postgres to NULL. */
+/* Sends pending points for at most two seconds, and ends the thread. *owed receives the time spans whose points must still be
+   read from the database; owed NULL: not needed. Accepts a pointer to NULL, and then leaves *owed unchanged. Sets *postgres to
+   NULL. */
 void postgres_stop(struct postgres **postgres, struct postgres_owed *owed);
 
 #endif

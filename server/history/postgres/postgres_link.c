@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uses libpq without its blocking calls: every wait is a poll() on the socket, with a timeout. */
+/* Uses libpq without its blocking calls: all waiting is done by poll() on the socket, with a timeout. */
 #include "history/postgres/postgres_link.h"
 
 #include <endian.h>
@@ -15,17 +15,17 @@
 #include "base/mem.h"
 
 static const int64_t CONNECT_NS = 10 * NS_PER_S, ANSWER_NS = 60 * NS_PER_S, STOP_NS = 2 * NS_PER_S;
-static const int64_t EPOCH_US = 946684800000000; /* 2000-01-01 in microseconds since 1970: PostgreSQL counts time from there */
-/* Keepalive settings: if this machine disappears, the database server closes the connection within half a minute. That releases the lock
-   by which only one daemon writes. */
+static const int64_t EPOCH_US = 946684800000000; /* 2000-01-01 in microseconds since 1970: the epoch of PostgreSQL timestamps */
+/* Keepalive settings: if this machine disappears, the database server closes the connection within half a minute. That releases
+   the lock of the only writer. */
 static const char set_up[] = "SET client_min_messages = warning; SET synchronous_commit = on; SET tcp_keepalives_idle = 10;"
                              "SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
 
 struct postgres_link {
     PGconn *library;
     int stop_fd;
-    int64_t stop_by_ns;            /* monotonic deadline for all waits after stop_fd became readable; 0: the program is not ending */
-    int64_t connect_ns, answer_ns; /* time limits in nanoseconds, for connecting and for each answer */
+    int64_t stop_by_ns;            /* monotonic deadline for all waits once stop_fd is readable; 0: the program is not ending */
+    int64_t connect_ns, answer_ns; /* timeouts in nanoseconds: for connecting, and for each answer */
     struct {
         char *at;
         size_t length, capacity;
@@ -93,7 +93,7 @@ static bool is_good(const PGresult *result)
     return status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_COPY_IN || status == PGRES_EMPTY_QUERY;
 }
 
-/* Reads all results of a query. Returns the last result, or NULL if any of the results is an error. */
+/* Reads all results of a query. Returns the last one, or NULL if any result is an error. */
 static PGresult *last_result(struct postgres_link *link)
 {
     PGresult *last = NULL;
@@ -240,7 +240,7 @@ static void put_int64(struct postgres_link *link, int64_t value)
 
 bool postgres_copy_begin(struct postgres_link *link, const char *table)
 {
-    /* file header of COPY BINARY; the zeros after the signature are its flags and the length of its extension */
+    /* file header of COPY BINARY; the zeros after the signature are the flags and the length of the header extension */
     static const char head[19] = "PGCOPY\n\377\r\n\0";
     link->copy.length = 0;
     put(link, head, sizeof(head));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Restores the history of another machine from PostgreSQL into the files of this machine. */
+/* Restores history recorded on another machine from PostgreSQL to the files of this machine. */
 #include "history/postgres/postgres_restore.h"
 
 #include <errno.h>
@@ -71,8 +71,8 @@ static void end(struct postgres_restore *restore)
 
 /* --- ending lines in the database --------------------------------------------------------------------------------------------- */
 
-/* Ends the recorded lines in the database at their last points, as month_file_recover() does in files. Each tag's newest sample becomes
-   a recorded point, even if later points exist, because a standby may have sent its first points already. */
+/* Ends the recorded lines in the database at their last points, as month_file_recover() does in files. Each tag's newest sample
+   becomes a recorded point, even if later points exist, because a standby may already have sent its first points. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =
@@ -89,8 +89,8 @@ bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)(now_us / US_PER_S));
 }
 
-/* Corrects the ends of recorded lines within a time span. This daemon wrote a gap mark after the last point that it knew of. If the
-   former leader continued the line, that mark is deleted, and a mark is written after the true last point. */
+/* Corrects the ends of recorded lines within a time span. This daemon wrote a gap mark after the last point that it knew. If
+   the former leader continued the line, deletes that mark and writes one after the true last point. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us)
 {
 #define AT(US) "('epoch'::timestamptz + " US " * interval '1 microsecond')"
@@ -111,7 +111,7 @@ bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, 
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)from_us, (long long)to_us);
 }
 
-/* *first and *last receive the first and the last month of which the database has points; *any is false if it has no points. Returns
+/* Sets *first and *last to the first and the last month with points in the database; *any is false if there are none. Returns
    false if the query failed. */
 static bool find_months(struct postgres_tables *tables, int *first, int *last, bool *any)
 {
@@ -148,8 +148,8 @@ static bool fail(char why[POSTGRES_WHY_BYTES], int error)
     return false;
 }
 
-/* Copies the points of one tag up to the end of a month from the database into the month's file. Each query returns at most
-   POINTS_AT_ONCE points, to bound the memory. */
+/* Copies the points of one tag up to the end of a month from the database to the month's file. Each query returns at most
+   POINTS_AT_ONCE points, which bounds the memory. */
 static bool restore_tag(struct postgres_tables *tables, const struct tag_there *there, struct month_file *file, int64_t after_us,
                         int64_t end_us, int64_t *points, char why[POSTGRES_WHY_BYTES])
 {
@@ -200,8 +200,8 @@ static bool restore_events(struct postgres_tables *tables, struct month_file *fi
     return rows && (!error || fail(why, error));
 }
 
-/* Finds the tags in the database that this plant also has, by name, and whose unit can be converted to the tag's present unit. Returns
-   an array, *count long, to free with mem_free(); NULL if the query failed. */
+/* Finds the tags in the database that this plant also has, by name, and whose unit can be converted to the tag's current unit.
+   Returns an array of *count elements (free with mem_free()); NULL if the query failed. */
 static struct tag_there *find_tags(const struct postgres_restore *restore, struct postgres_tables *tables, size_t *count)
 {
     char plant[NUMBER_BYTES];
@@ -218,7 +218,7 @@ static struct tag_there *find_tags(const struct postgres_restore *restore, struc
     return found;
 }
 
-/* *any receives whether the database has points of the plant between two times. Returns false if the query failed. */
+/* Sets *any to true if the database has points of the plant between two times. Returns false if the query failed. */
 static bool find_points(struct postgres_tables *tables, int64_t from_us, int64_t to_us, bool *any)
 {
     char plant[NUMBER_BYTES], from[NUMBER_BYTES], to[NUMBER_BYTES];
@@ -235,8 +235,8 @@ static bool find_points(struct postgres_tables *tables, int64_t from_us, int64_t
     return rows;
 }
 
-/* Opens the file of a month. *file is NULL if there is no file and the database has no points for one. Returns false if the query or the
-   file failed. */
+/* Opens the file of a month. *file is NULL if there is neither a file nor any point in the database for that month. Returns
+   false if the query or the file failed. */
 static bool open_month(const struct postgres_restore *restore, struct postgres_tables *tables, int month, int64_t from_us, int64_t to_us,
                        struct month_file **file, char why[POSTGRES_WHY_BYTES])
 {

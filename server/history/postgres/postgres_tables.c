@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes points to PostgreSQL. A batch is first copied into temporary tables, so that a point that is sent twice is stored once. */
+/* Writes points to PostgreSQL. A batch is first copied to temporary tables, so that a point sent twice is stored once. */
 #include "history/postgres/postgres_tables.h"
 
 #include <stdio.h>
@@ -30,7 +30,7 @@ static const char make_temporary[] =
 
 /* --- opening ------------------------------------------------------------------------------------------------------------------ */
 
-/* Runs a query that returns a number, and returns the number. Returns -1 if the server fails. */
+/* Runs a query that returns a number, and returns that number; -1 if the server fails. */
 static int64_t ask_number(struct postgres_link *link, const char *sql, const char *parameter)
 {
     PGresult *result = postgres_link_ask(link, sql, parameter != NULL, &parameter);
@@ -39,7 +39,7 @@ static int64_t ask_number(struct postgres_link *link, const char *sql, const cha
     return number;
 }
 
-/* Creates the tables. With TimescaleDB, the table `sample` is partitioned into weeks. */
+/* Creates the tables. With TimescaleDB, the table `sample` is partitioned by week. */
 static bool make_tables(struct postgres_link *link, const char *schema)
 {
     int64_t timescale = ask_number(link, "SELECT count(*) FROM pg_extension WHERE extname = 'timescaledb'", NULL);
@@ -47,8 +47,8 @@ static bool make_tables(struct postgres_link *link, const char *schema)
            (!timescale || postgres_link_run(link, "SELECT create_hypertable('sample', 't', chunk_time_interval => interval '7 days')"));
 }
 
-/* Checks the version of the tables. A schema with only the table `lease`, which a core may have created first, counts as empty: its
-   tables are created. */
+/* Checks the version of the tables. A schema with only the table `lease`, which a core may have created first, counts as empty:
+   the missing tables are created. */
 static bool check_version(struct postgres_link *link, const char *schema, char why[POSTGRES_WHY_BYTES])
 {
     int64_t there = ask_number(link, "SELECT count(*) FROM pg_tables WHERE schemaname = $1 AND tablename = 'version'", schema);
@@ -185,7 +185,7 @@ static bool copy_points(struct postgres_tables *tables, const char *table, const
     for (size_t i = 0; i < count; i++) {
         const struct month_outbox_row *row = &rows[i];
         if (row->tag < 0 || (size_t)row->tag >= tables->tag_capacity || !tables->tags[row->tag].id)
-            continue; /* the month's file does not list this row's tag, so the row is not sent */
+            continue; /* skips the row, because the month's file does not list its tag */
         postgres_copy_row(link, 5);
         postgres_copy_int32(link, (int32_t)i);
         postgres_copy_int32(link, tables->tags[row->tag].id);
