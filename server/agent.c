@@ -27,8 +27,9 @@ struct agent {
 enum { PAUSE_MS = 100 };
 static const int64_t STATE_TIMEOUT_NS = 5 * NS_PER_S;
 
-/* Writes the line for the load balancer. If this daemon has no readings, HAProxy sends no users here. If all nodes have lost the core,
-   the shipped configuration sends users to any node that runs, whose page says that the core is lost. */
+/* Formats the line for the load balancer. A daemon without readings reports "down", so that HAProxy sends no users here. If all
+   nodes have lost the core, the shipped HAProxy configuration still sends users to any running node, whose page says that the
+   core is lost. */
 static int print_line(const struct agent_state *state, char *line, size_t size)
 {
     int free_percent = state->busy_percent < 99 ? 100 - state->busy_percent : 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Starts another program as a child process, applies its limits, and reads what it prints to two pipes. */
+/* Runs another program as a child process with limits, and reads its output from two pipes. */
 #include "helper_program.h"
 
 #include <errno.h>
@@ -43,7 +43,7 @@ static void close_end(int *fd)
     *fd = -1;
 }
 
-/* Applies priority and memory limits. This happens within a millisecond of the start, before the program has read any input. */
+/* Applies priority and memory limits, within a millisecond of the start, before the program has read any input. */
 static void limit(struct helper *helper)
 {
     size_t bytes = helper->params->memory_bytes;
@@ -109,7 +109,7 @@ static void read_end(struct helper *helper, int which)
         text_add(&helper->written, "%s", piece);
 }
 
-/* Tells the program to end when the caller asks for it or the time limit is over, and kills a program that does not end. */
+/* Tells the program to end when the caller wants that or the time limit is over, and kills the program if it does not end. */
 static void end_in_time(struct helper *helper)
 {
     int64_t now_ns = clock_mono_ns();
@@ -126,8 +126,8 @@ static void end_in_time(struct helper *helper)
     }
 }
 
-/* Reads the program's output and watches stop and time limit, until the program has ended. Returns its exit status. Other processes may
-   still hold its pipes open. */
+/* Reads the program's output until the program has ended, and ends the program if the caller or the time limit requires it.
+   Returns the exit status. Other processes may still hold the program's pipes open. */
 static int attend(struct helper *helper)
 {
     int status = 0;

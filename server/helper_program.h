@@ -21,7 +21,7 @@ struct helper_params {
     void (*say)(void *arg, const char *text);
     void *arg; /* argument of both callbacks */
     struct log *log;
-    /* receives the program's last line on stderr if it ended with HELPER_PARTLY (mem_free); NULL: that exit status counts as a failure */
+    /* receives the program's last line on stderr if it exits with HELPER_PARTLY (mem_free); NULL: that exit status counts as a failure */
     char **remark;
     bool notifies;       /* true: the program may report its progress to the service manager */
     int lent;            /* open descriptor of this process, such as a lock, that the program inherits as HELPER_LENT; 0: none */
@@ -30,8 +30,8 @@ struct helper_params {
     const char *timeout_option, *memory_option; /* names of the options that raise these limits, for messages to the user */
 };
 
-/* Runs the program. Returns NULL on success; otherwise one line (mem_free): the last line that the program wrote to stderr, or why it
-   was ended. */
+/* Runs the program. Returns NULL on success; otherwise one line (mem_free): the program's last line on stderr, or the reason
+   why it was ended. */
 char *helper_run(const struct helper_params *params);
 
 struct quotas;

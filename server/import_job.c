@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs the programs of an import one after the other, as a user would from the command line. */
+/* Runs the programs of an import one after the other, in the way a user would run them from the command line. */
 #include "import_job.h"
 
 #include <inttypes.h>
@@ -16,7 +16,7 @@
 #include "plant/plant_folder.h"
 #include "helper_program.h"
 
-/* OWN_MB: memory limit in MB of plantcast-import itself, without the processes that read files for it */
+/* OWN_MB: memory limit in MB of plantcast-import itself, excluding its child processes, which read the files */
 enum { FILES = 3, OWN_MB = 512 };
 static const size_t max_bytes = (size_t)256 << 20;
 
@@ -56,8 +56,8 @@ static void forget(struct texts *texts)
         mem_free(texts->at[i]);
 }
 
-/* Returns the inode of the folder in which plantcast import keeps the previous files (the revision); 0: there is none. A new revision is
-   created before the old one is removed, so its inode differs. */
+/* Returns the inode of the revision folder, in which plantcast import keeps the previous files; 0: there is none. A new
+   revision is created before the old one is removed, so its inode differs. */
 static ino_t find_revision(const struct import_job *job, const char *name)
 {
     struct stat st;
@@ -176,8 +176,7 @@ static void add_limits(struct arguments *list, const struct import_job *job)
     add_limit(list, "--memory", job->params.quotas->at[QUOTA_IMPORT_MB]);
 }
 
-/* Adds the option that tells a program that this daemon has locked the plant's folder on its behalf, and passes the descriptor of that
-   lock. */
+/* Adds the option that tells a program about this daemon's lock on the plant's folder, and passes the lock's descriptor. */
 static void add_lent(struct arguments *list)
 {
     add_argument(list, "--folder-lent");
@@ -311,7 +310,7 @@ static bool same(const char *a, const char *b)
     return a && b ? !strcmp(a, b) : a == b;
 }
 
-/* Restores the earlier contents of the files, except those that another program changed after the programs of this import. */
+/* Restores the earlier contents of the files. Leaves out files that another program changed after the programs of this import. */
 static void put_texts(const struct import_job *job, const struct texts *texts)
 {
     struct texts now = { 0 };
@@ -326,8 +325,8 @@ static void put_texts(const struct import_job *job, const struct texts *texts)
     forget(&now);
 }
 
-/* Returns true if there is a newer revision (folder with the previous files) than at the beginning. It counts even if the program that
-   wrote it was killed while replacing files: the next program completes the replacement. */
+/* Returns true if a revision (folder with the previous files) was written since the beginning. The revision counts even if its
+   program was killed while replacing files: the next program completes the replacement. */
 static bool has_revised(const struct import_job *job)
 {
     ino_t now = find_revision(job, ".revision");

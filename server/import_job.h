@@ -20,8 +20,8 @@ struct import_job;
 /* Prepares the undo of an import: stores the present plant file, tag list and matches, and the identity of the newest revision of the
    models. `params` itself may be freed after the call; everything that its members point to must outlive the job. */
 struct import_job *import_job_begin(const struct import_job_params *params);
-/* Runs the programs. Returns NULL on success, else one line that says what went wrong (free with mem_free()). *remark is set if the
-   models are good and can be used but the tag list is faulty: it receives the fault of the list (mem_free). */
+/* Runs the programs. Returns NULL on success, else one line that says what went wrong (free with mem_free()). If the models can
+   be used but the tag list is faulty, *remark receives the fault of the list (mem_free). */
 char *import_job_run(struct import_job *job, const struct import_order *order, char **remark);
 /* If import_job_run() changed anything, restores all files, including the models. A file that another program saved after the import
    changed it is renamed to NAME.undone. params.stop does not end the undo. Returns NULL on success, else one line that says what went

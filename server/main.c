@@ -385,7 +385,7 @@ static int take_role_option(int option, struct server_params *params)
     }
 }
 
-/* Checks that the command-line options about the role fit together. Returns NULL if they do, else what is wrong. */
+/* Checks that the command-line options about the role are consistent. Returns NULL if they are, else what is wrong. */
 static const char *role_wrong(const struct server_params *params)
 {
     bool render = params->role == SERVER_RENDER;

@@ -135,7 +135,7 @@ static bool start_other_plants(struct plant_runtime *runtime)
            (runtime->services.other_plants = other_plants_start(runtime->context->log, runtime->plant, runtime->services.clock));
 }
 
-/* Creates the service for placing sensors from data that is already loaded; it starts no work before a session uses it. */
+/* Creates the service for placing sensors, from data that is already loaded. The service does no work until a session uses it. */
 static void start_placing(struct plant_runtime *runtime)
 {
     const struct plant_runtime_context *context = runtime->context;

@@ -20,7 +20,7 @@ struct plant_runtime_context { /* objects that a reload keeps */
     struct log *log;
     struct counters *counters;
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
-    struct file_writer *file_writer; /* thread that writes to disk what users change */
+    struct file_writer *file_writer; /* thread that writes users' changes to disk */
     struct workers *workers;
     struct plant_clock *clock;   /* the plant's clock */
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
@@ -36,41 +36,41 @@ struct plant_runtime {
     struct publisher *publisher;    /* publishes readings over MQTT; NULL: nothing is published */
     struct source **sources;        /* sources by index in plant->sources */
     struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */
-    /* time spans whose points must still be read from PostgreSQL when a reload replaces the plant; the next runtime's historian reads
-       them */
+    /* time spans whose points were not yet read from PostgreSQL when a reload replaces the plant; the next runtime's historian
+       reads them */
     struct postgres_owed owed;
 };
 
-/* Reads plant and scene from disk and creates the store; starts nothing. Findings are added to diag. Returns NULL on failure, with the
-   error in diag or in the log. */
+/* Reads plant and scene from disk and creates the store; starts nothing. Adds findings to diag. Returns NULL on failure, with
+   the error in diag or in the log. */
 struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *context, struct diag *diag);
 /* Ends the running parts, consumers before producers, and frees everything. Accepts a pointer to NULL; sets *runtime to NULL. */
 void plant_runtime_destroy(struct plant_runtime **runtime);
 
-/* Opens the files that users change: named views, notes, and what desks sent to walls. After a reload, call it in the event loop at the
-   switch to the new runtime: until then the old runtime changes these files. */
+/* Opens the files that users change: named views, notes, and messages from desks to walls. After a reload, call it in the event
+   loop at the switch to the new runtime: until then the old runtime changes these files. */
 void plant_runtime_open_lists(struct plant_runtime *runtime);
-/* Starts historian and alarm service; without an earlier runtime also opens the files that users change. before: the earlier runtime,
-   whose history, alarms and readings are continued and on which plant_runtime_hand_over() was called; the caller still destroys it.
-   NULL: none. Returns false on failure, already logged. */
+/* Starts historian and alarm service; without an earlier runtime, also opens the files that users change. before: the earlier
+   runtime, from which history, alarms and readings continue; NULL: none. plant_runtime_hand_over() must have been called for
+   it, and the caller still destroys it. Returns false on failure, already logged. */
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before);
 /* Starts the sources that poll field devices, and derived tags. Returns false on failure, already logged. */
 bool plant_runtime_start_sources(struct plant_runtime *runtime);
-/* Ends the link to the core that this daemon followed. Afterwards call net_lead() in the event loop, which drops the link, and then
-   plant_runtime_lead(). */
+/* Ends the link to the core that this daemon followed. Afterwards call net_lead() in the event loop, which drops the pointer to
+   the link, and then plant_runtime_lead(). */
 void plant_runtime_stop_following(struct plant_runtime *runtime);
 /* Makes this daemon poll the devices and own the alarms, in place of the core that it followed. Returns false on failure, already
    logged. */
 bool plant_runtime_lead(struct plant_runtime *runtime);
-/* Starts the render service. first: views to draw in advance, so that the first frames of these views come quickly. Returns false on
+/* Starts the render service. first: views to draw in advance, so that their first frames come quickly. Returns false on
    failure, already logged. */
 bool plant_runtime_start_render_service(struct plant_runtime *runtime, const struct view *first, size_t first_count);
-/* Ends reading, recording and evaluating, so that the runtime of the plant `next` can take over. The render service continues to draw
-   frames, with the readings from before the call. */
+/* Ends polling, recording and evaluating, so that the runtime of the plant `next` can take over. The render service continues
+   to draw, with the readings from before the call. */
 void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next);
 
-/* Ends everything that only the leader of two cores may do: polling, evaluation of alarms, recording, notifying. The last samples are
-   evaluated and recorded. The caller has dropped its pointer to the historian. */
+/* Ends everything that only the leader of two cores may do: polling, alarm evaluation, recording, notifying. The last samples
+   are still evaluated and recorded. The caller must have dropped its pointer to the historian. */
 void plant_runtime_end_leading(struct plant_runtime *runtime);
 
 /* Returns the name of the libavcodec encoder for H.264; NULL: H.264 is off. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reloads the plant: reads it again, compares it with the old one, and switches the daemon to it. */
+/* The thread that reloads the plant: reads the plant again, compares it with the old one, and switches the daemon to the new one. */
 #include "reload.h"
 
 #include <jansson.h>
@@ -34,16 +34,16 @@ struct reload {
     struct supervision *supervision;
     struct plant_import *import;   /* importer of plants; NULL: import is off */
     int64_t begun_ns;              /* monotonic time when the running reload was begun */
-    uint64_t following;            /* value of `follows` with which the running reload was requested */
-    char expected[17];             /* value of `expects` with which the running reload was requested */
-    char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
+    uint64_t following;            /* value of `follows` in the request for the running reload */
+    char expected[17];             /* value of `expects` in the request for the running reload */
+    char by[TOKEN_NAME_BYTES];     /* user who requested the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
-    const char *kept;              /* path under which the previous version of the tag list is kept */
+    const char *kept;              /* path of the tag list's previous version, which is kept */
     struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
-    /* held while the runtime is replaced, and while it takes the lead (becomes the one that polls devices): the two must not overlap */
+    /* held while the runtime is replaced, and while it takes the lead (becomes the one that polls devices), so that these never overlap */
     pthread_mutex_t put_lock;
     bool ended; /* true: this core's lead has ended, so no new plant may be activated; protected by put_lock */
-    /* thread that makes this core the leader, and ends its lead; a thread of its own, so that neither waits for a running reload */
+    /* thread that makes this core the leader and ends its lead; separate, so that neither waits for a running reload */
     struct thread leader;
     bool leads, ends; /* orders for that thread: take the lead; end the lead; protected by leader.lock */
     struct thread thread;
@@ -52,7 +52,7 @@ struct reload {
     /* connection to this daemon's core, which the core ends once it has loaded the plant too; 0: the reload does not wait for the core */
     uint64_t follows;
     char expects[17];           /* hash that the new configuration must have; empty: any */
-    char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
+    char who[TOKEN_NAME_BYTES]; /* user who requested the next reload */
     struct tag_save *save;      /* tag list that the next reload saves; NULL: none */
 };
 
@@ -72,7 +72,7 @@ struct verdict {
     bool good;
     char *text;
     uint64_t client; /* id of the client that saved a tag list */
-    char *saved;     /* message about the saved tag list for the client that saved it; NULL: no tag list was saved */
+    char *saved;     /* message for the client that saved a tag list; NULL: no tag list was saved */
 };
 
 static void say(void *arg)
@@ -109,7 +109,7 @@ static void record(const struct reload *reload, bool good, const json_t *object)
     mem_free(what);
 }
 
-/* Reports the reload's result to all clients that asked for it; takes ownership of `object`. */
+/* Reports the reload's result to all clients that requested it; takes ownership of `object`. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
     struct verdict verdict = { reload->net, good, NULL, 0, NULL };
@@ -163,7 +163,7 @@ struct swap {
     size_t first_count;
 };
 
-/* Collects the sessions' views, for which the new plant draws its first frames. Runs in the event loop. */
+/* Collects the sessions' views, because the new plant draws its first frames for them. Runs in the event loop. */
 static void look_at_views(void *arg)
 {
     struct swap *swap = arg;
@@ -188,8 +188,8 @@ static void release_recording(void *arg)
 static void swap(void *arg)
 {
     struct swap *swap = arg;
-    /* The new plant reads the files that users' actions change. Only the newest of these actions may still be unwritten, because
-       put_in_force() has waited for the others. */
+    /* The new plant reads the files that users' actions change, so these actions must be on disk. Only the newest ones may
+       still be unwritten, because put_in_force() has waited for the others. */
     file_writer_wait(swap->after->context->file_writer, SETTLE_NS);
     file_writer_collect(swap->after->context->file_writer);
     plant_runtime_open_lists(swap->after);
@@ -277,8 +277,8 @@ static bool must_wait(struct reload *reload)
     return waits;
 }
 
-/* On a renderer, waits until the core, which loads the plant too, has switched and therefore ended the connection: the core refuses a
-   renderer that switches earlier. Returns false if the core does not switch. */
+/* On a renderer, waits until the core, which loads the plant too, has switched to it and thus ended the connection: the core
+   refuses a renderer that switches earlier. Returns false if the core does not switch. */
 static bool wait_for_core(struct reload *reload)
 {
     struct thread *thread = &reload->thread;
@@ -410,7 +410,7 @@ static bool is_cancelled(void *arg)
     return plant_import_cancelled(reload->import) || is_stopping(reload);
 }
 
-/* Undoes a failed import. Takes ownership of the reason `why` and returns it, extended by errors of the undo. */
+/* Undoes a failed import. Takes ownership of the reason `why`, appends errors of the undo to it, and returns it. */
 static char *undo_import(struct reload *reload, struct import_job *job, char *why)
 {
     char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and the import cannot be undone: %s", why, worse) : NULL;
@@ -485,7 +485,7 @@ static void import_now(struct reload *reload, struct import_order *order)
 
 /* --- taking the lead from another core --------------------------------------------------------------------------------- */
 
-/* Tells the network part which services the plant has while this core takes the lead. Runs in the event loop. */
+/* Gives the plant's services to the event loop while this core takes the lead. Runs in the event loop. */
 static void lead_in_loop(void *arg)
 {
     struct reload *reload = arg;
@@ -663,7 +663,7 @@ void reload_end_leading(struct reload *reload)
 void reload_save(struct reload *reload, struct tag_save *save)
 {
     pthread_mutex_lock(&reload->thread.lock);
-    /* the earlier order is normally NULL, because the event loop accepts only one save of a tag list at a time */
+    /* normally frees nothing, because the event loop accepts only one save of a tag list at a time */
     tag_save_free(reload->save);
     reload->save = save;
     pthread_cond_signal(&reload->thread.wake);

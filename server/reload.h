@@ -7,8 +7,8 @@
 #include "supervision.h"
 
 struct reload;
-/* Starts the reload thread, and a second thread that can make this core the leader, and end its lead. Each reload replaces *runtime. import
-   NULL: imports are off. Returns NULL if a thread cannot start, already logged. */
+/* Starts the reload thread, and a second thread that can make this core the leader or end its lead. Each reload replaces
+   *runtime. import NULL: imports are off. Returns NULL if a thread cannot start, already logged. */
 struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net,
                              struct supervision *supervision, struct plant_import *import);
 /* Ends the threads; the event loop must have ended. Accepts a pointer to NULL; sets *reload to NULL. */
@@ -25,12 +25,12 @@ void reload_lead(struct reload *reload);
 /* Ends permanently everything that only the leader of two cores may do (plant_runtime_end_leading()), and then calls
    net_on_lead_ended(); does not wait. Thread: any. */
 void reload_end_leading(struct reload *reload);
-/* Saves another tag list: its file is replaced, plantcast-prep runs, and the plant is reloaded; if any of these steps fails, the old
-   list is restored. Takes ownership of `save`; one save at a time. Thread: any. */
+/* Saves another tag list: replaces the file, runs plantcast-prep, and reloads the plant. If any of these steps fails, restores
+   the old list. Takes ownership of `save`; one save at a time. Thread: any. */
 void reload_save(struct reload *reload, struct tag_save *save);
-/* Carries out the import order that plant_import_order() accepted, on behalf of user `who`, and does not wait. Thread: any. */
+/* Carries out the import order accepted by plant_import_order(), on behalf of user `who`, without waiting for it. Thread: any. */
 void reload_import(struct reload *reload, const char *who);
-/* Sets the metric that shows the hash of the configuration in use. in_force: whether the daemon uses this configuration. */
+/* Sets the metric that shows the hash of the configuration in use. in_force: true: the daemon uses this configuration. */
 void reload_count(struct counters *counters, const char *hash, bool in_force);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates the parts of the daemon, runs it, and destroys the parts again. */
+/* Creates the parts of the daemon, runs it, and destroys its parts again. */
 #include "server.h"
 
 #include <errno.h>
@@ -50,7 +50,7 @@ struct server {
     struct reload *reload;
     struct node_id node_id;      /* unique identity of this core, even among cores of the same name (corelink/node_id.h) */
     struct lease_keeper *keeper; /* keeps the lease that decides which of two cores leads; NULL: this core is alone */
-    bool follows, lost;          /* follows: another core polls the devices; lost: this core had the lease to lead and lost it */
+    bool follows, lost;          /* follows: another core polls the devices; lost: this core had the leadership lease and lost it */
     bool divided;                /* true: child processes that read files run in cgroups (resource limits) of their own */
     struct supervision *supervision;
     struct agent *agent;             /* answers load balancers; NULL: off */
@@ -80,8 +80,8 @@ static void on_early_signal(int number)
     raise(number);
 }
 
-/* SIGINT and SIGTERM end the daemon, SIGUSR1 drains it. SIGHUP asks the event loop to reload the plant and to read the files of tokens and
-   certificate again, which it otherwise checks once a second. */
+/* SIGINT and SIGTERM end the daemon, SIGUSR1 drains it. SIGHUP makes the event loop reload the plant and read the files of
+   tokens and certificate again, which it otherwise checks once a second. */
 static void on_signal(int number)
 {
     int cause = errno;
@@ -151,7 +151,7 @@ static unsigned find_codecs(const struct server *server)
     return codecs;
 }
 
-/* Asks for a reload. Called in the event loop, which starts only after server->reload was created. */
+/* Requests a reload. Called in the event loop, which starts only after server->reload was created. */
 static void ask_reload(void *arg, const char *who)
 {
     reload_ask(((struct server *)arg)->reload, who);
@@ -241,7 +241,7 @@ static bool start_import(struct server *server)
     return server->import != NULL;
 }
 
-/* Sets the time zone of the process, which clocks in pictures use, to the plant's. It changes the environment, so call it while there is
+/* Sets the time zone of the process to the plant's, for clocks in pictures. Changes the environment, so call it while there is
    only one thread. */
 static void set_time_zone(const struct plant *plant)
 {
@@ -271,8 +271,8 @@ static bool is_told_to_end(void *arg)
     return atomic_load(&told_to_end);
 }
 
-/* Prepares the plant if the prepared files belong to another plant file or other models, that is, if the plant was imported but not
-   prepared since. No-op if the folder has no prepared files at all, because it may be the wrong folder. */
+/* Prepares the plant if the prepared files belong to another plant file or other models, because the plant was imported but not
+   prepared since. Does nothing if the folder has no prepared files at all, because it may be the wrong folder. */
 static bool prepare(struct server *server)
 {
     struct diag diag = { 0 };
@@ -299,8 +299,7 @@ static bool prepare(struct server *server)
     return good;
 }
 
-/* Waits until plant file, models and tag list belong to one revision, that is, until no import is replacing them. Returns false on
-   failure. */
+/* Waits until plant file, models and tag list belong to one revision: until no import is replacing them. Returns false on failure. */
 static bool settle_folder(struct server *server)
 {
     const char *finished = NULL;
@@ -383,8 +382,8 @@ static void on_won(void *arg)
     pthread_mutex_unlock(&server->wake_lock);
 }
 
-/* Called by the lease keeper's thread when this core lost the lease: ends the daemon. The kernel ends the process if that takes too
-   long. */
+/* Called by the lease keeper's thread when this core has lost the lease: ends the daemon. If that takes too long, the kernel
+   kills the process. */
 static void on_lost(void *arg)
 {
     struct server *server = arg;
@@ -547,7 +546,7 @@ int server_run(const struct server_params *params)
     server.divided = cgroup_divide();
     confine_hide_memory();
     signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN); /* ignores SIGXFSZ, so that a file that reached its size limit gives a write error like a full disk */
+    signal(SIGXFSZ, SIG_IGN); /* ignores SIGXFSZ, so that a file that reaches its size limit gives a write error, like a full disk */
     handle_early_signals();
     bool good = server_start(&server);
     if (good) {
@@ -589,7 +588,7 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
     manifest_finish(&manifest);
 }
 
-/* Returns whether every line of the file of tokens is accepted; net_access_good() logs lines that are refused. */
+/* Returns whether every line of the file of tokens is accepted; net_access_good() logs the refused lines. */
 static bool token_lines_good(const char *path)
 {
     struct token_holder holder;
@@ -603,7 +602,7 @@ static bool token_lines_good(const char *path)
     return good;
 }
 
-/* Reads the files that options such as --tokens and --openid name. Logs each fault and returns false if there was one. */
+/* Reads the files named by options such as --tokens and --openid. Logs each fault and returns false if there was any. */
 static bool check_option_files(const struct server_params *params)
 {
     struct server server = { .params = *params, .log = log_create(LOG_WARN) };
@@ -623,7 +622,7 @@ static bool check_option_files(const struct server_params *params)
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
     char *folder = plant_runtime_prepared_folder(params, plant), *manifest = mem_printf("%s/manifest.json", folder);
-    /* checks the manifest, because plantcast-prep writes it last: the folder alone also exists during the first preparation */
+    /* looks for the manifest, which plantcast-prep writes last: the folder alone also exists during the first preparation */
     bool exists = access(manifest, F_OK) == 0;
     struct log *log = log_create(LOG_WARN);
     if (exists)
@@ -659,7 +658,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     return status;
 }
 
-/* Counts the tags that are sensors. A plant without sensors is only a warning, because users may place sensors on the page. */
+/* Counts the tags that are sensors. If there are none, only warns, because users may place sensors on the page. */
 static size_t count_sensors(const struct plant *plant, struct diag *diag)
 {
     size_t count = 0;

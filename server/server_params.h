@@ -11,8 +11,8 @@
 #include "corelink/core_link.h"
 #include "gpu/gl.h"
 
-/* Tasks of the daemon: SERVER_ALL reads field devices and draws for users. SERVER_CORE is like SERVER_ALL, but renderers (daemons
-   that draw for users) may connect, too. SERVER_RENDER is such a renderer. */
+/* Tasks of the daemon: SERVER_ALL reads field devices and draws for users. SERVER_CORE does the same, but also accepts
+   renderers (daemons that draw for users). SERVER_RENDER is such a renderer. */
 enum server_role { SERVER_ALL, SERVER_CORE, SERVER_RENDER };
 
 struct server_params {
@@ -38,7 +38,7 @@ struct server_params {
     enum server_role role;
     const char *cores[CORE_URLS]; /* for SERVER_RENDER: URLs of one core or of a pair; the renderer uses one at a time */
     int core_count;
-    /* core_token: file of the token that the core demands, NULL: none; core_ca: file of trusted certificates, NULL: the system's */
+    /* core_token: file of the token required by the core, NULL: none; core_ca: file of trusted certificates, NULL: the system's */
     const char *core_token, *core_ca;
     int agent_port;    /* port for the agent checks of load balancers; 0: none */
     const char *node;  /* name of this daemon among several; the host name unless --node is given */

@@ -14,7 +14,7 @@
 #include "commit.h"
 #include "version.h"
 
-/* interval at which the render thread is checked, and minimum time between two watchdog messages */
+/* interval of checks of the render thread, and minimum time between two watchdog messages */
 static const int64_t CHECK_INTERVAL_NS = 2 * NS_PER_S;
 enum { START_LIMIT_S = 600 }; /* time limit in seconds for one step of the daemon's start */
 
@@ -27,7 +27,7 @@ struct supervision {
     struct service_patience *patience; /* not NULL while the service manager is asked to wait until the daemon is ready */
     char *runtime;                     /* runtime folder of the service; NULL: there is none */
     int64_t watchdog_ns;               /* interval in nanoseconds at which the service manager expects watchdog messages; 0: off */
-    /* refused: the last reload failed; reloaded: a reload has ended and its result is still to be reported */
+    /* refused: the last reload failed; reloaded: the result of a finished reload must still be reported */
     _Atomic bool refused, reloaded;
     /* --- below: used only by the event loop */
     int64_t looked_ns;
@@ -93,8 +93,8 @@ static void say_status(struct supervision *supervision, size_t sessions, const c
                    refused ? "; the last reload was refused, an older configuration is active" : "");
 }
 
-/* Sends the watchdog message from the event loop, and only while the render thread is alive: if either hangs, the service manager
-   restarts the daemon. */
+/* Sends the watchdog message from the event loop, but only while the render thread is alive. So the service manager restarts
+   the daemon if either hangs. */
 static void look(struct supervision *supervision, struct render_service *render_service, int64_t now_ns)
 {
     bool stuck = render_service_is_stuck(render_service, now_ns);

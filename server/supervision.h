@@ -7,7 +7,7 @@
 #include "net/net_params.h"
 
 struct supervision;
-/* Asks the service manager to wait, until supervision_tick() is first called with a render service that is ready. Thread: main. */
+/* Asks the service manager to wait until supervision_tick() is called with a render service that is ready. Thread: main. */
 struct supervision *supervision_create(struct log *log, struct counters *counters);
 /* destroys the struct and sets *supervision to NULL; accepts a pointer to NULL */
 void supervision_destroy(struct supervision **supervision);

@@ -10,7 +10,7 @@ struct address_usage {
     uint8_t address[16]; /* address of the client; an IPv4 address has the form ::ffff:a.b.c.d */
     bool local;          /* true: the address is loopback: 127.x or ::1 */
     int refs, connections, sessions;
-    int named;               /* number of connections from a reverse proxy whose last request named this client address */
+    int named;               /* number of reverse-proxy connections whose last request named this client address */
     int pictures, questions; /* HTTP requests in progress: for pictures, and for history */
     int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
@@ -23,14 +23,14 @@ struct address_limits;
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt);
 void address_limits_destroy(struct address_limits **limits); /* destroys the limits and sets *limits to NULL; accepts a pointer to NULL */
 
-/* Returns the usage of a numeric address, and creates it if needed. The caller owns a reference (address_limits_unref). All texts that are
-   not a valid address share one struct. */
+/* Returns the usage of a numeric address, creating it if needed. The caller owns a reference (address_limits_unref). All texts
+   that are not valid addresses share one struct. */
 struct address_usage *address_limits_ref(struct address_limits *limits, const char *address);
 /* Releases a reference and sets *usage to NULL; accepts a pointer to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);
 
-/* Each function checks one quota of the address and returns whether it allows one more. The functions check in this order: connection;
-   stream; connection of a proxy; history query; HTTP answer of `count` bytes; picture over HTTP. */
+/* Each function checks one quota of the address and returns whether one more is allowed. In this order: connection; stream;
+   connection of a proxy; history query; HTTP answer of `count` bytes; picture over HTTP. */
 bool address_limits_may_connect(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_stream(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_be_named(const struct address_limits *limits, const struct address_usage *usage);

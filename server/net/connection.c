@@ -12,8 +12,8 @@
 #include "net/tls.h"
 
 static const char LOCAL[] = "local";            /* name that journals show for a user on this machine who needs no token */
-static const char SIGNED_IN[] = " (signed in)"; /* suffix added to the name of a user who signed in with OpenID Connect, if a token has the
-                                                   same name */
+static const char SIGNED_IN[] = " (signed in)"; /* suffix of the name of a user who signed in with OpenID Connect, if a token has
+                                                   the same name */
 
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n", REFUSAL_NONE };
 static const struct http_refusal WRONG_HOST = { 403, "the header Host has a name that this server does not accept; --host NAME allows it\n",
@@ -123,8 +123,8 @@ static bool is_named(const struct access_params *params, const char *name)
     return false;
 }
 
-/* Returns whether the Host header names this server. A web page of another domain whose DNS name was made to point here (DNS rebinding)
-   is refused; numeric addresses cannot be rebound. */
+/* Returns whether the Host header names this server. Refuses a web page of another domain whose DNS name was made to point here
+   (DNS rebinding). Numeric addresses are accepted, because they cannot be rebound. */
 static bool is_ours(const struct server_context *server, const char *name)
 {
     const struct access_params *params = &server->params.access;
@@ -136,8 +136,8 @@ static bool is_ours(const struct server_context *server, const char *name)
            (server->tls && tls_is_called(server->tls, name));
 }
 
-/* Returns whether the request has headers that a proxy adds. libwebsockets parses some of these names itself and does not find those
-   with its function for custom headers. */
+/* Returns whether the request has headers that proxies add. Looks for them in two ways, because libwebsockets parses some of
+   these names itself, and its function for custom headers does not find those. */
 static bool has_forwarding(struct lws *wsi)
 {
     static const enum lws_token_indexes known[] = { WSI_TOKEN_X_FORWARDED_FOR, WSI_TOKEN_HTTP_X_REAL_IP, WSI_TOKEN_HTTP_VIA };
@@ -219,8 +219,8 @@ void connection_record(const struct server_context *server, struct lws *wsi, con
                                                            .why = why });
 }
 
-/* Records a login in the audit trail. Tokens that were not checked because the address is throttled are only counted, so that thousands
-   of attempts do not fill the trail. */
+/* Records a login in the audit trail. Tokens left unchecked because the address is throttled are only counted, so that
+   thousands of attempts do not fill the trail. */
 static void record_login(struct server_context *server, const struct connection *connection, const char *way,
                          const struct token_holder *holder, enum login login)
 {
@@ -285,8 +285,8 @@ static const struct http_refusal *judge_token(struct server_context *server, str
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
-/* Appends a suffix to a signed-in user's name. Names of tokens cannot contain the suffix's characters, so that journals show whether a user
-   signed in or used a token. */
+/* Appends a suffix to a signed-in user's name. Token names cannot contain the suffix's characters, so journals show whether a
+   user signed in or used a token. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person)
 {
     size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);
@@ -294,7 +294,7 @@ void connection_tell_apart(const struct server_context *server, struct token_hol
         memcpy(person->name + (length < most ? length : most), SIGNED_IN, sizeof(SIGNED_IN));
 }
 
-/* Sets connection->holder to the user who signed in with the request's cookie. A cookie of an ended session is ignored. */
+/* Sets connection->holder to the signed-in user whose cookie the request has. Ignores cookies of ended sessions. */
 static void find_person(struct server_context *server, struct lws *wsi, struct connection *connection)
 {
     char cookie[64];

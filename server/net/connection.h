@@ -9,7 +9,7 @@ struct connection {               /* identity of one connection; lives as long a
     struct address_usage *usage;  /* quota usage of the address that opened the connection (a reference) */
     struct address_usage *client; /* usage of the client's address: behind a proxy, the address that the last request names; a reference */
     char address[64];             /* the client's address as text, for the log */
-    enum role role;               /* role of the user, according to the last request's headers */
+    enum role role;               /* the user's role, according to the last request's headers */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* access token of the last request on this connection; "": none */
     bool from_proxy;                 /* true: a trusted proxy sent the last request */
@@ -24,26 +24,25 @@ bool connection_may_open(struct server_context *server, int fd);
 /* connection_open() creates the identity of a connection, connection_close() destroys it. */
 void connection_open(struct server_context *server, struct lws *wsi);
 void connection_close(struct server_context *server, struct lws *wsi);
-/* Notes whether all requests of the connection are answered; a server that shuts down waits for the unanswered ones. */
+/* Sets whether all requests of the connection are answered. A server that shuts down waits for unanswered ones. */
 void connection_set_answered(struct server_context *server, struct lws *wsi, bool answered);
 /* Returns the identity of an open connection; it is owned by the connection. */
 struct connection *connection_of(struct lws *wsi);
 
 struct http_refusal {
     int status;
-    const char *text; /* body of the answer, static text; NULL: the text that belongs to `code` */
-    /* code of the refusal, which pages translate into their user's language. REFUSAL_NONE: the server's operator or a proxy made an error,
-       which only `text` describes */
+    const char *text; /* body of the answer, static text; NULL: the standard text for `code` */
+    /* code of the refusal, for which pages have texts in the user's language. REFUSAL_NONE: an error of the server's operator
+       or a proxy, described only by `text` */
     enum refusal_code code;
 };
-/* Reads the headers of a request and sets the connection's role, client and holder. Returns false if the request must be refused, with the
-   answer in *refusal. */
+/* Reads the headers of a request and sets the connection's role, client and holder. Returns false, with the answer in *refusal,
+   if the request must be refused. */
 bool connection_identify(struct server_context *server, struct lws *wsi, struct http_refusal *refusal);
-/* Appends a suffix to the name of a signed-in user if a token has the same name, or if it is `local`, so that journals and the audit
-   trail can tell them apart. */
+/* Appends a suffix to the name of a signed-in user if a token has the same name, or if the name is `local`. So journals and the
+   audit trail can tell the users apart. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person);
-/* Returns the name of the user who made the last request on this connection, for journals and lists; "local" if the user needed no
-   token. */
+/* Returns the name of the user behind this connection's last request, for journals and lists; "local" if the user needed no token. */
 const char *connection_who(const struct connection *connection);
 /* Records a request of an identified user in the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. */
 void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,

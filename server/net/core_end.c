@@ -60,8 +60,8 @@ static void follow(const struct server_context *server, uint64_t session, const 
         server->params.follow(server->params.reload_arg, session, configuration);
 }
 
-/* Handles the core's refusal of this daemon because their configurations differ: loads this daemon's files again, since the core's new
-   files may have arrived on this machine. Tries once for each configuration that the core names. */
+/* Handles the core's refusal of this daemon because their configurations differ: loads this daemon's files again, since the
+   core's new files may have arrived on this machine. Tries this once per configuration that the core names. */
 static void take_refusal(struct server_context *server, const json_t *refusal)
 {
     const char *configuration = json_string_value(json_object_get(refusal, "configuration"));
@@ -72,8 +72,9 @@ static void take_refusal(struct server_context *server, const json_t *refusal)
     follow(server, 0, configuration);
 }
 
-/* Handles the core's message that it accepts this daemon. If the leading core has just loaded its plant, a standby core now loads its own
-   again: models may have changed, although the configuration, which covers only plant file and tag list, is the same. */
+/* Handles the core's message that it accepts this daemon. If the leading core has just loaded its plant, a standby core now
+   reloads its own. Its models may have changed even if the configuration, which covers only plant file and tag list, is the
+   same. */
 static void take_introduction(struct server_context *server, const json_t *message)
 {
     take_key(server, message);
@@ -83,8 +84,8 @@ static void take_introduction(struct server_context *server, const json_t *messa
     server->core.reloads = false;
 }
 
-/* Handles the core's message that it loads its plant. A renderer loads the plant at the same time. A standby core waits until the leading
-   core uses its new plant: if that plant makes the leader fail, the standby takes over with the old one. */
+/* Handles the core's message that it loads its plant. A renderer loads the plant at the same time. A standby core waits until
+   the leading core uses its new plant: if that plant makes the leader fail, the standby takes over with the old plant. */
 static void take_reload(struct server_context *server)
 {
     server->core.reloads = server->params.is_core;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer whose core is lost tells the load balancer, which asks each renderer's agent port (agent.h) once a second. With each check of
-   a node, the balancer says whether it still sends users there. From this, core_loss decides whether sessions move. */
+/* A renderer that has lost its core reports that at its agent port (agent.h), which the load balancer queries once a second. In
+   its checks of the nodes, the balancer says whether it still sends users to the node. From this, core_loss decides whether
+   sessions move. */
 #include "net/core_loss.h"
 
 #include <stdio.h>
@@ -8,8 +9,8 @@
 
 #include "base/clock.h"
 
-/* delay after the loss of a core before the load balancer's state counts. Renderers that lost the same core may notice it half a second
-   apart, and the balancer asks each renderer only once a second */
+/* delay after the loss of a core before the load balancer's state is used. Renderers may notice the loss of the same core half
+   a second apart, and the balancer queries each renderer only once a second */
 static const int64_t SETTLE_NS = 2500 * NS_PER_MS;
 /* how long a state sent by the load balancer stays valid: three of its checks, which come once a second */
 static const int64_t CHECKED_NS = 3 * NS_PER_S;

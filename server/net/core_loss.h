@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides when a renderer that has lost all cores moves its sessions to other nodes: only while the load balancer says that it sends users
-   to other nodes. If all renderers have lost the cores, the sessions stay. Thread: one at a time; takes the time as a parameter. */
+/* Decides when a renderer that has lost all cores moves its sessions to other nodes. They move only while the load balancer
+   says that it sends users to other nodes. If all renderers have lost the cores, the sessions stay. Thread: one at a time;
+   takes the time as a parameter. */
 #ifndef NET_CORE_LOSS_H
 #define NET_CORE_LOSS_H
 #include <stdbool.h>
 #include <stdint.h>
 
-struct core_loss {   /* zero-initialise; zero means that a core sends readings, and that no load balancer has checked this node */
+struct core_loss {   /* zero-initialise; zero means that a core sends readings and that no load balancer has checked this node */
     int64_t lost_ns; /* monotonic time since which no core has sent readings; 0: a core sends readings */
     /* monotonic time when a load balancer last said that it sends users only to other nodes; 0: its last check did not say so */
     int64_t elsewhere_ns;
@@ -17,7 +18,7 @@ struct core_loss {   /* zero-initialise; zero means that a core sends readings, 
    sends users only to other nodes if this node is DOWN and the second number of `weight`, the sum of the weights of all nodes in use, is
    above 0. */
 void core_loss_on_check(struct core_loss *loss, const char *state, int64_t now_ns);
-/* Decides again whether sessions move. Call it at each tick. Returns true when the sessions begin to be moved. */
+/* Decides again whether sessions move. Call it at each tick. Returns true when sessions start to move. */
 bool core_loss_on_tick(struct core_loss *loss, bool has_core, int64_t now_ns);
 
 #endif

@@ -8,8 +8,8 @@
 #include "net/net_impl.h"
 #include "net/renderers.h"
 
-static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit within which the standby must have received all state */
-static const int64_t TAKE_NS = NS_PER_S;     /* time limit within which the standby must have taken the lease */
+static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit for the standby to receive all state */
+static const int64_t TAKE_NS = NS_PER_S;     /* time limit for the standby to take the lease */
 
 /* Returns the next step of the handover to the standby, or `step` itself while that step is not finished. */
 static enum hand_over_step next_step(struct net *net, enum hand_over_step step)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures how long frames spend in each stage from an input to the client (latency stages). */
+/* Latency stages: measures how long frames spend in each stage between an input and the client. */
 #include "net/latency_stages.h"
 
 #include "base/mem.h"

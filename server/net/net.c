@@ -58,8 +58,8 @@ static void lws_log_line(int level, const char *line)
 
 /* --- periodic work ---------------------------------------------------------------------------------------------------- */
 
-/* Checks whether the files of tokens and certificate have changed. A file is read only once it has stopped changing; until then it is
-   checked again. */
+/* Checks whether the files of tokens and certificate have changed. A changed file is read only once it has stopped changing;
+   until then the check is repeated. */
 static void look_at_files(struct net *net, int64_t now_ns)
 {
     struct server_context *server = &net->server;
@@ -73,7 +73,7 @@ static void look_at_files(struct net *net, int64_t now_ns)
         tls_look(server->tls);
     if (server->logins.tokens) {
         tokens_look(server->logins.tokens);
-        /* also closes sessions of signed-in users who lost their rights; checking them only if there is a token file suffices, because
+        /* also closes sessions of signed-in users who lost their rights. Without a token file no check is needed, because
            sign-in with OpenID Connect requires a token file */
         streams_check_tokens(server, clock_utc_ns());
     }
@@ -89,7 +89,7 @@ static void record_sum(const struct server_context *server, int64_t *count, cons
     *count = 0;
 }
 
-/* Adds a line to the audit trail, at most once a minute, with the number of tokens and log-in answers that were left unchecked because
+/* Adds a line to the audit trail, at most once a minute, with the number of tokens and log-in answers left unchecked because
    their address is throttled. */
 static void record_held(struct server_context *server, int64_t now_ns)
 {
@@ -117,7 +117,7 @@ static void look_around(struct net *net, int64_t now_ns)
     net->server.session_context.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
 }
 
-/* Returns the text about this core's role in a pair of cores that the service manager shows as status (static); NULL: there is no pair. */
+/* Returns this core's role in a pair of cores, as status text for the service manager (static); NULL: there is no pair. */
 static const char *core_standing(const struct server_context *server)
 {
     struct lease_keeper *keeper = server->params.keeper;
@@ -224,8 +224,8 @@ bool net_settle_answers(struct net *net)
     return answers->waiting;
 }
 
-/* Does the event loop's work that is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds,
-   rounded down, and polls repeatedly in the last one; so work that is due within a millisecond is done now. */
+/* Does the event loop's work that is due now, and schedules the next wake-up. libwebsockets waits in whole milliseconds,
+   rounded down, and busy-polls in the last one; so work due within a millisecond is done now. */
 static void do_what_is_due(struct net *net)
 {
     int64_t soon_ns = clock_mono_ns() + NS_PER_MS, readings_ns = net_update_readings(net, soon_ns);
@@ -357,7 +357,7 @@ static void raise_file_limit(struct log *log, const struct quotas *quotas)
         log_warn(log, "files: the limit of open files cannot be raised: %s", strerror(errno));
 }
 
-/* Checks that the port can be bound, so that the reason is logged: libwebsockets does not report why it cannot listen. */
+/* Checks that the port can be bound, and logs the reason if not: libwebsockets does not report why it cannot listen. */
 bool net_port_free(struct log *log, const char *address, int port)
 {
     struct sockaddr_in6 six = { .sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port) };
@@ -558,7 +558,7 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    /* destroys the services with threads of their own first, because these threads wake the event loop */
+    /* first destroys the services that have threads of their own, because these threads wake the event loop */
     history_queries_destroy(&net->server.history_queries);
     picture_signer_destroy(&net->server.signing.signer);
     history_loader_destroy(&net->server.history_loader);
@@ -595,7 +595,7 @@ int net_port(const struct net *net)
     return net->server.params.socket_fd >= 0 ? net->server.params.port : lws_get_vhost_listen_port(net->vhost);
 }
 
-/* At shutdown, continues serving until the clients' actions are on disk (or cannot be written) and renderers have the answers. */
+/* At shutdown, continues to serve until the clients' actions are on disk (or cannot be written) and renderers have the answers. */
 static void finish_actions(struct net *net)
 {
     for (int64_t now_ns = clock_mono_ns(), end_ns = now_ns + SETTLED_NS;

@@ -20,7 +20,7 @@ int net_port(const struct net *net);
 void net_run(struct net *net);
 /* Wakes the event loop to collect frames and answers that other threads have finished. Any thread. */
 void net_wake(struct net *net);
-/* Makes net_run() end. A core that leads and has a standby first gives the lead to the standby. Any thread; safe in a signal handler. */
+/* Makes net_run() end. A leading core that has a standby first hands the lead to the standby. Any thread; safe in a signal handler. */
 void net_stop(struct net *net);
 /* Drains the daemon, so that clients move to other daemons: each session is closed at some instant within 10 s, after load balancers had 2
    s to notice (net_status.drains). Any thread; safe in a signal handler. */
@@ -41,15 +41,15 @@ void net_on_lead_ended(struct net *net);
 void net_release_historian(struct net *net);
 /* Drops the pointers to the plant's historian and notifier, which the caller is about to destroy before the rest of the plant. */
 void net_release_recording(struct net *net);
-/* Tells the renderers of this core that it begins to load the plant, so that they do the same. */
+/* Tells this core's renderers that the core begins to load the plant, so that they do the same. */
 void net_announce_reload(struct net *net);
 /* Releases everything that belongs to the plant, which is about to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
 /* Called when this standby takes over: the core that it followed is gone, and the link to that core has stopped. plant: services of the
    same plant, without core_link. */
 void net_lead(struct net *net, const struct plant_services *plant);
-/* Switches to another plant; sessions keep their views as far as the new plant has items with the same names. Returns false if history
-   cannot be read any more, already logged. */
+/* Switches to another plant. Sessions keep their views, except for items whose names the new plant lacks. Returns false if
+   history cannot be read any more, already logged. */
 bool net_take_plant(struct net *net, const struct plant_services *plant);
 /* Writes to `out` up to `most` distinct views that sessions will show in the next plant, so that they can be drawn in advance.
    Returns their number. next->render_service may be NULL. */

@@ -44,8 +44,8 @@ void net_calls_run(struct net *net)
     pthread_mutex_unlock(&net->call.lock);
     if (!what)
         return;
-    /* Calls the function without holding the lock. net->call cannot be overwritten meanwhile, because the thread that requested it waits
-       until it has run. */
+    /* Calls the function without holding the lock. net->call cannot be overwritten meanwhile: the thread that requested the
+       call waits until the function has run. */
     what(arg);
     pthread_mutex_lock(&net->call.lock);
     net->call.what = NULL;

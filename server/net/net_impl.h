@@ -40,13 +40,12 @@ struct net {
 
 /* --- net.c; thread: the event loop --- */
 
-/* Answers users' actions that are on disk by now, and those that could not be written. Returns whether other actions still wait for the
-   disk. */
+/* Answers users' actions that have reached the disk or could not be written. Returns whether other actions still wait for the disk. */
 bool net_settle_answers(struct net *net);
 
 /* --- hand_over.c; thread: the event loop --- */
 
-/* Takes the next step of giving the lead to the standby, after net_stop() was called. Returns false once all steps are done. */
+/* Takes the next step of handing the lead to the standby, after net_stop() was called. Returns false once all steps are done. */
 bool net_hand_over(struct net *net);
 
 /* --- net_calls.c --- */

@@ -25,10 +25,10 @@
 struct net_status { /* state of the event loop, passed to the callback at each tick */
     struct render_service *render_service;
     size_t sessions;
-    int busy_percent;           /* percentage of the render thread's time that is spent on frames for which a client waits */
+    int busy_percent;           /* percentage of the render thread's time spent on frames that a client waits for */
     bool has_core;              /* true: readings arrive from the core; always true without --role render */
     const char *core;           /* role of this core in a pair of cores (static text); NULL: there is no pair */
-    bool drains;                /* true: the daemon drains: it closes sessions so that their clients move to other daemons */
+    bool drains;                /* true: the daemon is draining: it closes sessions so that their clients move to other daemons */
     int64_t certificate_ends_s; /* expiry of the active certificate, in seconds since 1970 (UTC); 0: no certificate */
 };
 
@@ -37,7 +37,7 @@ struct net_params {
     struct plant_services plant; /* services of the loaded plant; net_limit_services() sets services that this daemon cannot use to NULL */
     struct counters *counters;
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
-    struct file_writer *file_writer; /* thread that writes what users change to disk; the event loop collects its results */
+    struct file_writer *file_writer; /* thread that writes users' changes to disk; the event loop collects its results */
     const char *address; /* numeric address to listen on */
     int port;            /* port to listen on; 0: any free one */
     int socket_fd;       /* socket that already listens, opened by systemd (net/handed_socket.h); -1: none */
@@ -48,8 +48,8 @@ struct net_params {
     const char *web_folder;                /* folder of the web client's files; NULL: no page is served */
     const char *version;
     const char *node;            /* this daemon's name behind a load balancer; NULL: it runs alone */
-    bool is_core;                /* true: this daemon is a core, to which renderers may connect */
-    const char *node_name;       /* name of this daemon, by which other daemons of the plant know it */
+    bool is_core;                /* true: this daemon is a core, which accepts connections of renderers */
+    const char *node_name;       /* name by which other daemons of the plant know this daemon */
     struct lease_keeper *keeper; /* leadership lease of a core in a pair (leader or standby); NULL: there is no pair */
     /* callback in the event loop, set only with `keeper`: starts a thread that ends everything that only a leader may do. At
        its end, that thread calls net_on_lead_ended() */

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signs pictures on a thread of its own: signing a statement about 10,000 readings takes a tenth of a second, during which the event loop
-   could send nothing. Thread: the event loop. */
+/* Signs pictures on a thread of its own: signing a statement about 10,000 readings takes a tenth of a second, too long for the
+   event loop. Thread: the event loop. */
 #ifndef NET_PICTURE_SIGNER_H
 #define NET_PICTURE_SIGNER_H
 #include "provenance/signed_picture.h"
 #include "service/encoded_frame.h"
 
 struct signing {
-    struct encoded_frame *encoded; /* the frame to sign; NULL: its receiver has taken it out of this struct */
-    /* facts that the signed statement contains: plant, arguments of the request and overlay; this struct owns the arguments */
+    struct encoded_frame *encoded; /* the frame to sign; NULL: the receiver has taken it */
+    /* facts for the signed statement: plant, arguments of the request and overlay; this struct owns the arguments */
     struct picture_origin origin;
     bool good;                     /* true: the frame's packet is now the signed file; false: it could not be signed */
     struct signing *next;

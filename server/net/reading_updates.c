@@ -6,7 +6,7 @@
 #include "net/net_impl.h"
 #include "net/renderers.h"
 
-/* delay between a change of a reading and the next snapshot, so that one frame shows all readings that a device sent together */
+/* delay between a change of a reading and the next snapshot, so that readings that a device sends together appear in one frame */
 static const int64_t GATHER_NS = 10 * NS_PER_MS;
 
 static int64_t later(int64_t a_ns, int64_t b_ns)
@@ -26,10 +26,10 @@ static void tell_changes(struct server_context *server)
     render_service_wake(server->params.plant.render_service);
 }
 
-/* Returns the monotonic time at which the next snapshot is due even if no reading changes before. */
+/* Returns the monotonic time at which the next snapshot is due even if no reading changes. */
 static int64_t next_ns(const struct server_context *server)
 {
-    /* 1 ms after a reading becomes stale, because the event loop may wake a little early */
+    /* 1 ms after a reading becomes stale, because the event loop may wake up slightly early */
     int64_t stale_ns = server->readings.next_change_ns < INT64_MAX ? server->readings.next_change_ns + NS_PER_MS : INT64_MAX;
     return later(stale_ns, server->readings.snapshot->taken_mono_ns + READINGS_INTERVAL_NS);
 }

@@ -20,8 +20,7 @@
 #include "net/core_end.h"
 #include "session/session_proxy.h"
 
-#define ACTED "acted_ns" /* key in the JSON of a queued answer for the monotonic time at which the answered action was on disk; removed
-                            before sending */
+#define ACTED "acted_ns" /* JSON key of a queued answer: monotonic time at which the answered action was on disk; removed before sending */
 enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one message */, MAX_ANSWERS = 1024, SEND_TIMEOUT_S = 5 };
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
 
@@ -39,24 +38,24 @@ struct renderer_peer {
     struct lws *wsi;
     struct renderer_peer *next;
     char name[64];                /* name of the renderer or standby at the other end, as it reports itself */
-    /* if the peer is a standby: the id with which it would take the leadership lease; it distinguishes two nodes with the same name */
+    /* if the peer is a standby: the id under which it would take the leadership lease; it distinguishes two nodes with the same name */
     char lease[LEASE_NODE_BYTES];
     struct text in, out;          /* in: message being received; out: message being built, after LWS_PRE spare bytes */
-    /* state of the peer. RENDERER_VOTES: a core that only votes about which core leads: it may not follow this core, for example because
-       its version differs, but its promises not to take the lead count (corelink/lease.h) */
+    /* state of the peer. RENDERER_VOTES: a core that may only vote about which core leads. It may not follow this core, for
+       example because its version differs, but its promises not to take the lead are valid (corelink/lease.h) */
     enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
     char *refusal;     /* reason why the peer is refused; NULL: the peer is not refused */
-    bool refusal_sent; /* true: the reason of the refusal was sent to a peer that only votes */
+    bool refusal_sent; /* true: the peer, which may only vote, was sent the reason of its refusal */
     bool other_configuration; /* true: the peer is refused only because its configuration differs from this core's */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
     bool stands_by; /* true: the peer is a standby, a core that follows this one and can take over */
-    /* true: the last message with samples contained all samples that waited, so the next message has readings, which resets the flag */
+    /* true: the last message with samples had all waiting samples, so the next message has readings, which resets the flag */
     bool samples_sent;
     bool reloads; /* true: the peer must still be told that this core loads the plant */
     bool asks;    /* true: the peer must still be asked for its promise not to take the lead (corelink/lease.h) */
-    /* standby: when this core ends, it asks a last time for the promise not to take the lead, after all other messages. Number of this
-       question; 0: not sent */
+    /* standby: when this core ends, it asks the standby a last time, after all other messages, to promise not to take the lead.
+       Number of this question; 0: not sent */
     uint64_t last_question;
     bool is_complete;             /* true: the standby has answered last_question, and so has received all messages before */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
@@ -64,10 +63,9 @@ struct renderer_peer {
     uint64_t rows;                /* standby: sequence number of the last row of the alarm journal that was sent to it */
     uint64_t alarms;              /* sequence number of the last change of alarms that was sent to the peer */
     struct lists_seen lists;
-    bool *links;   /* connection state of each data source, as last sent to the peer; by source index */
+    bool *links;   /* by source: connection state, as last sent to the peer */
     json_t *hello; /* this core's introduction, the first message to the peer; NULL: already sent */
-    /* answers to forwarded actions that are still to be sent, ordered by their JSON member ACTED (time at which the action was on disk),
-       which is removed before sending */
+    /* answers to forwarded actions that are still to be sent, ordered by their JSON member ACTED (time at which the action was on disk) */
     json_t *answers;
     struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
     int64_t told_ns;        /* monotonic time when readings were last sent to the peer */
@@ -75,7 +73,7 @@ struct renderer_peer {
     const char *close_text; /* reason to close the connection; NULL: the connection stays open */
 };
 
-/* Returns whether the peer is on this machine and needs no token; then it has the rights of an engineer. */
+/* Returns whether the peer is on this machine and needs no token; such a peer has the rights of an engineer. */
 static bool is_local(const struct connection *connection)
 {
     return connection->role == ROLE_ENGINEER && !connection->holder.name[0];
@@ -170,7 +168,7 @@ static void end_deed(struct deed *deed)
     mem_free(deed);
 }
 
-/* Queues the answers to forwarded actions that are on disk by now, and to those that could not be written. */
+/* Queues the answers to forwarded actions that have reached the disk or could not be written. */
 static void settle(struct renderer_peer *renderer)
 {
     for (struct deed **at = &renderer->deeds, *deed; (deed = *at);) {
@@ -261,8 +259,8 @@ static void begin(struct renderer_peer *renderer)
     text_add_bytes(&renderer->out, room, sizeof(room));
 }
 
-/* Sends the message in renderer->out. libwebsockets stores what the socket does not accept, and calls back only once that is sent. Returns
-   false if the connection is lost. */
+/* Sends the message in renderer->out. libwebsockets buffers what the socket does not accept, and calls back only once all is sent.
+   Returns false if the connection is lost. */
 static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how)
 {
     size_t count = renderer->out.length - LWS_PRE;
@@ -289,8 +287,8 @@ static bool send_standby(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
-/* Returns whether the standby was sent all state that it needs to take over. Samples that arrived before lead_ended_ns count as sent only
-   after one more message of readings, because that message makes send_next() look for samples again. */
+/* Returns whether the standby was sent all state that it needs to take over. Samples that arrived before lead_ended_ns count as
+   sent only after one more message of readings, which makes send_next() look for samples again. */
 static bool has_all(const struct server_context *server, const struct renderer_peer *renderer)
 {
     int64_t ended_ns = server->life.lead_ended_ns;
@@ -320,7 +318,7 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
     renderer->close_text = votes ? NULL : "this node was refused";
-    /* a core that is refused only for its version may still take over: pairs are upgraded one core after the other */
+    /* a core refused only for its version may still take over: pairs are upgraded one core after the other */
     json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
                                 votes && !renderer->other_configuration);
     if (renderer->other_configuration)
@@ -408,8 +406,9 @@ static bool send_answer(struct renderer_peer *renderer)
     return send_message(renderer, answer);
 }
 
-/* Sends a message with samples to a standby. After a message that contains all waiting samples, the next message has readings even if new
-   samples have arrived: on a slow network there would always be new samples. Returns false if the standby must be disconnected. */
+/* Sends a message with samples to a standby. After a message with all waiting samples, the next message has readings even if
+   new samples have arrived, because on a slow network there would always be new samples. Returns false if the standby must be
+   disconnected. */
 static bool send_samples(const struct server_context *server, struct renderer_peer *renderer)
 {
     begin(renderer);
@@ -430,7 +429,7 @@ static bool send_readings(struct server_context *server, struct renderer_peer *r
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
-/* Continues sending on connections whose answers wait until a standby has the state that the answered actions changed. */
+/* Resumes sending on connections whose answers wait until a standby has the state that the answered actions changed. */
 static void wake_answers(const struct server_context *server)
 {
     for (const struct renderer_peer *one = server->core.renderers; one; one = one->next)
@@ -451,8 +450,8 @@ static bool standby_lacks(const struct server_context *server)
     return false;
 }
 
-/* Returns whether the next answer may be sent: the lease must have been confirmed after the action. Otherwise a core that is cut off from
-   standby and database would confirm actions to clients which the next leader never receives. */
+/* Returns whether the next answer may be sent: the lease must have been confirmed after the action. Otherwise a core that is
+   cut off from standby and database would confirm actions that the next leader never receives. */
 static bool may_answer(const struct server_context *server, const struct renderer_peer *renderer)
 {
     const json_t *acted = json_object_get(json_array_get(renderer->answers, 0), ACTED);
@@ -468,9 +467,9 @@ static bool send_hello(struct renderer_peer *renderer)
     return send_message(renderer, hello);
 }
 
-/* Sends one message. Alarms and other rarely changing state go first and readings last, so that readings are never newer than the alarms
-   sent with them. But readings that have waited too long go first: without them the renderer takes the core for lost. Returns false if the
-   renderer must be disconnected. */
+/* Sends one message. Alarms and other rarely changing state go first and readings last, so that readings are never newer than
+   the alarms sent before them. But readings that have waited too long go first: without readings the renderer assumes that the
+   core is lost. Returns false if the renderer must be disconnected. */
 static bool send_next(struct server_context *server, struct renderer_peer *renderer)
 {
     struct lists_seen lists = lists_now(server);
@@ -546,7 +545,7 @@ static char *standby_refusal(const struct server_context *server, struct rendere
     return NULL;
 }
 
-/* Logs a refusal unless it equals the last refusal that was logged: a refused peer tries again every second. */
+/* Logs a refusal unless it equals the last one logged: a refused peer tries again every second. */
 static void say_refusal(struct server_context *server, const struct renderer_peer *renderer)
 {
     char said[sizeof(server->core.refused)];
@@ -560,7 +559,7 @@ static void say_refusal(struct server_context *server, const struct renderer_pee
     memcpy(server->core.refused, said, sizeof(said));
 }
 
-/* Closes the connections of cores that only vote, once a standby with this core's version and plant files has connected. */
+/* Closes the connections of cores that may only vote, once a standby with this core's version and plant files has connected. */
 static void end_voters(struct server_context *server)
 {
     for (struct renderer_peer *one = server->core.renderers; one; one = one->next)
@@ -571,8 +570,9 @@ static void end_voters(struct server_context *server)
         }
 }
 
-/* Decides whether a renderer or standby that has introduced itself is accepted. A standby whose plant has the same name but whose files or
-   version differ is accepted only as a voter: it may be about to be upgraded or reloaded, before or after this core. */
+/* Decides whether to accept a renderer or standby that has introduced itself. A standby whose plant has the same name, but
+   other files or another version, is accepted only as a voter: it may be about to be upgraded or reloaded, before or after this
+   core. */
 static void judge(struct server_context *server, struct renderer_peer *renderer, const json_t *message, const struct core_identity *own)
 {
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
@@ -619,8 +619,8 @@ static void introduce(struct server_context *server, struct renderer_peer *rende
     count(server);
 }
 
-/* Verifies the user who sent a message through a renderer. The renderer's own token grants no right to act. Returns NULL and the user in
-   *out, or the reason of the refusal (static text). */
+/* Verifies the user who sent a message through a renderer. The renderer's own token gives no right to act. Returns NULL and the
+ * user in `out`, or the reason of the refusal (static text). */
 static const char *verify_person(const struct server_context *server, const struct renderer_peer *renderer, const json_t *message,
                                  struct token_holder *out)
 {
@@ -685,8 +685,8 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (renderer->state != RENDERER_TAKEN)
         why = "the peer's first message is not an introduction (type renderer)";
     else if (server->life.hands_over)
-        /* ignores the message, because this core is handing over the lead. When the connection ends, the renderer tells the user that the
-           connection was lost */
+        /* ignores the message, because this core is handing over the lead. When the connection ends, the renderer reports to
+           the user that the connection was lost */
         why = NULL;
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);
@@ -696,7 +696,7 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     return json_array_size(renderer->answers) > MAX_ANSWERS ? "the peer does not read answers" : why;
 }
 
-/* Handles bytes that a renderer or standby sent. Returns -1 if the connection must end. */
+/* Handles bytes received from a renderer or standby. Returns -1 if the connection must end. */
 static int on_receive(struct server_context *server, struct renderer_peer *renderer, const void *bytes, size_t count_bytes)
 {
     const char *why = NULL;
@@ -716,8 +716,8 @@ static int on_receive(struct server_context *server, struct renderer_peer *rende
 
 /* --- libwebsockets events ------------------------------------------------------------------------------------------------------------- */
 
-/* Sends readings regularly even if nothing changes: their age grows, and silence would mean that the core is lost. Returns -1 if the
-   renderer must be disconnected, else 0. */
+/* Sends readings regularly even if nothing changes: their age grows, and a renderer takes silence for the loss of the core.
+   Returns -1 if the renderer must be disconnected, else 0. */
 static int on_beat(struct server_context *server, struct renderer_peer *renderer)
 {
     int64_t now_ns = clock_mono_ns();
@@ -742,8 +742,8 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
-    /* the connection stays open until the answers to these forwarded actions are sent; settle() and on_beat() request the next callback for
-       that */
+    /* keeps the connection open until the answers to these forwarded actions are sent; settle() and on_beat() request the next
+       callback then */
     if (renderer->deeds)
         return 0;
     if (json_array_size(renderer->answers) > 0 && !server->life.goes_down) {

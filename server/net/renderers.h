@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The core's side of connections to /core: accepts renderers and standbys, sends them what changed, and carries out actions of renderers'
-   users. A peer that reads too slowly delays nobody: it gets only the newest state, and is disconnected after 5 s without reading. Thread:
-   the event loop. */
+/* The core's side of connections to /core: accepts renderers and standbys, sends them what changed, and carries out actions of
+   renderers' users. A peer that reads too slowly delays no other peer: it gets only the newest state, and is disconnected after
+   5 s without reading. Thread: the event loop. */
 #ifndef NET_RENDERERS_H
 #define NET_RENDERERS_H
 #include "net/server_context.h"
@@ -12,13 +12,14 @@ int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi);
 /* Returns whether a standby core of this version and configuration is connected to this core. */
 bool renderers_have_standby(const struct server_context *server);
-/* Returns the lease name of the standby that has confirmed to have all state, once nothing changes any more (life.lead_ended_ns) and all
-   actions are answered; NULL: no standby has confirmed. Valid until the event loop runs again. */
+/* Returns the lease name of the standby that has confirmed to have all state; NULL: none has. A standby can confirm this only
+   once nothing changes any more (life.lead_ended_ns) and all actions are answered. Valid until the event loop runs again. */
 const char *renderers_complete_standby(const struct server_context *server);
-/* Tells all renderers that this core begins to load the plant, so that they load their files at the same time. A standby ignores the
-   message and keeps answering: a leader that cannot reach the database needs the standby's promises not to take the lead. */
+/* Tells all renderers that this core begins to load the plant, so that they load their files at the same time. A standby
+   ignores the message and stays responsive: a leader that cannot reach the database needs the standby's promises not to take
+   the lead. */
 void renderers_announce_reload(struct server_context *server);
-/* Makes the key with which this core's renderers sign view tokens; all renderers get the same key. */
+/* Makes the key that this core's renderers sign view tokens with; all get the same key. */
 void renderers_make_key(struct server_context *server);
 /* Sends all renderers what changed. */
 void renderers_on_change(struct server_context *server);

@@ -45,7 +45,7 @@ struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this entry is not used */
     uint64_t leader;                /* id of the session that leads the wall; 0: none */
     uint64_t asked, presented;      /* ids of the wall's picture that was requested last, and of the one that was presented last */
-    /* size of the wall's picture, chosen by how long the server takes to draw and encode it */
+    /* size of the wall's picture, adapted to how long the server takes to draw and encode the picture */
     struct quality_ladder made;
 };
 
@@ -61,8 +61,8 @@ struct server_context {
         int64_t data_ns;        /* monotonic arrival time of the oldest reading that changed in the last snapshot */
         /* monotonic time when the quality of a reading next changes because of its age; INT64_MAX: never */
         int64_t next_change_ns;
-        bool *links_up; /* connection state of each data source, by source index */
-        /* true: streams and renderers were not told yet that readings, or connections to data sources, changed */
+        bool *links_up; /* by source: connection state of the data source */
+        /* true: a change of readings, or of connections to data sources, was not announced to streams and renderers yet */
         bool data_changed, links_changed;
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
@@ -82,14 +82,14 @@ struct server_context {
     } streams;
     struct {
         struct view_token_keys token_keys;      /* renderers only: keys that sign view tokens */
-        char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key that is sent to renderers, hexadecimal; "": none */
-        char refused[400]; /* text of the last refusal of a renderer that was logged, so that a repetition is not logged */
-        bool listed;       /* renderers only: true: the core has sent its lists (of views, notes and so on) since the plant was loaded */
-        /* configuration that the core named when it last refused this daemon, which then loaded its files again to match it */
+        char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key for the renderers, hexadecimal; "": none */
+        char refused[400]; /* last refusal of a renderer that was logged, so that repetitions are not logged */
+        bool listed;       /* renderers only: true: since the plant was loaded, the core has sent its lists (views, notes and so on) */
+        /* configuration named in the core's last refusal of this daemon, which then loaded its files again to match it */
         char followed[64];
         bool reloads; /* standbys only: true: the leader announced a reload, and has not accepted or refused this core since */
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
-        uint64_t told_number;                   /* sequence number of the last state of alarm notifications that was sent to a standby */
+        uint64_t told_number;                   /* sequence number of the newest state of alarm notifications that was sent to a standby */
     } core;
     struct {
         struct http_exchange *waiting; /* list of HTTP requests that wait for a frame, a pick or a reload */
@@ -105,18 +105,17 @@ struct server_context {
         const struct quotas *quotas;
         struct address_limits *addresses;
         struct admission admission;
-        int connections, unanswered; /* unanswered: number of connections that wait for an answer or have not sent a request yet */
+        int connections, unanswered; /* unanswered: connections that wait for an answer or have not sent a request yet */
     } room;
     struct {
         struct tokens *tokens;           /* access tokens; NULL: none are configured */
         struct openid *openid;           /* service for signing in with OpenID Connect; NULL: off */
         struct login_throttle *throttle;
         char *notice;      /* text that the page shows before users sign in; NULL: none */
-        /* number of tokens that were not checked because their address had sent too many wrong ones, and that the audit trail does not list
-           yet */
+        /* number of tokens left unchecked because their address had sent too many wrong ones, and not yet listed in the audit trail */
         int64_t held;
         int64_t held_ns;   /* monotonic time when the audit trail last got a line about unchecked tokens */
-        /* number of answers of the identity provider that belonged to no sign-in or failed, and that the audit trail does not list yet */
+        /* number of the identity provider's answers that failed or belonged to no sign-in, and are not yet listed in the audit trail */
         int64_t unasked;
         int64_t looked_ns; /* monotonic time when the files of tokens and certificate were last checked */
     } logins;
@@ -128,7 +127,7 @@ struct server_context {
         char goodbye[64];  /* reason that streams send when they are closed at shutdown */
         int64_t drain_ns;  /* monotonic time when the daemon began to drain its sessions to other daemons; 0: it does not drain */
         struct core_loss core_loss;
-        int start_s; /* seconds that the daemon took to start, rounded up; 0: it is still starting */
+        int start_s; /* seconds that the daemon took to start, rounded up; 0: still starting */
     } life;
     struct { /* texts that are made once and sent to several sessions */
         struct tag_text_cache tags;
@@ -172,15 +171,15 @@ bool net_write(struct server_context *server, struct lws *wsi, const void *bytes
 
 /* --- readings.c --- */
 
-/* Takes a new snapshot if the last one is older than 100 ms. The event loop tells streams and renderers of changes afterwards. Call it
-   before ages of readings are sent, or a message is acted on. */
+/* Takes a new snapshot if the last one is older than 100 ms. The event loop announces changes to streams and renderers
+   afterwards. Call it before sending ages of readings and before acting on a message. */
 void net_refresh_readings(struct server_context *server);
 
 /* --- stream.c, stream_table.c, stream_upgrade.c: connections to /stream --- */
 
 /* Handles the events of a connection to /stream for libwebsockets. */
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
-/* Returns whether the client with that id is a connected stream and not an HTTP request. */
+/* Returns whether that client is a connected stream, not an HTTP request. */
 bool stream_owns(const struct server_context *server, uint64_t client);
 /* The functions stream_on_...() pass an answer to the stream whose client asked for it; the stream must be connected.
    stream_on_frame() takes ownership of the frame. */
@@ -194,9 +193,9 @@ void stream_on_historical_snapshot(struct server_context *server, const struct h
    nothing if the stream has gone. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
-/* Tells sessions with sensors moved on trial that the distances along the surface from these sensors are computed. */
+/* Tells sessions with sensors moved on trial that the geodesic distances from these sensors are computed. */
 void streams_on_placed(struct server_context *server);
-/* Does the timed work of all sessions, and sets server->streams.restless if any session has work that depends on time. */
+/* Does the timed work of all sessions, and sets server->streams.restless if a session has timed work within the next second. */
 void streams_on_tick(struct server_context *server);
 /* Tells all sessions that readings, or the connection states of sources, changed. */
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
@@ -208,8 +207,8 @@ void streams_settle(struct server_context *server);
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns);
 /* Begins to close all connections, because the server shuts down. */
 void streams_close(struct server_context *server);
-/* Checks the HTTP request that opens a WebSocket. Returns 0 to accept it. Returns 1 to refuse it; an HTTP error (401, 403 or 429, for
-   example) was then sent. */
+/* Checks the HTTP request that opens a WebSocket. Returns 0 to accept it, or 1 after refusing it with an HTTP error such as
+   401, 403 or 429. */
 int stream_check_upgrade(struct server_context *server, struct lws *wsi);
 
 /* --- http/ --- */
@@ -223,13 +222,13 @@ void http_on_signed(struct server_context *server, struct signing *signing);
 void http_on_pick(struct server_context *server, const struct pick_answer *answer);
 void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
-/* Answers browsers that the identity provider has sent back after signing in. */
+/* Answers browsers that the identity provider has sent back after a sign-in. */
 void http_on_sign_ins(struct server_context *server);
 /* Answers the HTTP requests that asked for a reload, once it is done. good: the new plant is loaded; text: the result as JSON. */
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
-/* Answers all HTTP requests that wait for something of the present plant, because that plant is about to be destroyed. */
+/* Answers all HTTP requests that wait for something of the present plant, which is about to be destroyed. */
 void http_release_plant(struct server_context *server);
-/* Answers HTTP requests whose line in the audit trail is on disk by now, or could not be written. */
+/* Answers HTTP requests whose line of the audit trail has reached the disk or could not be written. */
 void http_settle(struct server_context *server);
 /* Answers HTTP requests that have waited too long for a frame, pick or reload. */
 void http_on_tick(struct server_context *server, int64_t now_ns);

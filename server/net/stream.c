@@ -20,7 +20,7 @@ static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
    balancers notice the drain first */
 static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
-/* time within which all sessions of a node that has lost its core are closed, so that they move to other nodes */
+/* time limit for a node that has lost its core to close all its sessions, so that they move to other nodes */
 static const int64_t MOVE_NS = 1 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* how long after a user's input the session's camera counts as moving */
 
@@ -44,8 +44,8 @@ static void close_with(struct stream *stream, int code, const char *text)
 
 static void pump(struct server_context *server, struct stream *stream);
 
-/* Returns a random session number. A client that knows the number may follow the session; 48 bits are too many to guess, and exact in
-   any JSON parser. */
+/* Returns a random session number. Any client that knows the number may follow the session, so the number has 48 bits: too many
+   to guess, but exact in any JSON parser. */
 static uint64_t new_number(const struct server_context *server)
 {
     uint64_t number = 0;
@@ -98,8 +98,8 @@ static void count(struct server_context *server, struct stream *stream)
     stream->dropped = session->stats.dropped;
 }
 
-/* Returns whether the session's view is stored so that a returning client can resume it: true after an accepted hello, unless the client
-   was refused (close code 1008). */
+/* Returns whether the session's view is stored so that a returning client can resume it. That is so after an accepted hello,
+   unless the client was refused (close code 1008). */
 static bool may_return(const struct stream *stream)
 {
     return stream->session->hello && stream->session->close.code != 1008;
@@ -181,8 +181,8 @@ static void pump(struct server_context *server, struct stream *stream)
     server->streams.restless |= stream->sending || stream->cut || !session_rests(session, now_ns);
 }
 
-/* Returns whether the render thread is overloaded: drawing a refined frame for every session at each change of readings, once a second,
-   would take more than a second. */
+/* Returns whether the render thread is overloaded, that is, whether one refined frame for every session would take more than
+   the second between two changes of readings. */
 static bool is_loaded(const struct server_context *server)
 {
     int count = 0;
@@ -221,8 +221,8 @@ static void log_silence(struct server_context *server, struct stream *stream, in
              (unsigned long long)session->id, connection_of(stream->wsi)->address, display, SILENT_S + PACER_STALL_S);
 }
 
-/* Watches a client that acknowledges no frame: sends it no more frames, cuts a half-sent frame short, and closes the session if the client
-   acknowledges nothing for 15 s. */
+/* Watches a client that acknowledges no frame: stops sending frames, cuts a half-sent frame short, and closes the session if
+   the client acknowledges nothing for 15 s. */
 static void watch_stall(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     enum pacer_state state = session_state(stream->session, now_ns);
@@ -236,7 +236,7 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
         return;
     counter_inc(server->counters.stalled, 1);
     close_with(stream, STREAM_CLOSE_STALLED, "no frame was acknowledged for 15 s");
-    /* closes the socket by a timeout, because the client may not even read the close frame */
+    /* closes the socket after a timeout, because the client may not even read the close frame */
     lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S);
 }
 
@@ -251,8 +251,8 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
     }
 }
 
-/* Returns whether a session must be closed by now. The node closes all its sessions within spread_ns from begun_ns on, at different
-   instants, because the closed pages reconnect to other nodes immediately. */
+/* Returns whether a session is due to be closed. The node closes its sessions at different instants within spread_ns after
+   begun_ns, because the closed pages reconnect to other nodes immediately. */
 static bool is_due(const struct stream *stream, int64_t begun_ns, int64_t spread_ns, int64_t now_ns)
 {
     /* Fibonacci hashing gives each session its own instant: multiplying by 2^64 / golden ratio spreads consecutive ids evenly */
@@ -260,8 +260,8 @@ static bool is_due(const struct stream *stream, int64_t begun_ns, int64_t spread
     return now_ns - begun_ns > (int64_t)(spread % 1000) * (spread_ns / 1000);
 }
 
-/* Closes a session that must move to another node, because this node is being drained or has lost its core. Only sessions that came through
-   a load balancer are closed after the loss of a core: others would reach the same node again. */
+/* Closes a session that must move to another node, because this node is being drained or has lost its core. After the loss of a
+   core, only sessions that came through a load balancer are closed: others would reach the same node again. */
 static void move_elsewhere(const struct server_context *server, const struct stream *stream, int64_t now_ns)
 {
     int64_t drain_ns = server->life.drain_ns, moves_ns = server->life.core_loss.moves_ns;
@@ -413,8 +413,7 @@ void stream_say(struct server_context *server, uint64_t client, const char *text
     pump(server, stream);
 }
 
-/* Writes to the log and the audit trail that a user logged in over this stream: once for each admitted session, and for each refused
-   token. */
+/* Records in the log and the audit trail that a user logged in over this stream: once per admitted session, and for each refused token. */
 static void note_login(struct server_context *server, struct stream *stream, bool was_in)
 {
     const struct session *session = stream->session;
@@ -431,7 +430,7 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         connection_log_login(server, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->identity.login);
 }
 
-/* Passes a tag list that is to be saved to the thread that reloads the plant. */
+/* Passes a tag list to be saved to the reload thread. */
 static void save_resolve(struct server_context *server, struct session *session)
 {
     struct tag_save *save = session_take_save(session);
@@ -484,8 +483,8 @@ static bool is_utf8(const struct text *text)
     return length > 0;
 }
 
-/* Receives a part of a message. A complete text is checked to be UTF-8 here, because libwebsockets' own check would also reject a pong that
-   follows the text, whose bytes need not be UTF-8. */
+/* Receives a part of a message. Checks here that a complete text is UTF-8: libwebsockets' own check would also reject a pong
+   after the text, whose bytes need not be UTF-8. */
 static void on_receive(struct server_context *server, struct stream *stream, const void *bytes, size_t len)
 {
     if (server->life.hands_over)

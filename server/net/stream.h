@@ -15,11 +15,11 @@ struct stream {
     size_t in_count;             /* bytes of the current message received so far, stored or dropped */
     struct encoded_frame *sending;
     uint32_t seq;
-    enum session_depth depth; /* SESSION_DEPTH_...: whether depth grids are sent with the frame, and whether the client lacks them */
-    int half;                 /* index of the depth grid being sent: 0, or 1 for the right half of a split view */
+    enum session_depth depth; /* SESSION_DEPTH_...: whether the frame comes with depth grids, and whether the client lacks these */
+    int half;                 /* index of the depth grid being sent: 0; 1: that of the right half of a split view */
     enum { SEND_MARKERS, SEND_DEPTH, SEND_HEADER, SEND_PAYLOAD } step;
     int packet, part;      /* indices of the packet being sent in its frame, and of the part being sent in its packet */
-    size_t sent, sent_all; /* sent: bytes of the part that were sent; sent_all: bytes of the whole frame that were sent */
+    size_t sent, sent_all; /* bytes sent so far: sent: of the part; sent_all: of the whole frame */
     bool cut;              /* true: the frame was cut short, so only the end of its message is still to be sent */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic time when the last ping was sent */
@@ -51,8 +51,8 @@ struct stream *stream_called(const struct server_context *server, uint64_t numbe
 
 /* --- stream_send.c --- */
 
-/* Makes at most one write: a text, a part of a frame, the end of a frame that was cut short, or a ping; nothing if nothing is due. Returns
-   false if the connection is gone; the caller then makes libwebsockets close it, which frees the stream. */
+/* Makes at most one write: a text, a part of a frame, the end of a frame that was cut short, or a ping. Does nothing if nothing
+   is due. Returns false if the connection is gone; the caller then makes libwebsockets close it, which frees the stream. */
 bool stream_send(struct server_context *server, struct stream *stream);
 /* Returns whether there is anything to send now. */
 bool stream_has_output(const struct stream *stream, int64_t now_ns);
@@ -74,9 +74,9 @@ void tiles_on_tick(struct server_context *server);
 
 /* --- stream_follow.c: sessions that are shown another session's view --- */
 
-/* Carries out what the session's client asked for: to follow another session, to hand over the lead, or to return with its followers. */
+/* Carries out the client's request about following: to follow another session, to hand over the lead, or to return with its followers. */
 void follow_resolve(struct server_context *server, struct stream *stream);
-/* Tells all sessions that follow `leader` that its view changed. Returns false if there are no followers. */
+/* Tells all followers of `leader` that the leader's view changed. Returns false if there are none. */
 bool follow_spread(struct server_context *server, const struct stream *leader);
 /* Gives all viewers of one view the same step of the quality ladder. Call it every tick. */
 void follow_share_steps(struct server_context *server);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps track of which session follows which. Following is one level deep: a session that asks to follow a follower follows that follower's
-   leader. */
+/* Keeps track of which session follows which. Following is one level deep: a session that asks to follow a follower follows the
+   follower's leader instead. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/stream.h"
 
 static const int64_t MIN_LIST_INTERVAL_NS =
-    500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds of followers may connect within a moment */
+    500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds of followers may connect at once */
 
 /* Makes the followers of the resumed session follow the session that resumed it. */
 static void take_back(struct server_context *server, struct session *session)
@@ -28,7 +28,7 @@ static void hand_over(struct server_context *server, const struct session *from,
             session_follow(stream->session, to, clock_mono_ns());
 }
 
-/* Hands the lead to one of the followers (the heir): all sessions keep showing the same view, but from now on the heir's user moves it. */
+/* Hands the lead to one of the followers (the heir). All sessions keep showing the same view, but from now on the heir's user moves it. */
 static void resolve_lead(struct server_context *server, struct session *session, uint64_t number)
 {
     const struct stream *other = stream_called(server, number);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends texts and frames to one client with one write per writeable callback, so that libwebsockets never has to buffer what the socket
-   does not accept. */
+/* Sends texts and frames to one client, with one write per writeable callback, so that libwebsockets never has to buffer what
+   the socket does not accept. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -27,7 +27,7 @@ static const struct text *padded(struct text *text)
 static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    /* no markers are sent if the client may not read the sensors' values */
+    /* sends no markers to clients that may not read the sensors' values */
     bool open = session_is_open(stream->session) || stream->session->scope.tags;
     char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->texts.markers);
     *wrote = markers != NULL;

@@ -20,8 +20,8 @@ static int refuse(struct server_context *server, struct lws *wsi, int status, co
     return http_answer(wsi, status, text) < 0 ? -1 : 1;
 }
 
-/* Returns whether the Origin header of a handshake is allowed: it names this host, or is absent because the client is no browser. With any
-   other origin, a page of another host could use the rights that its visitor has here. */
+/* Returns whether the Origin header of a handshake is allowed: it names this host, or is absent because the client is not a
+   browser. Other origins are refused: otherwise another host's page could use the rights that its visitor has here. */
 static bool origin_allowed(const struct server_context *server, struct lws *wsi)
 {
     char origin[256], host[256];

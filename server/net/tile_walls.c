@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the sessions that are tiles of one wall (each shows its display's part of one picture); session/tiles/tile_sync.h makes them show
-   pictures together. */
+/* Finds the sessions that are tiles of one wall, each showing its display's part of one picture. session/tiles/tile_sync.h
+   makes the tiles show pictures together. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -62,7 +62,7 @@ static struct session *choose(struct server_context *server, const struct tile_w
 static void take_lead(const struct server_context *server, struct tile_wall *wall, struct session *leader, const struct stream *leaving)
 {
     const struct stream *before = wall->leader ? stream_find(server, wall->leader) : NULL;
-    /* stream_find() does not find the leaving stream, because it was already removed from the table */
+    /* the leaving stream was already removed from the table, so stream_find() does not find it */
     if (leaving && leaving->session->id == wall->leader)
         before = leaving;
     if (before)

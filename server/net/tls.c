@@ -23,7 +23,7 @@ struct tls {
     char *cert_path, *key_path;
     struct file_watch cert_watch, key_watch;
     SSL_CTX *checked; /* newest certificate that passed the checks; NULL: none yet */
-    SSL_CTX *served;  /* OpenSSL context with which libwebsockets serves the certificate */
+    SSL_CTX *served;  /* OpenSSL context that libwebsockets serves the certificate with */
     time_t warned_s;  /* time when the last warning about the certificate's expiry was logged, in seconds of UTC; 0: none yet */
 };
 
@@ -73,7 +73,7 @@ static void warn_of_end(struct tls *tls, time_t now_s)
                   (double)left_s / (left_s < DAY_S ? HOUR_S : DAY_S), left_s < DAY_S ? "hours" : "days");
 }
 
-/* Returns whether to warn that the certificate expires: once a day, once an hour on the last day, and when the certificate expires. */
+/* Returns whether to warn about the certificate's expiry: once a day, once an hour on the last day, and when the certificate expires. */
 static bool is_time_to_warn(const struct tls *tls, time_t now_s)
 {
     int64_t ends_s = tls_ends_s(tls);
@@ -153,7 +153,7 @@ static int write_chain(const SSL_CTX *context, const char *path)
     return error;
 }
 
-/* Writes the active certificate to the service's folder in /run. Prometheus and other programs of this machine read it there to
+/* Writes the active certificate to the service's folder in /run, where Prometheus and other programs of this machine read it to
    verify this server. */
 static void publish(const struct tls *tls)
 {

@@ -12,11 +12,11 @@ struct tls;
 /* Reads both PEM files. Returns NULL if they cannot be served; the reason is logged. */
 struct tls *tls_create(struct log *log, const char *cert_path, const char *key_path);
 void tls_destroy(struct tls **tls); /* frees the certificate and sets *tls to NULL; accepts a pointer to NULL */
-/* Makes the OpenSSL context use the certificate, now and after each change. Under a service manager, also writes the active certificate
-   to certificate.pem in the service's folder (RUNTIME_DIRECTORY). */
+/* Makes the OpenSSL context use the certificate, now and after each change. If run by a service manager, also writes the active
+   certificate to certificate.pem in the service's folder (RUNTIME_DIRECTORY). */
 void tls_serve(struct tls *tls, SSL_CTX *context);
-/* Reads the files again if they changed. If the new certificate cannot be served, the old one stays active; logged. Warns about a
-   certificate that expires within 14 days, once a day and more often on its last day. */
+/* Reads the files again if they changed. If the new certificate cannot be served, logs that and keeps the old one active. Warns
+   about a certificate that expires within 14 days, once a day and more often on its last day. */
 void tls_look(struct tls *tls);
 /* Returns when the active certificate expires, in seconds since 1970 (UTC). */
 int64_t tls_ends_s(const struct tls *tls);

@@ -14,7 +14,7 @@
 enum { CONNECT_S = 10 };
 
 struct transfer {
-    CURL *handle; /* libcurl's handle of the message that is being sent; NULL: none is */
+    CURL *handle; /* libcurl's handle for the message being sent; NULL: no message is being sent */
     struct curl_slist *list;
     char *body;
     size_t bytes, at;
@@ -91,8 +91,8 @@ static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
-/* Debug callback of libcurl that logs when the mail server refuses a single mailbox: the mail counts as delivered if other mailboxes
-   accept it, so nothing else reports the refusal. */
+/* Debug callback of libcurl. Logs when the mail server refuses a single mailbox: nothing else reports that, because the mail
+   counts as delivered if other mailboxes accept it. */
 static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t count, void *arg)
 {
     static const char ask[] = "RCPT TO:";
@@ -120,7 +120,7 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    /* lets the daemon end without waiting for libcurl's resolver thread, which may wait for a name server that does not answer */
+    /* lets the daemon end without waiting for libcurl's resolver thread, which may be waiting for a dead name server */
     curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L);
     if (ca_file)
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);

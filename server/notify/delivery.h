@@ -9,8 +9,8 @@
 #include "plant/sections/notification.h"
 
 struct delivery;
-/* Creates an object that sends messages to the recipients of `notify`, which must outlive it. Returns NULL if libcurl cannot be used
-   (logged). */
+/* Creates an object that sends messages to the recipients of `notify`. `notify` must outlive the object. Returns NULL if
+   libcurl cannot be used (logged). */
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify);
 /* Aborts messages that are being sent and frees the object; sets *delivery to NULL; accepts a pointer to NULL. */
 void delivery_destroy(struct delivery **delivery);
@@ -19,8 +19,8 @@ bool delivery_is_idle(const struct delivery *delivery, int recipient);
 /* Starts sending a message to an idle recipient. Takes ownership of `body` (mem_free). Returns NULL on success, or the reason why
    sending cannot start (free with mem_free()). */
 char *delivery_start(struct delivery *delivery, int recipient, char *body, size_t bytes);
-/* Waits up to timeout_ms for network activity, and calls each() for every message whose sending has ended; `why` is NULL if the
-   recipient's server accepted it. */
+/* Waits up to timeout_ms for network activity, and calls each() for every message that was sent or failed; `why` is NULL if the
+   recipient's server accepted the message. */
 void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg);
 void delivery_wake(struct delivery *delivery); /* Makes delivery_wait() return. Thread: any. */
 

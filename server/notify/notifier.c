@@ -100,7 +100,7 @@ static void save(struct notifier *notifier)
     if (!notifier->unsaved)
         return;
     char *text = json_text(outbox_save(notifier->outbox), 0);
-    publish(notifier, mem_strdup(text)); /* passes the text to a standby core before writing notify.json, which may take long */
+    publish(notifier, mem_strdup(text)); /* passes the text to a standby core first, because writing notify.json may take long */
     int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)
@@ -140,7 +140,7 @@ static void on_end(void *arg, int recipient, const char *why)
             log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
-        /* saves the outbox at once: if the daemon were killed before, it would send the message again after its restart */
+        /* saves the outbox at once: if the daemon were killed first, it would send the message again after its restart */
         save(notifier);
         counter_inc(notifier->counters[recipient].sent, 1);
         if (notifier->failing[recipient])
@@ -164,7 +164,7 @@ static char *compose(const struct notifier *notifier, int recipient, const struc
     return json ? json : mail.at;
 }
 
-/* Sends all messages that are due. The outbox is saved before a message is sent, so that a restarted daemon repeats the same message
+/* Sends all due messages. Saves the outbox before sending a message, so that a restarted daemon repeats the same message
    instead of making another one. */
 static void send_due(struct notifier *notifier)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends alarms to users and external programs, as the plant file's `notify` says. Its thread wakes when an alarm changes, stores pending
-   messages in notify.json in the history folder, and sends them; no other thread waits for it. Thread: one. */
+/* Sends alarms to users and external programs, as configured by the plant file's `notify`. Its thread wakes when an alarm
+   changes, stores pending messages in notify.json in the history folder, and sends them; no other thread waits for it. Thread:
+   one. */
 #ifndef NOTIFY_NOTIFIER_H
 #define NOTIFY_NOTIFIER_H
 #include "alarm/alarm_service.h"
@@ -23,12 +24,12 @@ struct notifier;
 uint64_t notifier_number(struct notifier *notifier);
 /* Returns the content of notify.json (pending messages); free with mem_free(). Thread: any. */
 char *notifier_kept(struct notifier *notifier);
-/* Stores the content of the leading daemon's notify.json in this daemon's file, for the notifier that starts when this daemon becomes
-   the leader. Returns 0 or -errno. */
+/* Stores the leading daemon's notify.json as this daemon's file, for the notifier that starts when this daemon becomes the
+   leader. Returns 0 or -errno. */
 int notifier_put_kept(const char *folder, const char *text);
 /* Starts a notifier. Returns NULL if it cannot be started (logged). */
 struct notifier *notifier_start(const struct notifier_params *params);
-/* Aborts messages that are being sent, and waits until notify.json is written. The aborted messages are sent after the next start. */
+/* Aborts messages that are being sent, and waits for notify.json to be written. The aborted messages are sent after the next start. */
 void notifier_halt(struct notifier *notifier);
 /* Halts and frees the notifier. Accepts a pointer to NULL; sets *notifier to NULL. */
 void notifier_stop(struct notifier **notifier);

@@ -12,8 +12,8 @@
 #include "base/text/json_text.h"
 #include "base/text/timestamp.h"
 
-/* BASE64_LINE: number of bytes that a base64 line of 76 characters encodes. WORD: number of bytes in an encoded word (RFC 2047), so that
-   the word fits into a line of 77 characters after the header's name. */
+/* BASE64_LINE: number of bytes that a base64 line of 76 characters encodes. WORD: number of bytes encoded by one encoded word
+   (RFC 2047); with it, the word fits into a line of 77 characters after the header's name. */
 enum { BASE64_LINE = 57, WORD = 42 };
 
 static const struct plant_tag *tag_of(const struct plant *plant, const struct outbox_item *item)
@@ -52,8 +52,8 @@ static bool is_plain(const char *text)
     return true;
 }
 
-/* Adds a header line of an e-mail. A short ASCII value is written unchanged; any other value as encoded words (RFC 2047), none of which
-   ends within a character. */
+/* Adds a header line of an e-mail. Writes a short ASCII value unchanged, and any other value as encoded words (RFC 2047), none
+   of which ends within a character. */
 static void add_header(struct text *out, const char *name, const char *value)
 {
     text_add(out, "%s:", name);

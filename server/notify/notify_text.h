@@ -8,10 +8,10 @@
 
 enum { NOTIFY_LINES = 50 /* maximum number of alarms that an e-mail lists; further ones are only counted */ };
 
-/* Appends a complete e-mail with the alarms of a message, header and body, with CRLF line ends. now_us: the date in its header. */
+/* Appends a complete e-mail, header and body, with the alarms of a message. Line ends are CRLF. now_us: time for the Date header. */
 void notify_mail_text(struct text *out, const struct plant *plant, const struct notify_recipient *recipient,
                       const struct outbox_message *message, int64_t now_us);
-/* Returns the JSON body of a message for a webhook; free with mem_free(). notify_alerts_text() returns the one for Alertmanager. */
+/* Returns the JSON body of a webhook message; free with mem_free(). notify_alerts_text() returns that of a message for Alertmanager. */
 char *notify_webhook_text(const struct plant *plant, const struct notify_recipient *recipient, const struct outbox_message *message);
 char *notify_alerts_text(const struct plant *plant, const struct outbox_message *message, int64_t now_us);
 

@@ -264,7 +264,7 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
         struct recipient_box *box = &outbox->boxes[i];
-        /* messages to Alertmanager are never dropped for their age, because each contains all present alarms */
+        /* age never drops messages to Alertmanager, because each has all present alarms */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);
@@ -344,8 +344,8 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
     return false;
 }
 
-/* Makes a message for Alertmanager with all active alarms, and with the alarms that have ended since the last message. Returns false if
-   there are no such alarms, or if no message is due. */
+/* Makes a message for Alertmanager with all active alarms, and with those that ended since the last message. Returns false if
+   there are none, or if no message is due. */
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];

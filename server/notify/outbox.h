@@ -10,7 +10,7 @@
 #include "plant/sections/notification.h"
 
 enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms, of all recipients together */, OUTBOX_ID_BYTES = 40 };
-/* minimum time between two notifications of an alarm that comes and goes without anybody acknowledging it */
+/* minimum time between two notifications of an alarm that comes and goes without being acknowledged */
 #define OUTBOX_REPEAT_US (600 * INT64_C(1000000))
 #define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age at which an undeliverable message is dropped */
 #define OUTBOX_REFRESH_US (60 * INT64_C(1000000)) /* interval at which all active alarms are sent to Alertmanager again */
@@ -28,7 +28,7 @@ struct outbox_item { /* one alarm in a message */
 };
 
 struct outbox_message {
-    char id[OUTBOX_ID_BYTES];        /* id of the message, the same in each attempt to send it */
+    char id[OUTBOX_ID_BYTES];        /* id of the message; stays the same when sending is repeated */
     const struct outbox_item *items; /* alarms, most urgent first */
     size_t count;
     int64_t left_out; /* number of further alarms that did not fit into the message */
@@ -36,7 +36,7 @@ struct outbox_message {
 };
 
 struct outbox;
-/* Creates an outbox for the recipients of `plant`, which must have a `notify` and outlive the outbox. Never returns NULL. */
+/* Creates an outbox for the recipients of `plant`, which must have a `notify`. The plant must outlive the outbox. Never returns NULL. */
 struct outbox *outbox_create(const struct plant *plant);
 void outbox_destroy(struct outbox **outbox); /* Frees the outbox and sets *outbox to NULL; accepts a pointer to NULL. */
 

@@ -4,7 +4,7 @@
 #define NOTIFY_OUTBOX_IMPL_H
 #include "notify/outbox.h"
 
-struct episode { /* an episode: the time during which an alarm needs attention; removed some time after the alarm no longer needs it */
+struct episode { /* an episode: the time during which an alarm needs attention; removed some time after it has ended */
     char *name;
     int tag;
     enum alarm_kind kind;
@@ -20,7 +20,7 @@ struct episode { /* an episode: the time during which an alarm needs attention; 
     uint32_t told;               /* bit mask of the recipients that were notified of the alarm */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps carried out */
     bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is notified */
-    /* true: outbox_put() was called for the alarm since the daemon started; false: only the saved state has the episode */
+    /* true: outbox_put() was called for the alarm since the daemon started; false: the episode is known only from the saved state */
     bool seen;
 };
 

@@ -74,7 +74,7 @@ static int64_t integer_of(const json_t *object, const char *key)
     return json_integer_value(json_object_get(object, key));
 }
 
-/* Returns a saved value or limit of an alarm in the tag's present unit; NAN: none, or the unit is not known or cannot be converted. */
+/* Returns a saved value or limit of an alarm in the tag's present unit. NAN: none, or its unit is unknown or not convertible. */
 static double value_of(const struct outbox *outbox, const json_t *object, const char *key, int tag)
 {
     const json_t *value = json_object_get(object, key);

@@ -26,7 +26,7 @@ static const int64_t CONNECT_NS = 10 * NS_PER_S;
 struct topic {
     char *name, *unit;       /* name: MQTT topic of the tag; unit: text of a JSON object with the tag's unit as its only member */
     int64_t received_utc_ns; /* UTC time of the reading of this tag that was published last */
-    double value;            /* value that was published last; a sample with the same time may replace it */
+    double value;            /* value that was published last; a sample with the same time may still replace this value */
     uint32_t quality;
     bool is_published; /* true: the tag's reading has been published on the present connection */
 };
@@ -49,7 +49,7 @@ struct publisher {
 
 /* --- published messages ------------------------------------------------------------------------------------------------------- */
 
-/* Appends a tag's name as one level of an MQTT topic: separators of levels, wildcards and percent signs are percent-encoded. */
+/* Appends a tag's name as one level of an MQTT topic. Percent-encodes level separators, wildcards and percent signs. */
 static void add_level(struct text *text, const char *name)
 {
     for (const char *c = name; *c; c++)

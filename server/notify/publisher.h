@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Publishes readings and alarms to an MQTT broker, as the plant file's `publish` says, on a thread of its own. There is no queue: a slow
-   broker gets only the newest readings. No other thread waits for this thread. */
+/* Publishes readings and alarms to an MQTT broker, as configured by the plant file's `publish`, on a thread of its own. There
+   is no queue: a slow broker gets only the newest readings. No other thread waits for this thread. */
 #ifndef NOTIFY_PUBLISHER_H
 #define NOTIFY_PUBLISHER_H
 #include "alarm/alarm_service.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Selects, among the sensors with an assumed place (one that `plantcast match` proposed), those whose places an engineer accepts in one
-   operation. TAGS.md, "Assumed places", describes them. Thread: the event loop. */
+/* Selects the sensors whose assumed places (proposed by `plantcast match`) an engineer accepts in one operation. TAGS.md,
+   "Assumed places", describes assumed places. Thread: the event loop. */
 #ifndef PLACING_ASSUMED_PLACES_H
 #define PLACING_ASSUMED_PLACES_H
 #include <stddef.h>
@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 
 struct assumed_filter {
-    int asset, group; /* indices in the plant of the asset and the group to which the selection is limited; -1: any */
+    int asset, group; /* indices in the plant of the asset and the group that limit the selection; -1: any */
     /* glob for the tag's name; a text without * or ? is searched for in the tag's name and description; case-insensitive; empty: any tag */
     char pattern[101];
     double within_m; /* largest distance in metres of the assumed place from the asset's surface; negative: any distance */
@@ -19,7 +19,7 @@ struct assumed_filter {
 };
 
 enum assumed_outcome {
-    /* the filter does not select the tag: its place is not an assumed one, or its asset, group or name does not match the filter */
+    /* not selected by the filter: the tag's place is not an assumed one, or its asset, group or name does not match */
     ASSUMED_NOT_MEANT,
     ASSUMED_ACCEPTED,
     ASSUMED_NOWHERE, /* not accepted: the tag's row in the tag list has neither a node nor X, Y, Z */
@@ -29,7 +29,7 @@ enum assumed_outcome {
     ASSUMED_OUTCOMES
 };
 
-/* Writes for each tag of the plant whether its assumed place is accepted (enum assumed_outcome). Returns the number of accepted tags. */
+/* Writes for each tag whether its assumed place is accepted (enum assumed_outcome). Returns the number of accepted tags. */
 size_t assumed_places_choose(const struct scene *scene, const struct assumed_filter *filter, uint8_t *outcome);
 /* Returns the text of the tag list with the column `Place` cleared in the rows of the accepted tags, and nothing else changed
    (mem_free). `list`: the present text. Returns NULL on failure, with the reason in *why. */

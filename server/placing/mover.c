@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates the relocation object of an asset, which computes geodesic distances from moved sensors on the asset's surface. */
+/* Creates the relocation object of an asset, which computes geodesic distances from sensors moved on the asset's surface. */
 #include "placing/mover.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manages the sensors that users move on trial, the relocation objects (which compute geodesic distances on an asset), and results from
-   worker threads. */
+/* Manages sensors moved on trial by users, the relocation objects (which compute geodesic distances on an asset), and results
+   of worker threads. */
 #include "placing/placing.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* maximum number of relocation objects in memory; beyond that, those of assets without moved sensors are freed */
+enum { MOVERS = 4 }; /* maximum number of relocation objects in memory; beyond it, objects of assets without moved sensors are freed */
 
 struct distance_ask { /* pending request for the geodesic distances of one moved sensor */
     struct placing *placing;
@@ -187,7 +187,7 @@ static void to_file(const struct scene_asset *asset, const double plant_m[3], do
     transform_point(file_from_plant, plant_m, out);
 }
 
-/* Finds the nearest point of the asset's surface to a moved sensor. Returns false if the sensor is too far from the asset. */
+/* Finds the point of the asset's surface that is nearest to a moved sensor. Returns false if the sensor is too far from the asset. */
 static bool find_place(struct placing *placing, const struct place_move *move, struct placing_entry *entry, struct placed *placed)
 {
     const struct scene_asset *asset = &placing->params.scene->assets[move->asset];

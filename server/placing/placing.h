@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors that users move on the model, before the new places are saved. Each user has a set of moved sensors. The set becomes a trial
-   (a changed sensor layout, field/trials.h): first with straight-line distances, and later a second trial with geodesic distances.
-   Thread: the event loop, except functions that workers call. */
+/* Sensors that users move on the model, before the new places are saved. Each user has a set of moved sensors. The set becomes
+   a trial (a changed sensor layout, field/trials.h) with straight-line distances, and later a second trial with geodesic
+   distances. Thread: the event loop, except functions that workers call. */
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
 #include "base/log/log.h"
@@ -23,8 +23,8 @@ struct placing;
 /* Creates the service for moved sensors. Everything that `params` points to, except `folder`, must outlive the service. Never
    returns NULL. The caller destroys it. */
 struct placing *placing_create(const struct placing_params *params);
-/* Waits for pending work and frees everything. Destroy all sets of moved sensors before. Accepts a pointer to NULL; sets *placing to
-   NULL. */
+/* Waits for pending work and frees everything. All sets of moved sensors must have been destroyed. Accepts a pointer to NULL;
+   sets *placing to NULL. */
 void placing_destroy(struct placing **placing);
 /* Returns the registry in which views find trials (sets of moved sensors). Owned by `placing`. */
 struct trials *placing_trials(struct placing *placing);
@@ -83,8 +83,8 @@ struct sensor_coverage_answer {
    placing_collect() returns the answer. */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
-/* Passes newly computed geodesic distances to the sets that requested them. Returns a linked list of the coverage answers that are
-   ready, oldest first; the caller frees each with sensor_coverage_answer_free(). */
+/* Passes newly computed geodesic distances to the sets that requested them. Returns a linked list of finished coverage answers,
+   oldest first; the caller frees each with sensor_coverage_answer_free(). */
 struct sensor_coverage_answer *placing_collect(struct placing *placing);
 /* Frees one coverage answer. */
 void sensor_coverage_answer_free(struct sensor_coverage_answer *answer);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes how well sensors cover an asset's surface, from the distance of every vertex to its nearest sensor and the area that the
+/* Computes how well sensors cover an asset's surface, from each vertex's distance to its nearest sensor and the area that the
    vertex represents. */
 #include "placing/sensor_coverage.h"
 

@@ -20,12 +20,12 @@ struct sensor_coverage_query {
 struct sensor_coverage {
     size_t sensors;
     double far_m; /* the distance that was used as query->far_m */
-    /* distance in metres of the surface point that is farthest from all sensors to its nearest sensor; points from which no path along
-       the surface leads to a sensor do not count */
+    /* distance in metres between the surface point that is farthest from all sensors and its nearest sensor; ignores points
+       that no path along the surface connects with a sensor */
     double farthest_m;
     double farthest_at_m[3]; /* position of the farthest surface point, in plant coordinates */
     double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */
-    double lost_share;       /* fraction of the area that is out of reach of all sensors, or whose nearest sensor has no usable reading */
+    double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
     double next_m;           /* largest distance in metres from a sensor to its nearest other sensor; 0: there is only one sensor */
     int next_tags[2];        /* indices of the tags of the two sensors that are next_m apart; -1: none */
 };

@@ -17,9 +17,9 @@
 #include "plant/influence.h"
 #include "plant/models/transform.h"
 
-/* maximum number of candidate positions per asset; they are spread evenly over the area where hot spots are hard to detect */
+/* maximum number of candidate positions per asset, spread evenly over the area where hot spots are hard to detect */
 #define MAX_CANDIDATES 1500
-/* maximum number of candidates per suggestion for which geodesic distances are computed: those with the highest bounds */
+/* maximum number of candidates per suggestion, those with the highest bounds, for which geodesic distances are computed */
 #define MAX_MEASURED 40
 #define MIN_GAIN 1e-6 /* minimum reduction of the measure (sensor_suggest.h) for which a sensor is suggested */
 

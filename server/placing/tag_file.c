@@ -52,8 +52,8 @@ static void cannot_write(struct refusal *why, const char *file, int error)
         refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));
 }
 
-/* Keeps the present tag list as an earlier version: gives it a second name by a hard link, which keeps its owner and mode. Returns that
-   name. */
+/* Keeps the present tag list as an earlier version, under a second name. The name is a hard link, so owner and mode stay.
+   Returns that name. */
 char *tag_file_keep(const char *path, struct refusal *why)
 {
     for (int n = 1; n < MAX_VERSIONS; n++) {

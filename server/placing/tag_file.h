@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tag list on disk. A new version takes the list's name, and the previous one is kept as NAME.1, NAME.2, ... No version is ever
-   overwritten. Thread: any, one at a time per list. */
+/* The tag list on disk. A new version gets the list's name, and the previous one is kept as NAME.1, NAME.2, ... No version is
+   ever overwritten. Thread: any, one at a time per list. */
 #ifndef PLACING_TAG_FILE_H
 #define PLACING_TAG_FILE_H
 #include <stdbool.h>
@@ -8,7 +8,7 @@
 
 #include "base/refusal.h"
 
-/* A request to save a tag list, from a user who has seen how it differs from the present list. */
+/* A request to save a tag list. Its user has seen how the list differs from the present one. */
 struct tag_save {
     char *path;
     char *before, *after; /* text of the present tag list, and text of the list to save */
@@ -26,8 +26,8 @@ void tag_file_hash(const char *text, char out[17]);
 /* Keeps the present tag list under the first unused name of NAME.1, NAME.2, ..., by a second hard link. Returns that name
    (mem_free), or NULL with the reason in *why. */
 char *tag_file_keep(const char *path, struct refusal *why);
-/* Saves save->after under the list's name. *kept receives the path of the previous version (mem_free). Returns false with nothing
-   changed on disk and the reason in *why. */
+/* Saves save->after under the list's name. *kept receives the path of the previous version (mem_free). On failure, returns
+   false with the reason in *why, and nothing has changed on disk. */
 bool tag_file_put(const struct tag_save *save, char **kept, struct refusal *why);
 /* Undoes tag_file_put(): gives the kept version the list's name again. Returns false with the reason in *why (mem_free). */
 bool tag_file_put_back(const struct tag_save *save, const char *kept, char **why);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The colour maps that a plant's pictures can use: the built-in ones, then those that its plant file defines. Thread: any. */
+/* The colour maps available to a plant's pictures: the built-in ones, then those of its plant file. Thread: any. */
 #ifndef PLANT_COLORMAPS_H
 #define PLANT_COLORMAPS_H
 #include "plant/plant.h"

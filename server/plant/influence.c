@@ -47,8 +47,8 @@ void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
     yaml_map_read(reader, node, "gp", keys, &group->gp, &map);
 }
 
-/* Sets defaults for the interpolation `gp` if the plant file names no readings from which plantcast-prep can determine them: the deviation
-   is a quarter of the group's range, the noise a 200th of the range. */
+/* Sets defaults for the interpolation `gp` if the plant file names no file of readings from which plantcast-prep can determine
+   the parameters. The default deviation is a quarter of the group's range, the noise a 200th of the range. */
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group)
 {
     struct plant_gp *gp = &group->gp;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interpolations with a physical meaning: plantcast-prep computes the weight of each sensor at each vertex, and the daemon only forms
-   weighted sums of the readings (INTERPOLATIONS.md, *Interpolations that solve an equation*). Thread: any. */
+/* Interpolations with a physical meaning. plantcast-prep computes the weight of each sensor at each vertex, so the daemon only
+   forms weighted sums of the readings (INTERPOLATIONS.md, *Interpolations that solve an equation*). Thread: any. */
 #ifndef PLANT_INFLUENCE_H
 #define PLANT_INFLUENCE_H
 #include "plant/plant.h"
@@ -19,7 +19,7 @@
 #define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, for `gp`, as a fraction of the group's range */
 
 #define PLANT_SEEN_PART 0.05 /* smallest difference of values that users can see in the colours, as a fraction of the group's range */
-/* size in metres of the hot spots for which blind spots are computed (places where no sensor would notice a hot spot) */
+/* size in metres of the hot spots for which blind spots (places where no sensor would notice a hot spot) are computed */
 #define PLANT_HOT_SPOT_M 0.5
 
 /* Returns whether plantcast-prep computes the weights of an interpolation; false: the daemon computes them from distances. */
@@ -38,8 +38,8 @@ static inline bool plant_prepares_any(const struct plant_group *group)
 {
     return group->prepared >> INTERPOLATION_HARMONIC != 0 || group->heat || group->directed;
 }
-/* Returns the decay length of heat along an asset's wall in metres: sqrt(k t / h), with the conductivity k, the wall thickness t and the
-   heat transfer coefficient h. The wall's thickness must be stated. */
+/* Returns the decay length of heat along an asset's wall in metres: sqrt(k t / h), with the conductivity k, the wall thickness
+   t and the heat transfer coefficient h. The plant file must give the wall thickness. */
 double plant_decay_m(const struct plant_asset *asset);
 
 #endif

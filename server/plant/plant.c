@@ -24,7 +24,7 @@ static char *folder_of(const char *path)
     return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
 }
 
-/* Hashes the contents of plant file and tag list. The hash identifies the configuration: if a change is undone, the old hash returns. */
+/* Hashes the contents of plant file and tag list. The hash identifies the configuration: undoing a change restores the old hash. */
 static void hash_files(struct plant *plant)
 {
     const char *const paths[] = { plant->files.path, plant->files.tags_path };
@@ -240,8 +240,8 @@ char *plant_service_folder(const char *path, const char *name)
     return folder;
 }
 
-/* Returns `folder` if it exists, or if the plant file does not belong to a systemd service; otherwise the folder `name` of that service.
-   Takes ownership of `folder`. */
+/* Returns `folder` if it exists, or if the plant file does not belong to a systemd service. Otherwise returns that service's
+   folder `name`. Takes ownership of `folder`. */
 static char *or_of_service(const struct plant *plant, char *folder, const char *name)
 {
     char *own = access(folder, F_OK) == 0 ? NULL : plant_service_folder(plant->files.path, name);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant, as loaded from its plant file (YAML) and tag list (CSV) and checked for syntax and meaning. Immutable once loaded. Thread:
-   any. plantcastd, plantcast-prep and plantcast-sim all use it. */
+/* A plant, loaded from its plant file (YAML) and tag list (CSV) and checked for syntax and meaning. Immutable once loaded.
+   Thread: any. plantcastd, plantcast-prep and plantcast-sim all use it. */
 #ifndef PLANT_PLANT_H
 #define PLANT_PLANT_H
 #include <stdbool.h>
@@ -25,7 +25,7 @@ enum interpolation {
 };
 /* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-/* fill of the surface around a sensor while the sensor's reading is Bad: none, or the field of neighbouring sensors */
+/* fill of the surface around a sensor while its reading is Bad: none, or the field of neighbouring sensors */
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
 /* content of a client's first picture: values, or values relative to their alarm limits (operator's display) */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
@@ -74,13 +74,12 @@ struct plant_property {
 
 struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
-    char *area;                   /* part of the plant under which the asset is listed; "": none */
+    char *area;                   /* part of the plant that lists show the asset under; "": none */
     char *model;                  /* path of the model file; a relative path is relative to the plant file's folder */
     char *nodes;   /* node patterns (nodes.h), one per line; each matching node is taken with its sub-tree. NULL: the whole model */
     double unit_m; /* length of a model unit in metres, including the scale of the asset's placement */
     enum axis up;  /* upward axis of the model */
-    /* maximum width in metres of gaps in the surface that count as closed when distances along the surface are computed; 0: chosen from the
-       model */
+    /* maximum width in metres of surface gaps that distances along the surface cross as if closed; 0: chosen from the model */
     double tolerance_m;
     /* transform from the asset's coordinate frame (Z up) to the plant's, column-major; rotation and translation only: both frames are in
        metres */
@@ -99,7 +98,7 @@ struct plant_asset {
 struct plant_alarm_settings { /* alarm settings of a group or of a tag: when alarms are raised and cleared */
     double deadband;          /* engineering units */
     double on_delay_s, off_delay_s;
-    /* priority of the alarms LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H get the next less urgent priority */
+    /* priority of the alarms LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H get the next lower priority */
     int priority;
     bool latch; /* true: the alarm is latched: it stays until an operator resets it, even if the value returns to normal */
 };
@@ -114,13 +113,13 @@ struct plant_gp { /* parameters of the interpolation `gp` */
     /* range_m: correlation length in metres; noise, deviation: standard deviations of a reading's noise and of the field (interpolated
        values), in the group's unit; NaN: plantcast-prep determines it from readings */
     double range_m, noise, deviation;
-    char *fit; /* path of a file with readings from which plantcast-prep determines the parameters of `gp` that are NaN; NULL: none */
+    char *fit; /* path of a file of readings, from which plantcast-prep determines those parameters of `gp` that are NaN; NULL: none */
 };
 
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
-    /* true (key `units: as-written`): values count as being in the group's unit, even if the tag list states another unit */
+    /* true (key `units: as-written`): values are taken to be in the group's unit, even if the tag list states another unit */
     bool as_written;
     double min, max;
     double limits[LIMIT_COUNT]; /* default alarm limits for the group's tags that state none; NaN: no limit */
@@ -137,10 +136,10 @@ struct plant_group {
     /* true (key `geodesic: heat`): plantcast-prep also computes distances along the surface by the heat method, as in Kim & Suh */
     bool heat;
     struct plant_gp gp;
-    /* radius in metres of the hot spots for which `show: blind` finds places that no sensor notices: the distance from a spot's centre at
-       which its excess temperature has fallen by a factor exp(-1/2) */
+    /* radius in metres of the hot spots for which `show: blind` finds places that no sensor notices. It is the distance from a
+       spot's centre at which its excess temperature has fallen by a factor exp(-1/2) */
     double hot_spot_m;
-    bool cuts_singles; /* true (key `singles: cut`): plantcast-prep subdivides triangles even of assets with a single sensor of the group */
+    bool cuts_singles; /* true (key `singles: cut`): plantcast-prep subdivides triangles even of assets with only one sensor of the group */
     enum fill_mode fill;
     bool log;                    /* true (`scale: log`): logarithmic colour scale; requires min > 0 */
     /* ascending values at which one colour band ends and the next begins, for pictures in bands instead of continuous colours */
@@ -157,7 +156,7 @@ enum { PLANT_HOSTS = 4 };
 #define PLANT_NEVER_STALE_S 1e9
 enum mqtt_payload { MQTT_NUMBER /* text: one number */, MQTT_JSON, MQTT_SPARKPLUG /* Sparkplug B */ };
 
-struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are not given are NULL */
+struct plant_mqtt { /* MQTT settings of a source or of `publish`; omitted texts are NULL */
     enum mqtt_payload payload;
     int protocol;    /* protocol version; 4: MQTT 3.1.1; 5: MQTT 5 */
     bool persistent; /* true: persistent session: the broker keeps messages while this daemon is disconnected */
@@ -168,21 +167,21 @@ struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are
     char *will;                   /* topic of the last will: if the connection breaks, the broker publishes "offline" there */
     char *topic;                  /* topic template for tags whose address has no topic */
     char *value, *time, *quality; /* JSONPaths that find value, time and quality in a JSON message */
-    bool will_stays;              /* true: the last will is published as a retained message, which new subscribers get, too */
-    /* true: Sparkplug nodes may be asked to send their birth certificates (lists of all their metrics); apart from this request the daemon
-       publishes nothing to this broker */
+    bool will_stays;              /* true: the last will is a retained message, which new subscribers get too */
+    /* true: the daemon may ask Sparkplug nodes for their birth certificates (lists of all their metrics); it publishes nothing
+       else to this broker */
     bool rebirth;
 };
 
 enum opcua_policy { OPCUA_BEST /* best security policy that the server offers */, OPCUA_AES256, OPCUA_BASIC256, OPCUA_AES128, OPCUA_NONE };
 
-struct plant_opcua {                   /* OPC UA settings of a source; texts that are not given are NULL */
+struct plant_opcua {                   /* OPC UA settings of a source; omitted texts are NULL */
     bool has_security;                 /* true: the plant file has the key `security`; a source without that key is refused */
     enum opcua_policy policy;          /* security policy. Messages are signed and encrypted (SignAndEncrypt), except with OPCUA_NONE */
     char *certificate, *key;           /* files with the daemon's own certificate and key, PEM or DER */
     char *trusted;                     /* folder with the certificates of trusted OPC UA servers, and revocation lists */
     char *server_name;                 /* host name in the server's certificate, if it differs from the host */
-    /* files with certificate and key of the user as which the daemon signs in; used in place of a login file */
+    /* files with certificate and key of the user that the daemon signs in as, instead of a login file */
     char *user_certificate, *user_key;
     char *path;                        /* path of the endpoint URL */
     char *name_space;                  /* namespace URI of nodes whose address states none */
@@ -207,9 +206,9 @@ struct plant_source {
     int max_registers, max_bits;       /* maximum number of registers, or of bits, in one Modbus request */
     int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */
     enum byte_order byte_order;
-    int address_base; /* number of a device's first register in addresses such as 40001: 0 or 1; base_stated: the plant file states it */
+    int address_base; /* number of a device's first register in addresses such as 40001: 0 or 1; base_stated: true: set in the plant file */
     bool base_stated;
-    /* heartbeat: name of a tag of this source whose value must keep changing, else the device counts as stopped; NULL: none */
+    /* heartbeat: name of a tag of this source whose value must keep changing; otherwise the device is taken to have stopped. NULL: none */
     char *heartbeat;
     int heartbeat_tag;  /* index of the heartbeat tag in the plant; -1: none */
     double heartbeat_s; /* maximum time in seconds between two changes of the heartbeat; 0: no heartbeat */
@@ -247,7 +246,7 @@ struct plant_history {
     struct plant_postgres postgres;
 };
 
-/* Sentinel: a raw value by which a device reports that no sensor is connected, given as bits or as a number. */
+/* Sentinel: a raw value, given as bits or as a number, by which a device reports that no sensor is connected. */
 struct plant_sentinel {
     bool is_bits;
     uint64_t bits;
@@ -268,10 +267,11 @@ struct opcua_deadband { /* smallest change of a node that the OPC UA server repo
     bool percent; /* true: in percent of the node's range (EURange); false: in the node's unit */
 };
 
-struct tag_signal { /* where the device has a tag's value, and how the value is encoded there */
+struct tag_signal { /* a tag's value in its device: address and encoding */
     char *address;  /* address as written in the tag list: a register, a series name, a topic, or = and an expression */
-    /* topic, path: parts of the address, split. MQTT: the full topic, and the path of the value in its payload ("": the source's default).
-       Sparkplug: GROUP/NODE[/DEVICE], and the metric. OPC UA: the namespace URI, and an identifier such as s=NAME. Other sources: NULL. */
+    /* topic, path: the two parts of the address. MQTT: the full topic, and the path of the value in its payload ("": the
+       source's default). Sparkplug: GROUP/NODE[/DEVICE], and the metric. OPC UA: the namespace URI, and an identifier such as
+       s=NAME. Other sources: NULL. */
     char *topic, *path;
     int element;     /* index of the element in an OPC UA array; -1: the node's value is not an array */
     int modbus_unit; /* Modbus unit identifier of the device; -1: the source's */
@@ -282,21 +282,21 @@ struct tag_signal { /* where the device has a tag's value, and how the value is 
     /* byte order. Values of 32 and 64 bits always have one; values of 16 bits and bits of a register have NONE (standard order) unless the
        tag's row states one */
     enum byte_order byte_order;
-    int scan_ms; /* interval in milliseconds at which the tag is read; 0: the source's poll_ms */
+    int scan_ms; /* interval in milliseconds between readings of the tag; 0: the source's poll_ms */
     struct opcua_deadband opcua_deadband;
 };
 
 struct tag_scale { /* conversion from the raw value to the tag's unit */
     enum scaling kind;
-    double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range of values that it is scaled to, in own_unit */
+    double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range of values in own_unit that it is scaled to */
     bool has_range;                                    /* true: the range scaled_low to scaled_high is the instrument's measuring range */
-    /* true: raw_low and raw_high are 4 and 20 mA, so a current outside of that range is judged by NAMUR NE 43 (overrange or broken wire) */
+    /* true: raw_low and raw_high are 4 and 20 mA, so NAMUR NE 43 applies to currents outside of that range (overrange or broken wire) */
     bool ne43;
     struct plant_sentinel sentinels[PLANT_SENTINELS];
     int sentinel_count;
     bool negate;
-    /* unit of the values at the tag's address, and of scaled_low and scaled_high: the unit in the tag's row, or, if the row has none, the
-       tag's unit */
+    /* unit of the values at the tag's address and of scaled_low and scaled_high: the unit in the tag's row; if the row has
+       none, the tag's unit */
     char *own_unit;
     struct unit_change change; /* conversion from own_unit to the tag's unit */
 };
@@ -315,7 +315,7 @@ struct tag_validity {                 /* conditions under which a tag's reading 
     double stale_s;
     bool states_stale;                /* the row states stale_s */
     double flatline_s;                /* seconds without any change after which the tag's value is uncertain; 0: never */
-    struct plant_quality_tag quality; /* quality tag: another tag that states whether this tag's reading is valid */
+    struct plant_quality_tag quality; /* quality tag: another tag that tells whether this tag's reading is valid */
 };
 
 struct tag_alarms {
@@ -325,7 +325,7 @@ struct tag_alarms {
     struct plant_mirror mirror;
 };
 
-struct tag_direction { /* direction of what the tag measures, for example of an air flow; pictures show it as an arrow */
+struct tag_direction { /* direction of the measured quantity, such as an air flow; pictures show it as an arrow */
     int tags[3];       /* indices of the tags that hold the direction: its components along X, Y and Z of the plant, or a bearing */
     int count;         /* number of tags in `tags`: 0: the value has no direction; 1: a bearing in degrees; 3: components */
 };
@@ -361,7 +361,7 @@ struct plant_link { /* template of a link to another system's page about an asse
     bool of_tags;
 };
 
-struct plant_conversion { /* how plantcast-prep makes a model: by running another program, which writes a glTF file */
+struct plant_conversion { /* conversion by which plantcast-prep makes a model: it runs another program, which writes a glTF file */
     char *model;          /* path of the glTF file that the program must write */
     char *from, *command; /* input file, and the command */
     double timeout_s;
@@ -379,7 +379,7 @@ struct plant_files {
 struct plant_display { /* content of a client's first picture, and what users can choose */
     struct plant_view view;
     enum plant_show show;
-    /* true: clients get no depth grids, so the page cannot shift a picture to the present camera before the next one arrives */
+    /* true: clients get no depth grids, so the page cannot reproject a picture to the present camera until the next one arrives */
     bool no_reprojection;
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* environments (panoramas); the first one is the default */
     size_t environment_count;
@@ -416,7 +416,7 @@ struct plant {
     size_t asset_count, group_count, source_count, tag_count;
     /* indices sorted for binary search: of assets by id, and of tags by name; assets_by_id is NULL until the whole file is read */
     int *assets_by_id, *tags_by_name;
-    /* indices of the derived tags (computed from other tags), ordered so that each tag comes after the tags in its expression */
+    /* indices of the derived tags (computed from other tags), each after the tags in its expression */
     int *derived;
     size_t derived_count;
 };
@@ -425,9 +425,9 @@ struct plant {
 struct plant *plant_load(const char *path, struct diag *diag);
 /* Loads a plant like plant_load(), and prints errors and warnings to standard error. */
 struct plant *plant_load_or_print(const char *path);
-/* Loads a plant like plant_load_or_print(), but a missing model file is no error: for commands that need no models. */
+/* Loads a plant like plant_load_or_print(), but does not require the model files: for commands that need no models. */
 struct plant *plant_load_without_models(const char *path);
-/* Loads a plant like plant_load(), but accepts tags whose asset does not exist: such tags get no asset, and their lost_asset is set. */
+/* Loads a plant like plant_load(), but accepts tags whose asset does not exist. Such tags get no asset, and lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* Frees a plant and sets *plant to NULL; accepts a pointer to NULL. */
 
@@ -439,17 +439,17 @@ int plant_find_environment(const struct plant *plant, const char *name);
 int plant_find_tag(const struct plant *plant, const char *name);
 /* Returns the unit of a tag's readings; "": it has none, or `tag` is -1. */
 const char *plant_tag_unit(const struct plant *plant, int tag);
-/* Returns the interval in milliseconds at which a tag's source reads the tag: its own scan_ms, else the source's poll_ms; 1000 for a tag
-   without a source. */
+/* Returns the interval in milliseconds at which a tag's source reads the tag: the tag's own scan_ms, else the source's poll_ms;
+   1000 for a tag without a source. */
 int plant_tag_scan_ms(const struct plant *plant, const struct plant_tag *tag);
-/* Returns whether a tag's source sends values only when they change, and reports the loss of values by itself: OPC UA servers, and
-   Sparkplug nodes, which have death certificates. */
+/* Returns whether a tag's source sends values only when they change, and reports the loss of values itself. OPC UA servers do
+   so, and Sparkplug nodes, which have death certificates. */
 bool plant_tag_sends_changes(const struct plant *plant, const struct plant_tag *tag);
 /* Returns the default stale_s, for a tag that is not derived and whose row states none. */
 double plant_tag_default_stale_s(const struct plant *plant, const struct plant_tag *tag);
-/* Returns the Modbus unit (server address) of a tag that has a source: its own, else that of the source. */
+/* Returns the Modbus unit (server address) of a tag that has a source: the tag's own, else the source's. */
 int plant_tag_modbus_unit(const struct plant *plant, const struct plant_tag *tag);
-/* Returns whether readings of a tag are simulated: its source is simulated or, for a derived tag, the source of a tag in its expression. */
+/* Returns whether a tag's readings are simulated: its source, or for a derived tag the source of a tag in its expression, is simulated. */
 bool plant_tag_simulated(const struct plant *plant, int tag);
 /* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: `path` is
    not a service's plant file. name: `prepared` or `history`. Free with mem_free(). */
@@ -457,11 +457,10 @@ char *plant_service_folder(const char *path, const char *name);
 /* Returns the folder of the prepared asset files: FOLDER/NAME.prepared next to NAME.yaml, or the service's folder. Free with
    mem_free(). */
 char *plant_prepared_folder(const struct plant *plant);
-/* Returns the folder in which a command reads and writes recorded readings: plant_history_folder() if it exists, otherwise the folder of
-   the systemd service. Free with mem_free(). */
+/* Returns the folder where a command reads and writes recorded readings: plant_history_folder() if it exists, otherwise the
+   systemd service's folder. Free with mem_free(). */
 char *plant_recorded_folder(const struct plant *plant);
-/* Returns the folder in which the daemon records readings: FOLDER/NAME.history, unless the plant file names another. Free with
-   mem_free(). */
+/* Returns the folder where the daemon records readings: FOLDER/NAME.history, unless the plant file names another. Free with mem_free(). */
 char *plant_history_folder(const struct plant *plant);
 
 #endif

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Describes in words how two plants differ: tags, assets, groups and sources that were added, removed or changed. Pure. Thread: any. */
+/* Describes how two plants differ, in words: tags, assets, groups and sources that were added, removed or changed. Pure. Thread: any. */
 #ifndef PLANT_PLANT_DIFF_H
 #define PLANT_PLANT_DIFF_H
 #include "plant/plant.h"
 
 struct plant_diff { /* zero-initialise */
-    /* one line for each difference, such as "tag TT-101: HH 90 > 95" or "tag TT-101: HH none > 95"; at most PLANT_DIFF_LINES. more: number
-       of further lines that were left out */
+    /* one line for each difference, such as "tag TT-101: HH 90 > 95" or "tag TT-101: HH none > 95"; at most PLANT_DIFF_LINES.
+       more: number of differences left out */
     char **lines;
     size_t count, capacity, more;
 };
@@ -14,7 +14,7 @@ enum { PLANT_DIFF_LINES = 200 };
 /* Appends a line for each difference between the two plants to out->lines. */
 void plant_diff(const struct plant *before, const struct plant *after, struct plant_diff *out);
 void plant_diff_finish(struct plant_diff *diff);
-/* Returns the name of a setting of the new plant that a running daemon cannot apply without a restart (static); NULL: none. */
+/* Returns the name (static) of a changed setting that a running daemon cannot apply without a restart; NULL: none. */
 const char *plant_needs_restart(const struct plant *before, const struct plant *after);
 
 #endif

@@ -11,8 +11,8 @@ static const char *id_of(const void *things, size_t stride, int index)
     return *(char *const *)((const char *)things + (size_t)index * stride);
 }
 
-/* Finds an item of the plant file (`things`) by its id, by binary search. Each record begins with `char *id`; `order` holds the records'
-   indices, sorted by id. Returns an index, or -1 if there is no such record. */
+/* Finds an item of the plant file by its id, by binary search. `things`: records that each begin with `char *id`; `order`:
+   their indices, sorted by id. Returns an index, or -1 if there is no such record. */
 static int find_sorted(const int *order, size_t count, const void *things, size_t stride, const char *id)
 {
     size_t at;

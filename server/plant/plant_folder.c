@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Locks a plant's folder by a kernel lock on the folder itself, and replaces its files at the end of a revision (an import or its
-   undoing). */
+/* Locks a plant's folder with a kernel lock on the folder itself, and replaces the folder's files at the end of a revision (an
+   import or its undoing). */
 #include "plant_folder.h"
 
 #include <dirent.h>
@@ -21,8 +21,8 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-/* name that a revision's folder (its record) gets once the revision is undone completely; the next program that locks the folder removes
-   it */
+/* name of a revision's record (its folder) once the revision is undone completely; the next program that locks the folder
+   removes the record */
 static const char undone[] = ".import-undone";
 static const size_t max_text_bytes = (size_t)64 << 20;
 
@@ -40,7 +40,7 @@ char *revision_version_of(const char *record, const char *version, const char *n
 int plant_folder_sync(const char *folder)
 {
     int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC), status = fd < 0 ? -errno : 0;
-    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* EINVAL is ignored, because some file systems cannot sync a folder */
+    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* ignores EINVAL, because some file systems cannot sync a folder */
         status = -errno;
     if (fd >= 0)
         close(fd);
@@ -96,8 +96,8 @@ void revision_record_finish(struct revision_record *record)
 
 /* --- continuing a revision ------------------------------------------------------------------------------------------------------ */
 
-/* Replaces the file `to` in another folder, perhaps on another file system, by a copy of `from`; the copy gets the owner and permissions of
-   the old file. Returns 0 or -errno. */
+/* Replaces `to`, a file in another folder and perhaps on another file system, by a copy of `from`; the copy gets the owner and
+   permissions of the old file. Returns 0 or -errno. */
 static int put_elsewhere(const char *from, const char *to)
 {
     struct atomic_file file = { .fd = -1 };
@@ -154,7 +154,7 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    /* the record (list of files) is missing because all files are back in place, and an earlier run was killed while it removed the
+    /* the record's list of files is missing: all files are back in place, and an earlier run was killed while removing the
        revision's folder */
     if (status == -ENOENT)
         status = 0;
@@ -200,7 +200,7 @@ static bool remove_left(const char *folder, const char *own, bool now)
 
 /* --- locking -------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the id of the process that has locked the folder; 0: the kernel does not know it (in a container, on a network file system). */
+/* Returns the id of the process that holds the folder's lock; 0: unknown to the kernel (in a container, on a network file system). */
 static int holder_of(int fd)
 {
     struct stat st;
@@ -234,8 +234,8 @@ static char *say_holder(int fd)
                    : mem_strdup("another program is using the folder");
 }
 
-/* Opens the plant's folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock.
-   Returns the descriptor; -1 with errno on failure. */
+/* Opens the plant's folder, or duplicates the parent process's descriptor, which must refer to the same folder and hold its
+   lock. Returns the descriptor; -1 with errno on failure. */
 static int open_folder(const struct plant_folder_params *params)
 {
     struct stat lent, folder;

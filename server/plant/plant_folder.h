@@ -20,19 +20,19 @@ struct plant_folder_params {
     const char *own; /* path of this program's own work folder in the plant's folder, which is not removed; NULL: none */
     int lent;        /* open descriptor of the folder, inherited from the parent process, which holds the lock; 0: none */
     int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
-    /* receives what this program finished for a killed one: "an import", "the undoing of an import"; NULL: not wanted */
+    /* receives what this program finished on behalf of a killed one: "an import", "the undoing of an import"; NULL: not wanted */
     const char **finished;
 };
 
 /* Locks the folder until the descriptor is closed, removes the work folders that killed programs left in it, and finishes their revisions.
    Returns the descriptor, or -errno with a one-line reason in *why (mem_free), which does not name the folder. */
 int plant_folder_lock(const struct plant_folder_params *params, char **why);
-/* Call this before reading a plant's files. Waits for a revision (import or its undoing) in progress, finishes the revision of a killed
-   program, and removes what killed programs left, unless another program has locked the folder. Returns true once no revision is in
-   progress; false: *why has a one-line reason (mem_free). Sets *params->finished. */
+/* Call this before reading a plant's files. Waits for a revision (import or its undoing) in progress, and finishes the revision
+   of a killed program. Also removes what killed programs left, unless another program has locked the folder. Returns true once
+   no revision is in progress; false: *why has a one-line reason (mem_free). Sets *params->finished. */
 bool plant_folder_settle(const struct plant_folder_params *params, char **why);
-/* Returns true if a revision (import or its undoing) is in progress, or its program was killed. The files in the folder are then neither
-   the old plant nor the new one. */
+/* Returns true if a revision (import or its undoing) is in progress or was interrupted by a kill. The files in the folder are
+   then neither the old plant nor the new one. */
 bool plant_folder_unsettled(const char *folder);
 /* Returns the folder of a plant file; free with mem_free(). */
 char *plant_folder_of(const char *plant_path);

@@ -8,8 +8,8 @@
 
 #define PLANT_MAX_VALUE 1e30 /* maximum absolute value of a reading or a limit, because interpolated values are computed as float */
 
-/* Reads the plant file into a plant whose path and folder are set. Errors and warnings go to diag. If the plant file names no tag list that
-   can be read, tags_path stays NULL. */
+/* Reads the plant file into a plant whose path and folder are set. Errors and warnings go to diag. tags_path stays NULL if the
+   plant file names no readable tag list. */
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Reads the value of the key `environment`; the plant's folder must be set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
@@ -36,8 +36,8 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
 /* Reports missing keys that the interpolation `fin` needs: the temperature of a group's surroundings (`ambient`), and the wall thickness of
    assets with sensors of that group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
-/* Report names of views, tags, tours and other plants in tours and wall panes that do not exist. Call them after the tag list has been
-   read. */
+/* Report views, tags, tours and other plants that are named in tours and wall panes but do not exist. Call them after the tag
+   list has been read. */
 void plant_tours_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
 void plant_views_free(struct plant *plant);
@@ -72,15 +72,16 @@ void plant_mqtt_finish(struct plant_mqtt *mqtt);
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
 void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_opcua_finish(struct plant_opcua *opcua);
-/* Resolves the path of a file or folder with secrets (a key or a password) relative to the plant file. If the file cannot be read, warns
-   and names the key. This is no error, since a user who only prepares the plant may lack the right to read it. */
+/* Resolves the path of a file or folder with secrets (a key or a password) relative to the plant file. If the file cannot be
+   read, warns, naming the key. This is not an error, since a user who only prepares the plant may lack the right to read the
+   file. */
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
 /* Prepares reading a YAML list into records that begin with `char *id`: allocates a record for each item of the list and sets
    *count. Reports a list with fewer than `least` items. Returns NULL, reported, if the node is not a list or memory runs out.
    */
 void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
-/* Reports the id of the record read last if an earlier record of the list has it, too. */
+/* Reports an error if an earlier record of the list has the same id as the record read last. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
                          size_t stride, size_t line_offset);
 /* Puts the folder of the plant file before *path if *path is relative. */
@@ -88,7 +89,7 @@ void plant_resolve_path(const struct plant *plant, char **path);
 
 /* Reads the tag list, plant->tags_path; assets, groups and sources must have been read. */
 void tag_list_read(struct plant *plant, struct diag *diag);
-/* Returns true if alarm limits do not ascend (LL < L < H < HH; NaN: not set), with the indices of the first two that do not. */
+/* Returns true if alarm limits do not ascend (LL < L < H < HH; NaN: not set). The indices of the first two wrong limits are then set. */
 bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);
 
 /* Reads the list `colormaps`. */

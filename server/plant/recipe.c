@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes hashes of the model and the settings from which plantcast-prep makes an asset file. */
+/* Computes hashes of the model and the settings that determine an asset file of plantcast-prep. */
 #include "plant/recipe.h"
 
 #include <errno.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of everything a prepared asset file depends on, except sensors, which are compared one by one (plant/sensors.h). plantcast-prep
-   writes the hashes into the manifest and scene_create() compares them, so that outdated asset files are not used. Thread: any. */
+/* Hashes of everything that a prepared asset file depends on, except sensors, which are compared one by one (plant/sensors.h).
+   plantcast-prep writes the hashes into the manifest, and scene_create() compares them to reject outdated asset files. Thread:
+   any. */
 #ifndef PLANT_RECIPE_H
 #define PLANT_RECIPE_H
 #include <stdbool.h>
@@ -8,9 +9,9 @@
 
 #include "plant/plant.h"
 
-/* Computes the hash of a model file, without the files that a .gltf refers to. Returns false with errno if the file cannot be read. */
+/* Computes the hash of a model file, excluding files that a .gltf refers to. Returns false with errno if the file cannot be read. */
 bool plant_model_hash(const char *path, uint64_t *out);
-/* Returns the hash of the settings of an asset that change its asset file: model, nodes, units, up axis and tolerance. */
+/* Returns the hash of the asset's settings that affect its asset file: model, nodes, units, up axis and tolerance. */
 uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists the sensors of an asset as its asset file must contain them: plantcast-prep writes this list, and scene_create() compares the file
-   with it. Thread: any. */
+/* Lists the sensors of an asset as its asset file must have them: plantcast-prep writes this list, and scene_create() compares
+   the file with it. Thread: any. */
 #ifndef PLANT_SENSORS_H
 #define PLANT_SENSORS_H
 #include <stdint.h>
@@ -17,7 +17,7 @@ struct plant_sensor {
     double position_m[3]; /* position in the asset's coordinate frame (metres, Z up); zero if `node` is set */
 };
 
-/* Returns the number of tags that have this asset and a group, and lists them in the order of the tag list; free *out with mem_free(). */
+/* Lists the tags that have this asset and a group, in the order of the tag list; free *out with mem_free(). Returns their number. */
 size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor **out);
 
 #endif

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assets that have only one sensor of a group. With the interpolation `shepard` the group's field is constant there, and plantcast-prep
-   does not subdivide their triangles, unless the plant file asks for `paper` or `singles: cut`. On undivided triangles, neither `paper` nor
-   distances are shown correctly. Sensors with an assumed place do not count. Thread: any. */
+/* Assets that have only one sensor of a group. With the interpolation `shepard`, the group's field is constant there. So
+   plantcast-prep does not subdivide their triangles, unless the plant file asks for `paper` or `singles: cut`: on undivided
+   triangles, neither `paper` nor distances are shown correctly. Sensors with an assumed place do not count. Thread: any. */
 #ifndef PLANT_SINGLES_H
 #define PLANT_SINGLES_H
 #include "plant/plant.h"
 
-/* Returns whether plantcast-prep subdivides triangles even of assets with a single sensor of the group, so that `paper` and distances are
-   shown correctly there. */
+/* Returns whether plantcast-prep subdivides triangles even of assets with only one sensor of the group, so that `paper` and
+   distances are shown correctly there. */
 bool plant_cuts_singles(const struct plant_group *group);
 /* Counts the assets that have exactly one sensor of the group. Returns the count; if it is not 0, *first receives the index of the first
    such asset. */

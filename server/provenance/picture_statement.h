@@ -18,7 +18,7 @@ enum {
     PICTURE_HASH_BYTES = 65
 };
 
-/* Writes the SHA-256 of the bytes (of pixels or of a statement's parts) as hexadecimal digits; "" if OpenSSL fails. */
+/* Writes the SHA-256 of the bytes (pixels, or a part of a statement) as hexadecimal digits; "" if OpenSSL fails. */
 void picture_hash(const void *bytes, size_t count, char out[PICTURE_HASH_BYTES]);
 /* Writes the SHA-256 of the text of a JSON value in the format PICTURE_JSON, as hexadecimal digits. */
 void picture_hash_json(const json_t *value, char out[PICTURE_HASH_BYTES]);

@@ -6,8 +6,8 @@
 #include <stdint.h>
 
 enum { PNG_WHY_BYTES = 128 };
-/* Returns the pixels of a PNG file of the given size: red, green, blue, rows from the top; the caller frees them (mem_free). Returns
-   NULL with the reason in `why` if the picture has another size or cannot be read. */
+/* Returns the pixels of a PNG file that must have the given size: red, green, blue, rows from the top; the caller frees them
+   (mem_free). Returns NULL with the reason in `why` if the picture has another size or cannot be read. */
 uint8_t *png_pixels(const uint8_t *png, size_t count, int64_t width_px, int64_t height_px, char why[PNG_WHY_BYTES]);
 
 #endif

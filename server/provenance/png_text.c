@@ -113,8 +113,8 @@ struct plain_chunk {
     size_t length;
 };
 
-/* sRGB with perceptual intent; gAMA and cHRM with the values of sRGB (PNG, third edition, 11.3.2.5). Of these three, our writer emits
-   only sRGB. */
+/* sRGB must have perceptual intent; gAMA and cHRM must have the values of sRGB (PNG, third edition, 11.3.2.5). Of these three,
+   our writer emits only sRGB. */
 static const struct plain_chunk plain[] = {
     { "sRGB", true, false, "\0", 1 },
     { "gAMA", false, false, "\0\0\xb1\x8f", 4 },
@@ -126,8 +126,7 @@ enum { PLAIN_CHUNKS = sizeof(plain) / sizeof(*plain) };
 
 #define FAIL(...) (snprintf(why, PNG_PLAIN_WHY_BYTES, __VA_ARGS__), false)
 
-/* Returns true if the header says 8-bit RGB, not interlaced: a viewer may show pixels of other formats with other values than the file
-   has. */
+/* Returns true if the header says 8-bit RGB, not interlaced: viewers may alter the pixel values of other formats. */
 static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WHY_BYTES])
 {
     static const uint8_t format[] = { 8, 2, 0, 0, 0 };
@@ -138,7 +137,7 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
            FAIL("chunk IHDR has another format than 8 bits of red, green and blue");
 }
 
-/* Returns the index of the chunk's type in `plain`, the table of chunk types that we emit; PLAIN_CHUNKS: the type is not in the table. */
+/* Returns the index of the chunk's type in `plain`, the table of chunk types that our writer emits; PLAIN_CHUNKS: not in the table. */
 static int plain_row(const struct png_chunk *chunk)
 {
     int row = 0;

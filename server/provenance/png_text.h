@@ -16,13 +16,13 @@ struct png_text {
    (mem_free). NULL: not a PNG file, or out of memory. */
 uint8_t *png_text_add(const uint8_t *png, size_t count, const struct png_text *texts, int text_count, size_t *out_count);
 enum { PNG_PLAIN_WHY_BYTES = 160 };
-/* Returns true if a PNG file consists of exactly the chunks that our writer emits: IHDR of 8-bit RGB, compressed texts with these
-   keywords, sRGB, IDAT, IEND, in this order and with the same contents; gAMA and cHRM only with the values of sRGB. Every browser shows
-   the pixels of such a file unchanged. If not, `why` receives the reason, with the name of the chunk. */
+/* Returns true if a PNG file has exactly the chunks that our writer emits, with the same contents: IHDR of 8-bit RGB,
+   compressed texts with these keywords, sRGB, IDAT, IEND, in this order; gAMA and cHRM only with the values of sRGB. Every
+   browser shows the pixels of such a file unchanged. If not, `why` receives the reason, with the name of the chunk. */
 bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords, int keyword_count, char why[PNG_PLAIN_WHY_BYTES]);
-/* Returns the text of the only text chunk with that keyword, followed by a 0 byte, and its length; the caller frees it (mem_free).
-   Returns NULL if there is no such chunk or several, the file is truncated or damaged, bytes follow the compressed text, or the text is
-   longer than max_bytes. */
+/* Returns the text of the only text chunk with that keyword, followed by a 0 byte, and its length; the caller frees it
+   (mem_free). Returns NULL if there is no such chunk or there are several, or if the file is truncated or damaged. Also returns
+   NULL if bytes follow the compressed text, or the text is longer than max_bytes. */
 char *png_text_find(const uint8_t *png, size_t count, const char *keyword, size_t max_bytes, size_t *out_length);
 
 #endif

@@ -119,8 +119,8 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
 
 /* --- contents of a statement --------------------------------------------------------------------------------------------------- */
 
-/* Reads a statement's readings of all tags of the plant, each exactly once. unproven: receives by tag whether the tag has no passed loop
-   check; NULL: not wanted. Returns false, with the reason in `why`, if the readings are not valid. */
+/* Reads a statement's readings, which must cover each tag of the plant exactly once. unproven: receives by tag whether the tag
+   has no passed loop check; NULL: not wanted. Returns false, with the reason in `why`, if the readings are not valid. */
 static bool read_readings(const json_t *told, const struct plant *plant, struct snapshot *out, bool *unproven,
                           char why[SIGNED_PICTURE_WHY_BYTES])
 {

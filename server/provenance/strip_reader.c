@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the legend strip in a picture by two finder patterns like those of a QR code, reads its cells, and matches colours to values. */
+/* Finds the legend strip in a picture by two finder patterns as in a QR code, reads its cells, and matches colours to values. */
 #include "provenance/strip_reader.h"
 
 #include <math.h>
@@ -76,7 +76,7 @@ struct strip_row {
     double left_px, cell_px;
 };
 
-/* Finds the strip in a row of pixels: two finder patterns whose distance agrees with the sizes of their cells. */
+/* Finds the strip in a row of pixels: two finder patterns at a distance that agrees with the sizes of their cells. */
 static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
 {
     enum { MAX_FINDERS = 64 };
@@ -92,8 +92,8 @@ static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
     return (struct strip_row){ 0, 0 };
 }
 
-/* Finds the longest run of pixel rows that agree on the strip's position; up to two unreadable rows in between are tolerated. Returns
-   false if there is no such run, or if its height does not fit the width of the cells. */
+/* Finds the longest run of pixel rows that agree on the strip's position, tolerating up to two unreadable rows in between.
+   Returns false if there is no such run, or if its height does not fit the width of the cells. */
 static bool find_place(const struct strip_picture *picture, struct strip_found *found)
 {
     double best = 0, left_px = 0, cell_px = 0, first = 0, rows = 0;
@@ -128,7 +128,7 @@ struct color_patch {
     int count;
 };
 
-/* Returns the mean colour of the inner part of a rectangle, which is given in cells of the strip. */
+/* Returns the mean colour of the inner part of a rectangle, whose sides are in cells of the strip. */
 static struct color_patch patch_at(const struct strip_picture *picture, const struct strip_found *found, double column, double row,
                                    double rows)
 {
@@ -169,7 +169,7 @@ static bool read_code(const struct strip_picture *picture, struct strip_found *f
     return strip_decode(code, &found->strip, &found->mended);
 }
 
-/* Reads the legend's colours as they appear in this picture, in CIELAB. found->noise receives the RMS difference of single pixels from
+/* Reads the legend's colours as they appear in this picture, in CIELAB. found->noise receives the RMS deviation of pixels from
    the mean of their column. */
 static void read_ramp(const struct strip_picture *picture, struct strip_found *found)
 {
@@ -225,8 +225,8 @@ static double to_segment(const double p[3], const double a[3], const double b[3]
     return sqrt(square);
 }
 
-/* Returns the CIELAB distance of a colour from a column of the legend. A column shows its colour in three shades; the distance is
-   measured to the line through these, along which lighting moves a colour. */
+/* Returns the CIELAB distance of a colour from a column of the legend. A column shows its colour in three shades. The distance
+   is measured to the line through the shades, along which lighting moves a colour. */
 static double off_of(const struct strip_found *found, int column, const double lab[3])
 {
     return fmin(to_segment(lab, found->ramp[0][column], found->ramp[1][column]),
@@ -271,8 +271,8 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        /* A pixel's colour may match columns at both ends of the scale, if these have similar colours. The mean of their positions on
-           the scale would be meaningless, so the position of the best match is used. */
+        /* If both ends of the scale have similar colours, a pixel's colour may match columns at both. The mean of their
+           positions would be meaningless, so the position of the best match is used. */
         double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);

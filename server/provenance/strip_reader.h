@@ -34,7 +34,7 @@ struct strip_value {
 
 /* Finds the legend strip in a picture. Returns false, with the reason in *why (static text), if the picture has no readable strip. */
 bool strip_find(const struct strip_picture *picture, struct strip_found *found, const char **why);
-/* Reads the value that the colour of a pixel shows. Returns false if the pixel is outside the picture, or on the strip. */
+/* Reads the value that a pixel's colour represents. Returns false if the pixel is outside the picture, or on the strip. */
 bool strip_read(const struct strip_picture *picture, const struct strip_found *found, int x_px, int y_px, struct strip_value *out);
 
 #endif

@@ -13,8 +13,8 @@
 
 #include "base/mem.h"
 
-/* Maps a file. Returns MAP_FAILED with errno on failure. plantcast-prep never modifies a file in place (it writes a new file and renames
- * that over the old one), so the mapped contents never change. */
+/* Maps a file. Returns MAP_FAILED with errno on failure. The mapped contents never change: plantcast-prep never modifies a file
+ * in place, but writes a new file and renames it over the old one. */
 static void *map_file(const char *path, size_t *bytes)
 {
     struct stat st;

@@ -15,23 +15,22 @@ struct asset {
     void *made;
     uint16_t *distances; /* distances unpacked from the file; NULL: the file stores them unpacked */
     size_t bytes;
-    /* mapped file KEY.influence, with the influence of each sensor on each vertex, in the folder of the asset's file; all zero: not
-       opened */
+    /* mapped file KEY.influence from the folder of the asset's file, with the influence of each sensor on each vertex; all
+       zero: not opened */
     struct cache_file influence_file;
     struct influence_view influence;
-    /* bit mask by level of detail: plantcast-prep subdivided the level's triangles until they show the field without visible error
-       (field/drawn_error.h) */
+    /* bit mask by level of detail: 1: plantcast-prep subdivided the level's triangles until they show the field without visible
+       error (field/drawn_error.h) */
     uint64_t resolved_levels;
     _Atomic int refs;
-    /* by level of detail: triangles that bound closed bodies, which are drawn solid where they are cut (closed_bodies.h); NULL: not
-       computed yet */
+    /* by level of detail: triangles that bound closed bodies, whose cuts are drawn solid (closed_bodies.h); NULL: not computed yet */
     struct closed_bodies *_Atomic *closed;
 };
 
 /* Opens a file. Returns NULL on failure, logged with path and reason. */
 struct asset *asset_open(struct log *log, const char *path);
-/* Maps and checks the file KEY.influence next to the asset's, unless it is open already. Returns false if there is no valid one, logged.
-   Thread: one, before others use the asset. */
+/* Maps and checks the file KEY.influence next to the asset's file, unless it is open already. Returns false if there is no
+   valid file, logged. Thread: one, before others use the asset. */
 bool asset_open_influence(struct log *log, struct asset *asset);
 /* Returns a placeholder for an asset that could not be prepared: one invisibly small triangle, no sensors. */
 struct asset *asset_stand_in(void);

@@ -7,8 +7,8 @@
 
 #include "base/math/vec.h"
 
-#define FIT_MARGIN 1.06  /* factor by which a picture is larger than the box fitted into it */
-#define LEAST_BOX_M 1e-4 /* side in metres of the smallest box that is framed; a smaller or empty box is framed as if it had this size */
+#define FIT_MARGIN 1.06  /* ratio between the sizes of a picture and of the box fitted into it */
+#define LEAST_BOX_M 1e-4 /* side in metres of the smallest box to frame; smaller or empty boxes are framed as if they had this size */
 #define LEAST_NEAR_M 1e-6
 #define LEAST_HEIGHT_M 1e-5 /* smallest permitted height of an orthographic picture, in metres */
 
@@ -104,7 +104,7 @@ static double side_back(const struct clip_side *side)
     return (side->low + side->high) / (side->to - side->from);
 }
 
-/* Returns how far the eye must be shifted sideways to centre the box, if the eye is at this distance from it. */
+/* Returns how far the eye must be shifted sideways to centre the box, from this distance of the eye. */
 static double side_shift(const struct clip_side *side, double back_m)
 {
     return (side->high - side->low - back_m * (side->to + side->from)) / 2;
@@ -245,8 +245,8 @@ static void camera_look(const struct camera *camera, struct basis *basis)
     double forward[3];
     for (int i = 0; i < 3; i++)
         forward[i] = camera->target_m[i] - camera->eye_m[i];
-    /* camera_valid() rejects a camera whose `up` is along the view direction; the view to the north is used instead, so that the numbers
-       stay finite */
+    /* camera_valid() rejects a camera whose `up` is along the view direction; here the view to the north replaces it, so that
+       the numbers stay finite */
     if (!basis_of(forward, camera->up, basis))
         basis_of((double[]){ 0, 1, 0 }, (double[]){ 0, 0, 1 }, basis);
 }

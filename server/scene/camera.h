@@ -24,8 +24,8 @@ void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], c
 struct camera_window { /* rectangle of the picture, in coordinates from -1 to 1 along each axis; all zero: the whole picture */
     double left, right, bottom, top;
 };
-/* Frames the box within a window of the picture, along `forward`, which must not be along camera->up. Keeps lens and up vector of the
-   camera; an orthographic one (height_m > 0) gets a new height. */
+/* Frames the box within a window of the picture, looking along `forward`, which must not be along camera->up. Keeps the
+   camera's lens and up vector; an orthographic camera (height_m > 0) gets a new height. */
 void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect,
                       const struct camera_window *window);
 /* Frames count >= 1 points: a perspective camera frames the points themselves, an orthographic one their bounding box. */
@@ -36,8 +36,8 @@ void camera_basis(const struct camera *camera, double right[3], double up[3], do
 /* Returns the distance from which a perspective camera with the default angle sees as much as this camera's orthographic
    picture shows. 0: this camera is perspective. */
 double camera_parallel_m(const struct camera *camera);
-/* Computes two column-major matrices: view, from plant to eye space, and projection, from eye to clip space. Near and far planes enclose
-   the box; in an orthographic picture also the part of the box behind the eye. */
+/* Computes two column-major matrices: view, from plant to eye space, and projection, from eye to clip space. Near and far
+   planes enclose the box; in an orthographic picture, even the part of the box behind the eye. */
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
                      double projection[16]);
 

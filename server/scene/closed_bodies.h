@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds which triangles of a level bound closed bodies, whose cut sections are solid. A body is a set of triangles connected by vertex
-   positions; it is closed if each edge is used equally often in both directions. Thread: any. */
+/* Finds which triangles of a level bound closed bodies, whose cut sections are drawn solid. A body is a set of triangles
+   connected by vertex positions; it is closed if each edge is used equally often in both directions. Thread: any. */
 #ifndef SCENE_CLOSED_BODIES_H
 #define SCENE_CLOSED_BODIES_H
 #include <stddef.h>
@@ -16,8 +16,8 @@ struct closed_bodies {
     size_t run_count, run_capacity;
 };
 
-/* Finds the closed bodies among the triangles with opaque materials. Finds none when out of memory, or when the level of detail is too
-   large to be examined while a user waits. */
+/* Finds the closed bodies among the triangles with opaque materials. Finds none if memory runs out, or if the level of detail
+   is too large to examine while a user waits. */
 void closed_bodies_find(const struct asset_view *view, uint32_t level, struct closed_bodies *out);
 void closed_bodies_finish(struct closed_bodies *closed);
 

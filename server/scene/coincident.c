@@ -19,7 +19,7 @@ static const double SHIFT_PER_STEP = 4e-5;
 enum { MAX_STEPS = 7 };
 
 struct coincident_face {
-    /* unit normal, with the sign that makes the largest component positive, so that both orientations of a face compare equal */
+    /* unit normal, with its sign chosen so that the largest component is positive: both orientations of a face then compare equal */
     double normal[3];
     double offset_m; /* distance of the face's plane from the centre of the region where two assets meet */
     double corner[3][3], low[3], high[3];
@@ -126,8 +126,8 @@ static bool on_one_plane(const struct coincident_face *a, const struct coinciden
     return true;
 }
 
-/* Returns whether a face of one asset coincides with a face of the other. For planes that are only nearly parallel, the permitted
-   difference of offsets grows with their angle times the region's size. */
+/* Returns whether a face of one asset coincides with a face of the other. If their planes are only nearly parallel, the
+   permitted difference of offsets grows with the angle times the region's size. */
 static bool coincide(const struct faces *a, const struct faces *b, const struct region *region)
 {
     double slack_m = SAME_PLANE_M;
@@ -163,8 +163,8 @@ static bool meet(const struct scene_asset *a, const struct scene_asset *b, struc
     return coincide(&faces[0], &faces[1], &region);
 }
 
-/* Assigns ranks (scene_asset.front) to assets, from back to front. An asset gets a higher rank than all earlier assets with whose faces its
-   own coincide, up to MAX_STEPS. */
+/* Assigns ranks (scene_asset.front) to assets, from back to front. An asset gets a higher rank than all earlier assets that it
+   has coincident faces with, up to MAX_STEPS. */
 void coincident_find(struct scene *scene)
 {
     struct faces faces[2] = { 0 };

@@ -17,8 +17,8 @@ enum { DIRECTIONS = 96 };
 static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8;
 /* minimum length in metres of the larger side of a ground plate; a smaller plate counts as equipment */
 static const double GROUND_LEAST_M = 5;
-/* largest error of the level of detail whose vertices are searched, relative to the asset's size; with a coarser level, a view fitted to
-   the vertices would crop the asset */
+/* largest error of the level of detail whose vertices are searched, relative to the asset's size; vertices of a coarser level
+   would make a view crop the asset */
 static const double LEVEL_ERROR = 0.005;
 
 static double area_of(const double min_m[3], const double max_m[3], int up)
@@ -95,8 +95,7 @@ void extremes_find(struct scene *scene)
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;
     }
-    /* searches again with more assets until a vertex is found: first all but the ground and assets hidden at start, then also the ground,
-       then all */
+    /* adds assets until a vertex is found: first all assets but the ground and those hidden at start, then the ground, then all */
     for (int round = 0; round < 3 && !isfinite(most[0]); round++)
         for (size_t i = 0; i < scene->asset_count; i++)
             if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&

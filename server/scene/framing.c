@@ -11,7 +11,7 @@
  * have no direction in the picture. With the tilt, the camera's up vector stays the plant's, and orbiting continues smoothly.
  * */
 static const double VERTICAL_TILT = 1e-3;
-static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio for which the initial view in the plant file is made */
+static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio that the initial view in the plant file is made for */
 /* size of the surroundings shown around a sensor, as a fraction of the asset's size */
 static const double SENSOR_PART = 0.35;
 static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* smallest and largest size of the surroundings shown around a sensor */

@@ -14,13 +14,13 @@ struct framing {
     struct camera_window window; /* rectangle of the picture for the subject to fill */
 };
 
-/* Finds what a name means: an asset, otherwise a tag that is on an asset. NULL means the whole plant. Sets every member of the framing.
+/* Looks up a name: first as an asset, then as a tag on an asset. NULL means the whole plant. Sets every member of the framing.
    Returns false if there is no such name. */
 bool framing_find(const struct plant *plant, const char *name, struct framing *framing);
 /* Moves the camera to show the framing's subject completely; keeps its lens. */
 void framing_look(const struct scene *scene, const struct framing *framing, double aspect, struct camera *camera);
-/* Moves a perspective camera, without turning, until the window of a picture with that aspect ratio shows everything of the plant that the
- * camera sees at 16:9. Does nothing if the window shows that already. window all zero: the whole picture. */
+/* Moves a perspective camera, without turning it, until the window shows everything of the plant that the camera sees at 16:9.
+ * `aspect` is that of the whole picture. Does nothing if the window already shows that. window all zero: the whole picture. */
 void framing_keep(const struct scene *scene, double aspect, const struct camera_window *window, struct camera *camera);
 
 #endif

@@ -29,7 +29,7 @@ static json_t *load(struct log *log, const char *path)
     return root;
 }
 
-/* Returns whether `file` is the name of a file in the manifest's own folder, without a path. */
+/* Returns whether `file` is a plain file name in the manifest's folder, without a path. */
 static bool file_name_good(const char *file)
 {
     return file && *file && *file != '.' && !strchr(file, '/');

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Intersects rays with boxes of assets, boxes of clusters, and triangles, in double precision in the file's coordinates. */
+/* Intersects rays with boxes of assets, boxes of clusters, and triangles, in double precision and in the file's coordinates. */
 #include "scene/raycast.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "plant/models/transform.h"
 #include "scene/coincident.h"
 
-/* barycentric weight by which each triangle is enlarged, so that no ray slips through between two triangles */
+/* enlarges each triangle by this barycentric weight, so that no ray slips through between two triangles */
 static const double MIN_WEIGHT = 1e-9;
 
 void ray_init(struct ray *ray, const struct camera *camera, double aspect, double x, double y)
@@ -28,7 +28,7 @@ void ray_init(struct ray *ray, const struct camera *camera, double aspect, doubl
     ray->parallel_m = camera_parallel_m(camera);
 }
 
-/* Reduces the range low..high of the ray's parameter to the part within the box. Returns false if no part lies within. */
+/* Limits the range low..high of the ray's parameter to the part within the box. Returns false if no part is within. */
 static bool cross_box(const double origin[3], const double direction[3], const double min[3], const double max[3], double *low,
                       double *high)
 {
@@ -108,7 +108,7 @@ static bool cluster_crossed(const struct raycast_search *search, const struct as
     return cross_box(search->origin, search->direction, min, max, &low, &high);
 }
 
-/* Searches the finest level of detail for the first hit: its primitives and their clusters come first in the asset file. */
+/* Searches the finest level of detail for the first hit. Its primitives and their clusters come first in the asset file. */
 static void search_asset(struct raycast_search *search)
 {
     const struct asset_view *view = search->view;
@@ -144,8 +144,8 @@ static void find_normal(const struct scene *scene, const struct ray *ray, struct
         hit->normal[i] *= turn / length;
 }
 
-/* Converts t of a hit on the asset at its true position to t on the asset as drawn, which is shifted towards the viewer
-   (coincident_forward). t: parameter of the ray, origin + t direction. brought_back() is the inverse. */
+/* The asset is drawn shifted towards the viewer (coincident_forward). Converts t of a hit on the asset at its true position to
+   t on the asset as drawn. t: parameter of the ray, origin + t direction. brought_back() is the inverse. */
 static double brought_forward(const struct ray *ray, const struct scene_asset *asset, double t)
 {
     double forward = coincident_forward(asset);
@@ -177,8 +177,8 @@ static bool aim_at(struct raycast_search *search, const struct scene_asset *asse
     return true;
 }
 
-/* Returns how many of the asset's closed bodies contain the point of the ray at t = search->low: beyond that point, each crossing out of a
-   body counts 1 and each crossing into one -1. */
+/* Returns how many of the asset's closed bodies contain the ray's point at t = search->low. Counts crossings beyond that point:
+   1 for each crossing out of a body, -1 for each crossing into one. */
 static int count_bodies(const struct raycast_search *search, const struct asset *file)
 {
     const struct closed_bodies *closed = asset_closed(file, 0);
@@ -191,13 +191,13 @@ static int count_bodies(const struct raycast_search *search, const struct asset 
     return count;
 }
 
-/* Returns whether the ray meets a section cap (render/gl/section_caps.h), that is, whether the point where the ray passes the section plane
-   lies inside a closed body. */
+/* Returns whether the ray meets a section cap (render/gl/section_caps.h): whether it passes the section plane at a point inside
+   a closed body. */
 static bool hits_cap(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, double low, double high,
                      struct raycast_hit *hit)
 {
     int bodies = 0;
-    /* the ray starts in the space that is kept, so it passes no section plane on its way in, and meets no cap */
+    /* the ray starts in the space that is kept, so it enters through no section plane and meets no cap */
     if (!(low > ray->low))
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {

@@ -25,7 +25,7 @@ struct scene_asset {
     struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
     size_t sensor_count;
     bool stray; /* true if a piece of the asset is far from the main part (scene/main_part.h) */
-    /* stray_at_m: position of the asset's farthest corner outside the main part; stray_away_m: distance of that corner from the main part,
+    /* stray_at_m: position of the asset's farthest corner outside the main part; stray_away_m: its distance from the main part,
        0: no corner is outside */
     double stray_at_m[3], stray_away_m;
     /* reason why the asset could not be prepared; it then has no sensors and is invisible; NULL: it was prepared */
@@ -39,7 +39,7 @@ struct scene {
     struct scene_asset *assets; /* assets of the plant, by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* bounding box of the main part (scene/main_part.h), in the plant frame */
-    /* box of all assets including stray pieces (scene/main_part.h); min equal to max: the same box as bounds_min_m, bounds_max_m */
+    /* box of all assets including stray pieces (scene/main_part.h); min equal to max: same as bounds_min_m, bounds_max_m */
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
         size_t triangles; /* number of triangles outside of the main part */
@@ -50,10 +50,10 @@ struct scene {
     size_t extreme_count;    /* number of elements of extremes_m; 0: not known */
 };
 
-/* Chooses the box that near and far planes have to enclose: the box of everything. If a stray piece is so far away that the near plane
- * would then cut into the main part, chooses the box of the main part. */
+/* Chooses the box that near and far planes must enclose: the box of everything. If a stray piece is so far away that the near
+ * plane would then cut into the main part, chooses the main part's box instead. */
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3]);
-/* Returns whether the asset's placement mirrors it, which reverses the winding of triangles. */
+/* Returns whether the asset's placement mirrors it and so reverses the winding of its triangles. */
 bool scene_asset_mirrored(const struct scene_asset *asset);
 
 #endif

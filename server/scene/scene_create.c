@@ -22,8 +22,8 @@
 
 /* --- checks that a file belongs to the plant ---------------------------------------------------------------------------------------- */
 
-/* Returns whether the prepared file and the plant have a sensor at the same position, or on the same model node. Positions in the file are
-   floats relative to its origin, so a position far from the origin is less exact. */
+/* Returns whether the prepared file and the plant have a sensor at the same position, or on the same model node. The tolerance
+   grows with the distance from the file's origin, because the file has positions as floats relative to it. */
 static bool same_place(const struct asset_header *header, const struct asset_sensor *in_file, const struct plant_sensor *in_plant)
 {
     if (in_file->node_hash || in_plant->node)
@@ -112,7 +112,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     return true;
 }
 
-/* Hashes the model of an asset; a model used by an earlier asset is not read again. Returns false with errno if it cannot be read. */
+/* Hashes the model of an asset, without reading again a model that an earlier asset uses. Returns false with errno if it cannot be read. */
 static bool model_hash(const struct plant *plant, uint64_t *hashes, int index)
 {
     for (int i = 0; i < index; i++)
@@ -185,8 +185,8 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
     transform_point(asset->placement, surface, out->surface_m);
 }
 
-/* Sets up an asset that plantcast-prep could not prepare. The asset is neither drawn nor part of the plant's box, but the scene has it,
-   with the reason why it is missing. */
+/* Sets up an asset that plantcast-prep could not prepare. The scene has the asset, with the reason why it is missing, but the
+   asset is not drawn and does not extend the plant's box. */
 static bool create_missing(struct log *log, struct scene_asset *asset, const struct manifest_entry *entry)
 {
     log_warn(log, "asset %s is missing: %s; repair the model, then prepare the plant again", asset->plant->id, entry->missing);
@@ -261,7 +261,7 @@ static void open_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Opens each file once, on all cores, because checking the files takes longer than all other steps of loading. */
+/* Opens each file once, on all cores: checking the files takes longer than all other steps of loading. */
 static void open_files(struct file_uses *uses)
 {
     qsort(uses->at, uses->count, sizeof(*uses->at), compare_uses);
@@ -292,7 +292,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
 
 /* --- all assets of the scene ------------------------------------------------------------------------------------------------ */
 
-/* Gives missing assets the bounds of the plant, so that a view of one shows the plant. Returns false if all assets are missing. */
+/* Gives missing assets the bounds of the plant, so that a view of one shows the plant. Returns false if all are missing. */
 static bool bound_missing(struct scene *scene)
 {
     for (size_t i = 0; i < scene->asset_count; i++)
@@ -328,7 +328,7 @@ static bool create_assets(struct log *log, struct scene *scene, const struct man
     return good;
 }
 
-/* Works like scene_create(), but does not say how to prepare the plant. */
+/* Does the work of scene_create(), but logs no advice on how to prepare the plant. */
 static struct scene *create(struct log *log, const struct plant *plant, const char *prepared_folder)
 {
     struct manifest manifest;

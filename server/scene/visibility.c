@@ -66,7 +66,7 @@ bool clip_keeps(const struct clip *clip, const double point_m[3])
     return true;
 }
 
-/* Returns the signed height of a corner of the box above the plane: of the corner that lies farthest on the plane's inner side (inward 1),
+/* Returns the signed height above the plane of one corner of the box: the corner farthest on the plane's inner side (inward 1),
    or on its outer side (inward -1). */
 static double corner_height(const double plane[4], const double min_m[3], const double max_m[3], int inward)
 {

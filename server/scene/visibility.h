@@ -20,7 +20,7 @@ struct clip { /* section planes; the space on the inner side of all planes is ke
     bool is_box;
     double planes[CLIP_MAX_PLANES][4]; /* (n.x, n.y, n.z, d): points p with n . p + d >= 0 are kept; n: unit normal in the plant frame */
 };
-/* Writes the plane at which geometry is cut: slightly farther out than the plane that was set, so that a surface exactly in that plane is
+/* Writes the plane for cutting geometry: slightly outside of the plane that was set, so that a surface exactly in that plane is
    kept whole. */
 void clip_plane(const struct clip *clip, int index, double out[4]);
 void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
@@ -40,11 +40,11 @@ struct visibility {
 enum asset_look {
     ASSET_SHOWN,
     ASSET_GHOST, /* the asset is drawn transparent, without a field */
-    ASSET_HIDDEN /* true: the asset is not shown: the user has hidden it, or has isolated other assets without ghosting this one */
+    ASSET_HIDDEN /* the asset is not shown: the user has hidden it, or has isolated other assets without ghosting this one */
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);
 struct plant;
-void visibility_start(const struct plant *plant, struct visibility *out); /* sets the visibility with which a view of the plant begins */
+void visibility_start(const struct plant *plant, struct visibility *out); /* sets the initial visibility of a view of the plant */
 bool visibility_equal(const struct visibility *a, const struct visibility *b);
 
 #endif

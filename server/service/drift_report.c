@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Judges from hourly means of recorded readings whether sensors drift (slowly depart from the true value). The expected error of a mean is
-   the group's sensor noise combined with the recording tolerance. */
+/* Judges from hourly means of recorded readings whether sensors drift (slowly depart from the true value). The expected error
+   of a mean combines the group's sensor noise and the recording tolerance. */
 #include "service/drift_report.h"
 
 #include <jansson.h>
@@ -20,8 +20,7 @@ static int64_t begin_of(int64_t to_us)
     return to_us - to_us % HOUR_US - DRIFT_HOURS * HOUR_US;
 }
 
-/* Returns the expected error of a recorded value: the sensor noise combined with the deviation from the measured value that the recording
-   filter allows. */
+/* Returns the expected error of a recorded value: the sensor noise combined with the recording filter's tolerance. */
 static double noise_of(const struct plant *plant, const struct history_tag *tag, int group)
 {
     const struct plant_group *of = &plant->groups[group];
@@ -100,7 +99,7 @@ void drift_text_begin(struct text *out, const struct plant *plant, int group, in
                              (json_int_t)(begin_of(to_us) + DRIFT_HOURS * HOUR_US), "group", string(plant->groups[group].id), "unit",
                              string(plant->groups[group].unit));
     char *text = json_text(head, EXACT);
-    text_add_bytes(out, text, strlen(text) - 1); /* the closing brace of the JSON object is left out, because more members follow */
+    text_add_bytes(out, text, strlen(text) - 1); /* omits the closing brace of the JSON object, because more members follow */
     text_add(out, ",\"sensors\":[");
     mem_free(text);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes frames on the worker threads: jobs of one stream run one after the other, those of different streams in parallel. */
+/* Encodes frames on the worker threads: a stream's jobs run one after the other, those of different streams in parallel. */
 #include "service/encode_queue.h"
 
 #include <pthread.h>
@@ -26,7 +26,7 @@ struct encode_queue {
     struct idle_encoder *idle;
     struct encode_streams streams;
     int jobs;
-    /* number of running jobs that encode frames for HTTP or frames to be signed; limited, because these frames may be large and lossless */
+    /* number of running jobs that encode frames for HTTP or for signing; limited, because these frames may be large and lossless */
     int heavy;
     struct encode_job *heavy_waiting, **heavy_last;
     struct request_group rest; /* scratch memory of encode_queue_submit() for requests that need another encode stream */
@@ -49,7 +49,7 @@ struct stream_work {                  /* encoding jobs and encoder of one encode
     struct encode_job *first, **last; /* the stream's jobs, oldest first, protected by the lock; the first job is running */
     /* encoder of the stream, for codecs that keep state between frames; only the running job uses this member and those below */
     struct encoder *encoder;
-    struct frame *before; /* newest frame that was encoded for this stream: clients that have all packets show it */
+    struct frame *before; /* newest frame encoded for this stream; clients that have all packets show it */
     struct encoder_params quality;
 };
 
@@ -271,7 +271,7 @@ static void job_destroy(struct encode_job *job)
 
 static void run_job(void *arg);
 
-/* Starts an encoding job on a worker thread. Frames for HTTP and frames to be signed may use only half of the workers. */
+/* Starts an encoding job on a worker thread. Frames for HTTP and frames to be signed may use at most half of the workers. */
 static void start(struct encode_queue *queue, struct encode_job *job)
 {
     int most = workers_count(queue->params.workers) / 2;
@@ -370,7 +370,7 @@ static struct encode_job *make_job(struct encode_queue *queue, struct frame *fra
     return job;
 }
 
-/* Appends the job to its stream. Returns true if the stream was idle, so that the job can start. The caller holds the lock. */
+/* Appends the job to its stream. Returns true if the stream was idle and the job can start. The caller holds the lock. */
 static bool append(struct encode_queue *queue, struct encode_job *job)
 {
     struct stream_work *work = job->stream->work;

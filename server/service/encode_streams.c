@@ -110,8 +110,8 @@ static bool shows(const struct encode_stream *stream, const struct frame *frame,
            stream->content == frame->content && same_coding(stream, frame, request) && !brings_depth(stream, frame, tickets);
 }
 
-/* Returns a stream whose newest packet shows the same picture as this frame; NULL: there is none. whole: accepts only a stream whose newest
-   packet is a key frame. */
+/* Returns a stream whose newest packet shows the same picture as this frame; NULL: there is none. whole: true: the newest
+   packet must be a key frame. */
 static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct request_group *tickets,
                                      bool whole)
 {
@@ -141,7 +141,7 @@ static struct encode_stream *add_chain(struct encode_streams *streams)
     return stream;
 }
 
-/* Returns the client's own stream if it is the only member, so that its encoder and packets are reused; otherwise NULL. */
+/* Returns the client's own stream if the client is its only member, so that encoder and packets are reused; otherwise NULL. */
 static struct encode_stream *own_chain(const struct encode_streams *streams, const struct request_group *tickets)
 {
     const struct encode_stream_member *link = find(streams, tickets->tickets[0].client);
@@ -249,8 +249,8 @@ static bool must_again(const struct request_group *tickets)
     return false;
 }
 
-/* Returns whether every packet of this frame decodes without earlier packets: after a camera move, JPEG and PNG send the whole picture.
-   Clients can then join the stream without an additional key frame. */
+/* Returns whether every packet of this frame decodes without earlier packets: JPEG and PNG send the whole picture after a
+   camera move. Clients can then join the stream without an additional key frame. */
 static bool is_whole(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
     return request->codec != WIRE_CODEC_H264 && !view_equal(&stream->shown.view, &frame->view);

@@ -23,7 +23,7 @@ struct encode_stream {
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
     size_t kept_bytes, key_bytes;
-    /* members: number of clients in the stream; present: number of those that have a ticket in the group being planned */
+    /* members: number of clients in the stream; present: number of members that have a ticket in the group being planned */
     size_t members, present;
 };
 
@@ -31,8 +31,8 @@ struct encode_stream_member {
     uint64_t client;
     struct encode_stream *stream;
     uint64_t position; /* sequence number of the newest packet that was passed on to the client */
-    /* joined_ns: when the client joined the stream; patience_ns: delay before a key frame is made for the client to join again, longer if
-       it often falls behind; join_after_ns: end of that delay */
+    /* joined_ns: when the client joined the stream; patience_ns: delay before a key frame is made to let the client join again,
+       longer if it often falls behind; join_after_ns: end of that delay */
     int64_t joined_ns, join_after_ns, patience_ns;
 };
 
@@ -48,7 +48,7 @@ struct encode_plan { /* zero-initialise */
     bool key;        /* true: encode the frame as a key frame */
     bool again;      /* true: send the frame even if its content is unchanged */
     uint64_t number; /* sequence number of the frame in its stream */
-    /* for each ticket, sequence number of the first packet that its client needs; a number above `number`: the client needs none */
+    /* by ticket: sequence number of the first packet that the client needs; above `number`: the client needs none */
     uint64_t *from;
     size_t from_capacity;
 };
@@ -63,7 +63,7 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
 /* Writes to `out` the packets with sequence numbers from..to, which bring a client up to date, oldest first. The packets are
    borrowed. Returns their count, or -1 if some were dropped already. */
 int encode_stream_catch_up(const struct encode_stream *stream, uint64_t from, uint64_t to, struct packet *out[ENCODE_STREAM_KEPT]);
-/* Notes that the newest frame could not be encoded, so that all clients of the stream get a key frame next. */
+/* Records that the newest frame could not be encoded; all clients of the stream get a key frame next. */
 void encode_stream_break(struct encode_stream *stream);
 /* Removes a client from its encode stream. */
 void encode_streams_forget(struct encode_streams *streams, uint64_t client);

@@ -14,7 +14,7 @@ enum frame_absence {
 
 struct encoded_frame { /* encoded frame; the code that collected it owns it, and frees it with encoded_frame_destroy() */
     uint64_t client;
-    uint64_t number;       /* sequence number of the client's request, assigned when drawing begins: a larger number shows a newer state */
+    uint64_t number;       /* sequence number of the client's request, assigned when drawing begins; a larger number shows a newer state */
     struct packet *packet; /* encoded frame; NULL: there is none, and `absence` says why */
     struct packet **earlier; /* packets of a shared stream that the client missed and must decode first, oldest first */
     int earlier_count;
@@ -25,12 +25,12 @@ struct encoded_frame { /* encoded frame; the code that collected it owns it, and
     struct encoded_frame *next;
 };
 
-/* Frees the frame, drops its references to packets, which other frames may share, and sets *frame to NULL; accepts a pointer to NULL. Any
-   thread. */
+/* Frees the frame and drops its references to packets, which other frames may share. Sets *frame to NULL; accepts a pointer to
+   NULL. Any thread. */
 void encoded_frame_destroy(struct encoded_frame **frame);
 /* Returns the number of bytes of all packets of the frame. */
 size_t encoded_frame_bytes(const struct encoded_frame *frame);
-/* Returns whether the client can decode the frame without any packet sent before. */
+/* Returns whether the client can decode the frame without earlier packets. */
 bool encoded_frame_stands_alone(const struct encoded_frame *frame);
 
 #endif

@@ -33,8 +33,8 @@ static bool is_overtaken(const struct request_ticket *ticket, void *arg)
     return client && client->has_content && ticket->number < client->content_number;
 }
 
-/* Stores the frame's content hash as that of the newest frame of a client that is still connected, and charges the client for drawing.
-   Returns false if the client has gone. The caller holds the lock. */
+/* Stores the frame's content hash as that of the client's newest frame, and charges the client for drawing. Returns false if
+   the client has gone. The caller holds the lock. */
 static bool remember(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -69,8 +69,8 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
     request_group_finish(&overtaken);
 }
 
-/* Answers "nothing new" to the clients of the group that already show the picture with this content hash, and removes them from the
-   group. */
+/* Answers "nothing new" to those clients of the group that already show the picture with this content hash, and removes them
+   from the group. */
 static void answer_same(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct render_service *service = thread->service;
@@ -96,8 +96,8 @@ static void answer_with(struct render_service *service, struct frame *frame, str
         frame_sharing_submit(service, frame, group, 0);
 }
 
-/* Adds the group's requests to a frame with the same content hash that was submitted to the GPU, if there is one. Such a frame can still
-   get the record of what it was drawn from, but no depth grid. */
+/* Adds the group's requests to a frame with the same content hash that was submitted to the GPU, if there is one. The record of
+   what such a frame was drawn from can still be added, but no depth grid. */
 static void join_awaited(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct pending_readback *flight = pending_readbacks_find(&thread->in_flight, content, request_group_wants_depth(group));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The history loader: reads the readings of past instants on a thread of its own and puts them into the historical snapshot cache, from
-   which they are drawn. Only the newest request of each client counts. Thread: any. */
+/* The history loader: reads the readings of past instants on a thread of its own, and puts them into the historical snapshot
+   cache, from which frames are drawn. Only the newest request of each client counts. Thread: any. */
 #ifndef SERVICE_HISTORY_LOADER_H
 #define SERVICE_HISTORY_LOADER_H
 #include "base/log/log.h"
@@ -30,7 +30,7 @@ struct history_loader;
 struct history_loader *history_loader_create(const struct history_loader_params *params);
 /* Ends the history thread and sets *loader to NULL; accepts a pointer to NULL. */
 void history_loader_destroy(struct history_loader **loader);
-/* Requests the readings of the past instant at_us, in UTC microseconds. Replaces the client's last request if that still waits. */
+/* Requests the readings of the past instant at_us, in UTC microseconds. Replaces the client's last request if that one still waits. */
 void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us);
 /* Drops the client's request, and answers for the client that were not collected yet. */
 void history_loader_forget(struct history_loader *loader, uint64_t client);

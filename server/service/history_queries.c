@@ -95,8 +95,7 @@ static bool fetch_tag(const struct history_queries *queries, struct core_history
                       : remote_history_json(core, query, tag, first, last, out);
 }
 
-/* Returns the number of steps in which the query's answer is made: one per tag or, for drift queries, per asset. Each step reads history
-   once. */
+/* Returns the number of steps that the query's answer takes: one per tag or, for drift queries, per asset. Each step reads history once. */
 static int steps_of(const struct history_queries *queries, const struct history_query *query)
 {
     return !query->drift ? query->tag_count : query->tag >= 0 ? 1 : (int)queries->scene->asset_count;
@@ -198,7 +197,7 @@ static bool is_at_work(const struct history_queries *queries, uint64_t account)
     return any;
 }
 
-/* Returns when the query's account (client address) was last served: the largest `served` of all its queries. The caller holds the lock. */
+/* Returns when the query's account (client address) was last served: the largest `served` among its queries. The caller holds the lock. */
 static uint64_t served_of(const struct history_queries *queries, const struct pending_query *question)
 {
     uint64_t served = question->served;
@@ -280,7 +279,7 @@ static void *history_queries_main(void *arg)
         queries->at_work[index] = 0;
         queries->working[index] = NULL;
         give(queries, question, piece);
-        /* wakes the other threads, because another query of the same client address may be served now */
+        /* wakes the other threads, because another query of the same client address may now be served */
         pthread_cond_broadcast(&queries->wake);
         pthread_mutex_unlock(&queries->lock);
         queries->notify(queries->notify_arg);

@@ -20,17 +20,17 @@ struct history_query {
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
-    /* true: instead of series of values, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
+    /* true: the query asks which sensors drifted in the week before to_us (service/drift_report.h), not for series of values */
     bool drift;
     /* index of the group or tag to judge, for drift queries: one of the two is set, the other is -1. In other queries both are -1 */
     int group, tag;
-    bool gaps;      /* true: instead of series of values, the query asks for the periods in which nothing was recorded */
+    bool gaps;      /* true: the query asks for the periods in which nothing was recorded, not for series of values */
     bool journal;   /* true: instead of series of values, the query asks for rows of the alarm journal, filtered by `alarms` */
     struct alarm_query alarms;
 };
 
-/* Parses the arguments of a query for series of values, such as `tags=A,B&from=-8h&to=now&points=1000&format=csv`, into *query; they are
-   percent-decoded. Returns false with *error. Pure. */
+/* Parses the percent-decoded arguments of a query for series of values, such as
+   `tags=A,B&from=-8h&to=now&points=1000&format=csv`, into *query. Returns false with *error. Pure. */
 bool history_query_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                          struct message_error *error);
 /* Parses `from=-8h&to=now` into a query for periods in which nothing was recorded. Returns false with *error. Pure. */

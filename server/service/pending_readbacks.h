@@ -18,7 +18,7 @@ struct pending_readbacks {
         const struct historical_snapshot *historical;
         struct snapshot *snapshot;
         uint64_t content; /* hash of what the frame shows; a request with an equal hash is answered with this frame */
-        bool gives_depth; /* true: the frame has a depth grid, which is read back from the GPU, too */
+        bool gives_depth; /* true: the frame has a depth grid, which is also read back from the GPU */
     } at[PENDING_READBACKS_MAX];
     int count;
 };
@@ -27,13 +27,13 @@ struct pending_readbacks {
 void pending_readbacks_init(struct pending_readbacks *in_flight, size_t tag_count);
 /* Frees the memory of the list's snapshots; no frame may be in the list. */
 void pending_readbacks_finish(struct pending_readbacks *in_flight);
-/* Adds a frame to the list, which must not be full. The list then owns the frame's split view, its historical snapshot, the requests in
-   *group and, if there is no historical snapshot, *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified
-   content. */
+/* Adds a frame to the list, which must not be full. The list takes ownership of the frame's split view, its historical
+ * snapshot, the requests in group and, if there is no historical snapshot, *snapshot. Afterwards *group is empty, and *snapshot
+ * is a different one with unspecified content. */
 void pending_readbacks_push(struct pending_readbacks *in_flight, const struct pending_readback *frame, struct request_group *group,
                             struct snapshot **snapshot);
-/* Returns the submitted frame with that content hash; NULL: none. Skips frames that get an overlay and, if `depth` is true, frames without
-   a depth grid. The frame stays in the list and is valid until the next pending_readbacks_pop(). */
+/* Returns the submitted frame with that content hash; NULL: none. Skips frames that get an overlay and, if `depth` is true,
+   frames without a depth grid. The list keeps the frame, which is valid until the next pending_readbacks_pop(). */
 struct pending_readback *pending_readbacks_find(struct pending_readbacks *in_flight, uint64_t content, bool depth);
 /* Returns the snapshot of readings that the frame shows. */
 const struct snapshot *pending_readbacks_readings(const struct pending_readback *frame);

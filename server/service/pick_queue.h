@@ -30,8 +30,8 @@ void pick_queue_forget(struct pick_queue *queue, uint64_t client);
 bool pick_queue_has_query(struct pick_queue *queue);
 /* Removes the oldest query from the queue and writes it to *out. Returns false if the queue is empty. */
 bool pick_queue_take(struct pick_queue *queue, struct pick_query *out);
-/* Adds the answer to a pick query. Returns true if it is the first answer since the last pick_queue_collect(), so that the collector must
-   be notified. */
+/* Adds the answer to a pick query. Returns true if the collector must be notified, because this is the first answer since the
+   last pick_queue_collect(). */
 bool pick_queue_answer(struct pick_queue *queue, const struct pick_query *query, const struct pick *pick);
 /* Returns all answers, oldest first; the caller frees each with mem_free. NULL: none. */
 struct pick_answer *pick_queue_collect(struct pick_queue *queue);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asks the core for one tag at a time, so that each piece of an answer stays small, and joins the core's answers to one text. */
+/* Queries the core for one tag at a time, so that each piece of an answer stays small, and joins the core's answers to one text. */
 #include "service/remote_history.h"
 
 #include <string.h>

@@ -45,8 +45,8 @@ void render_service_answer_without_frame(struct render_service *service, const s
     render_service_announce(service);
 }
 
-/* Records that the client does not show the newest frame drawn for it, because encoding failed. The client's next request is then drawn
-   even if the content is the same. */
+/* Records that the client does not show the newest frame drawn for it, because encoding failed. The client's next request is
+   then drawn even if its content is the same. */
 static void forget_content(struct render_service *service, uint64_t id)
 {
     pthread_mutex_lock(&service->lock);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The render service: a thread that takes frame requests of many clients, draws the most urgent one, has the workers encode the frame
-   and hands the encoded frames back. Each client has at most one waiting request; a newer one replaces it. Thread: any, unless said
-   otherwise. */
+/* The render service: a thread that takes frame requests of many clients, draws the most urgent one, has workers encode the
+   frame, and hands the encoded frames back. Each client has at most one waiting request; a newer one replaces it. Thread: any,
+   unless said otherwise. */
 #ifndef SERVICE_RENDER_SERVICE_H
 #define SERVICE_RENDER_SERVICE_H
 #include "base/metrics/counters.h"
@@ -31,7 +31,7 @@ struct render_service_params {
     struct counters *counters;
     /* true: frames with overlays (texts and signs) include the record of what they were drawn from (render/frame_record.h), for signing */
     bool keeps_records;
-    /* views that render_service_create() draws once, so that their caches and shaders are ready for requests; read only during that call */
+    /* views to draw once in render_service_create(), so that their caches and shaders are ready for requests; read only during that call */
     const struct view *first;
     size_t first_count;
     void (*notify)(void *arg); /* callback on any thread when frames or pick answers can be collected */
@@ -46,11 +46,10 @@ void render_service_destroy(struct render_service **service);
 
 enum request_outcome { REQUEST_ADDED, REQUEST_REPLACED, REQUEST_REFUSED };
 /* Queues a client's request. REQUEST_ADDED: one encoded frame will be ready for collection, unless the client is forgotten.
-   REQUEST_REPLACED: the request replaced one whose drawing had not begun; one frame answers both. REQUEST_REFUSED: the request was only
-   valid as a replacement (only_replace), but no request was waiting. Drawing begins with render_service_wake(). */
+   REQUEST_REPLACED: the request replaced one whose drawing had not begun; one frame answers both. REQUEST_REFUSED: the request
+   may only replace another (only_replace), but none was waiting. Drawing begins with render_service_wake(). */
 enum request_outcome render_service_request(struct render_service *service, uint64_t client, const struct frame_request *request);
-/* Queues requests of several clients in one call: requests for equal views are begun together, so that one frame answers all these
-   clients. */
+/* Queues requests of several clients in one call. Requests for equal views are begun together, so that one frame answers them. */
 void render_service_request_all(struct render_service *service, size_t count, const uint64_t *clients, const struct frame_request *requests,
                                 enum request_outcome *outcomes);
 /* Wakes the render thread if requests were queued since the last call. Call it after all requests of one event, so that equal requests
@@ -61,11 +60,11 @@ void render_service_wake(struct render_service *service);
 void render_service_withdraw(struct render_service *service, uint64_t client);
 /* Drops all waiting requests and encoded frames of the client. */
 void render_service_forget(struct render_service *service, uint64_t client);
-/* Makes all later frames show a mark next to each tag without a successful loop check, if the server draws the sensor markers. loop_checks
+/* Makes all later frames mark each tag without a successful loop check, if the server draws the sensor markers. loop_checks
    must outlive the service; NULL: no tag is marked. */
 void render_service_set_loop_checks(struct render_service *service, const struct loop_checks *loop_checks);
-/* Copies the event loop's newest snapshot of readings to the service, so that later frames show the same readings that the loop sends as
-   text. */
+/* Copies the event loop's newest snapshot of readings to the service, so that later frames show the readings that the loop
+   sends as text. */
 void render_service_set_readings(struct render_service *service, const struct snapshot *readings);
 /* Returns false while a lost GL context is being rebuilt; frame requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
@@ -74,7 +73,7 @@ bool render_service_ready(struct render_service *service);
 bool render_service_is_stuck(struct render_service *service, int64_t now_ns);
 /* Destroys the GL context in the middle of the next frame, like a GPU reset. For tests. */
 void render_service_lose_context(struct render_service *service);
-/* Queues a pick query. Each query gets one answer, unless the client sends another or is forgotten. Picks are answered between frames. */
+/* Queues a pick query. It gets one answer, unless the client sends another query or is forgotten. Picks are answered between frames. */
 void render_service_pick(struct render_service *service, const struct pick_query *query);
 /* Returns all finished pick answers, oldest first; the caller frees each with mem_free. NULL: none. */
 struct pick_answer *render_service_collect_picks(struct render_service *service);

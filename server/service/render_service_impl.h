@@ -12,17 +12,16 @@ struct render_client {
     uint64_t id, number; /* id: of the client; number: sequence number of the client's newest request whose drawing has begun */
     bool pending;        /* true: the drawing of `request` has not begun yet */
     bool has_content;
-    bool has_depth; /* true: the client has the depth grid of the content that it was last sent */
-    bool left; /* true: the client has withdrawn, so it no longer wants the frame that the long job (a frame drawn in steps) draws for it */
+    bool has_depth; /* true: the client has the depth grid that belongs to the content last sent to it */
+    bool left; /* true: the client has withdrawn and no longer wants the frame that the long job (a frame drawn in steps) draws for it */
     /* how long changed readings wait for this client's long job (a frame drawn in steps) before the client gets a preview with
        these readings; 0: the initial time */
     int64_t patience_ns;
     struct frame_request request;
-    /* content: hash of what the newest frame for the client shows; content_number: sequence number of the request that this frame
-       answered */
+    /* content: hash of what the newest frame for the client shows; content_number: sequence number of the request answered by this frame */
     uint64_t content, content_number;
     int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, indexed by kind of frame (scheduler_share()) */
-    struct time_account *account;       /* account to which the drawing time of the client's address is charged */
+    struct time_account *account;       /* time account of the client's address, charged for drawing */
 };
 
 struct render_service {
@@ -41,7 +40,7 @@ struct render_service {
     const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
     bool lost;                             /* true: the GL context is lost and being rebuilt */
     int64_t asked_ns; /* monotonic time since which a check has waited for the render thread's answer; 0: none waits */
-    bool lose;        /* true: a test wants the GL context to be destroyed in the middle of the next frame */
+    bool lose;        /* true: a test wants the GL context destroyed in the middle of the next frame */
     struct render_client **clients;        /* clients of the service, sorted by id */
     size_t client_count, client_capacity;
     struct time_accounts accounts;

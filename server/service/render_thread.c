@@ -7,9 +7,9 @@
 
 /* duration of one step of a long job (a frame drawn in steps); after each step other requests are served */
 static const int64_t STEP_NS = 10 * NS_PER_MS;
-/* drawing time that each frame of a session with a moving camera may spend on baking the light that the session chose */
+/* drawing time per frame for baking the light that a session chose, while the session's camera moves */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
-static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time that each frame may spend on computing a field that takes long */
+static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time per frame for computing a field that takes long */
 /* REBUILD_NS: delay between attempts to create a new GL context; it doubles up to REBUILD_MAX_NS */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
 /* how long changed readings wait at most for a refined frame, if the view has had one before; then a preview is drawn */
@@ -29,7 +29,7 @@ static bool request_again(const struct request_ticket *ticket, void *arg)
     return false;
 }
 
-/* Answers the group's requests with a failure. If the GL context was lost, keeps the requests waiting for the next context instead. */
+/* Answers the group's requests with a failure. If the GL context was lost, keeps them waiting for the next context instead. */
 static void fail(struct render_thread *thread, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -218,8 +218,8 @@ static void long_job_begin(struct render_thread *thread, struct request_group *g
     thread->stale = true;
 }
 
-/* Draws a finished refined frame again with the newest readings, because previews may have shown its clients readings that are newer than
-   those in the frame. Returns the new frame; NULL: not possible. */
+/* Draws a finished refined frame again with the newest readings, because previews may already have shown its clients newer
+   readings. Returns the new frame; NULL: not possible. */
 static struct frame *long_job_with_new_readings(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -326,8 +326,8 @@ static void long_job_leave(struct render_thread *thread)
     long_job_forget_instant(thread);
 }
 
-/* If the first request of the group has or_moving set, the group gets a preview in place of a refined frame. Otherwise its frame is drawn
-   in steps (a long job). */
+/* Gives the group a preview in place of a refined frame if its first request has or_moving set. Otherwise its frame is drawn in
+   steps (a long job). */
 static void choose_other(struct request_group *group)
 {
     /* one frame answers all tickets (requests whose drawing has begun) of the group, so all get the same tier */
@@ -368,8 +368,8 @@ static void draw_plan(struct render_thread *thread, struct request_group *group,
         fail(thread, group);
 }
 
-/* Draws the group's frame. Returns false if the group must wait, because its field (interpolated values) is not computed yet, or another
-   long job (a frame drawn in steps) is running. */
+/* Draws the group's frame. Returns false if the group must wait because its field (interpolated values) is not computed yet, or
+   because another long job (a frame drawn in steps) is running. */
 static bool draw_of(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                     const struct historical_snapshot **historical)
 {
@@ -398,8 +398,8 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
     return true;
 }
 
-/* Returns whether the group, or the newest request of any connected client, wants a depth grid. All frames except those of walls then get
-   one, so that any client can share them. */
+/* Returns whether the group, or the newest request of any connected client, wants a depth grid. Then all frames except those of
+   walls get one, so that any client can share them. */
 static bool wants_depth(struct render_service *service, const struct request_group *group)
 {
     bool wants = request_group_wants_depth(group);
@@ -554,8 +554,8 @@ static void rebuild(struct render_thread *thread)
     log_info(service->params.log, "gl: drawing continues with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
-/* Continues the suspended long job (a frame drawn in steps) if no other one runs. Call it at the end of each turn: if no request comes, no
-   further turn begins. */
+/* Continues the suspended long job (a frame drawn in steps) if no other one runs. Call it at the end of each turn, because
+   there is no further turn until a request comes. */
 static void resume_parked(struct render_thread *thread)
 {
     if (!thread->long_job.split && thread->parked.split)

@@ -9,13 +9,13 @@
 static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements of memory use */
 static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which the renderer's caches are released */
 static const double FIELD_SHARE = 0.3; /* maximum fraction of the caches' memory for interpolated values and weights of all fields */
-/* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory for drawing a frame or baking
-   a light. */
+/* Minimum number of bytes reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory
+   for drawing a frame or baking a light. */
 static const size_t OTHER_BYTES = (size_t)576 << 20;
 /* bytes of free but still resident heap above which the heap is trimmed (free memory is returned to the system) */
 static const size_t FREE_BYTES = (size_t)64 << 20;
 static const int64_t TRIM_NS = 5 * NS_PER_S; /* minimum time between two trims */
-/* speed at which the recorded peak of other memory decays: at each measurement it loses 1 / FADES of its excess over the present value */
+/* decay of the recorded peak of other memory: each measurement takes 1 / FADES off its excess over the present value */
 static const size_t FADES = 64;
 
 static counter *add_counter(struct render_service *service, const char *of)
@@ -36,8 +36,8 @@ void render_thread_memory_init(struct thread_memory *memory, struct render_servi
                                  "Limit in bytes of all caches together (--memory); the picture being drawn is not included.");
 }
 
-/* Returns the recent peak of the memory that the process needs in addition to models and caches, whose bytes are `counted`. If memory is
-   close to the limit `all`, first returns free heap memory to the system. */
+/* Returns the recent peak of the process's memory besides models and caches, whose bytes are `counted`. If the memory is close
+   to the limit `all`, first returns free heap memory to the system. */
 static size_t other_bytes(struct thread_memory *memory, size_t all, size_t counted)
 {
     struct memory_use use;
@@ -53,8 +53,7 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
     if (other < memory->other)
         memory->other -= (memory->other - other) / FADES;
-    /* keeps the old peak until the heap is trimmed: memory that a cache has just freed is still in the heap, and would count as other
-       memory */
+    /* keeps the old peak until the heap is trimmed: memory just freed by a cache is still in the heap, and would count as other memory */
     else if (!loose)
         memory->other = other;
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;

@@ -6,7 +6,8 @@
 /* How long a client's changed readings wait for the refined frame that is being drawn for the client. Then that frame is given
    up for a preview with the new readings, and the time doubles, so that a refined frame is finished eventually. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
-/* minimum ratio of pixels between a long job (a frame drawn in steps) and a frame that may overtake it: memory suffices for a large and a small frame, but not for two large ones */
+/* minimum ratio of pixels between a long job (a frame drawn in steps) and a frame that may overtake it: memory suffices for a
+   large and a small frame, but not for two large ones */
 enum { OVERTAKE_SMALLER = 4 };
 
 static bool long_job_is_for(const struct long_job *long_job, const struct render_client *client)
@@ -45,8 +46,8 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
     return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
-/* Returns whether the client is served before the other client, because less drawing time was charged to it. kind: kind of frames whose
-   time is compared (scheduler_share()). The caller holds the lock. */
+/* Returns whether the client is served before the other client, because it was charged less drawing time. kind: kind of frames
+   to compare (scheduler_share()). The caller holds the lock. */
 static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
     return time_claim_before(&(struct time_claim){ client->account, client->spent_ns[kind], client->request.asked_ns },
@@ -128,8 +129,8 @@ static void begin(const struct render_thread *thread, struct render_client *clie
                                                        .wait_ns = now_ns - client->request.view.input_ns });
 }
 
-/* Moves the client's request, and all other requests that the same frame answers, to the group of requests that are drawn now. The caller
-   holds the lock. */
+/* Moves the client's request, and all other requests that can share its frame, to the group of requests that are drawn now. The
+   caller holds the lock. */
 static void begin_all(const struct render_thread *thread, struct render_client *first, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -182,8 +183,8 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
             pthread_mutex_unlock(&service->lock);
             answer_pick(thread);
             pthread_mutex_lock(&service->lock);
-            /* checks again whether the service is stopping: it may have been stopped while the lock was released, and nothing would wake
-               this thread again */
+            /* checks again whether the service is stopping: that may have happened while the lock was released, and nothing
+               would wake this thread again */
             if (service->state != RUNNING)
                 break;
         }

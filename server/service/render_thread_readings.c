@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which readings the render thread draws: those that the event loop sends as text, unless these are old. */
+/* Decides which readings the render thread draws: those that the event loop sends as text, unless they are old. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* maximum age of a snapshot of readings; it bounds the error of the clock and of the ages in a frame */
+/* maximum age of a snapshot of readings, and thus the maximum error of the clock and of the ages in a frame */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS;
 
 void render_thread_refresh(struct render_thread *thread)

@@ -17,11 +17,11 @@ struct request_group { /* zero-initialise; free with request_group_finish() */
 
 /* Appends a copy of the ticket to the group. */
 void request_group_add(struct request_group *group, const struct request_ticket *ticket);
-/* Moves the tickets (frame requests) for which belongs(ticket, arg) returns true into `into`, which is emptied first. Both lists keep their
-   order. */
+/* Moves the tickets (frame requests) for which belongs(ticket, arg) returns true to `into`, which is emptied first. Both lists
+   keep their order. */
 void request_group_split(struct request_group *group, bool (*belongs)(const struct request_ticket *ticket, void *arg), void *arg,
                          struct request_group *into);
-/* Returns whether a request wants the frame with the record of what the frame was drawn from. */
+/* Returns whether a request wants the record of what the frame was drawn from. */
 bool request_group_wants_record(const struct request_group *group);
 /* Returns whether a request wants the frame with its depth grid. */
 bool request_group_wants_depth(const struct request_group *group);

@@ -16,12 +16,12 @@ struct scheduler {             /* zero-initialise */
     bool data_next, step_next;
 };
 
-/* Kinds of frames whose drawing time is charged separately: previews for inputs and readings; long-running frames. */
+/* Kinds of frames that are charged separately: previews for inputs and readings; long-running frames. */
 enum { SCHEDULER_MOVING, SCHEDULER_LONG, SCHEDULER_SHARES };
 /* Returns the kind of frames (SCHEDULER_MOVING or SCHEDULER_LONG) to which the drawing time of such a request is charged. */
 int scheduler_share(enum urgency urgency);
-/* Returns the charge with which a client enters the queue: its own drawing time charged so far, but no less than that of the client served
-   last. Time that the client left unused earlier thus gives it no advantage. */
+/* Returns a client's charge when it enters the queue: the drawing time charged to it so far, but at least the charge of the
+   client served last. So time that a client left unused gives it no advantage. */
 int64_t scheduler_asked(int64_t spent_ns, int64_t served_ns);
 /* Returns whether client a goes before client b: a was charged less, or both were charged the same and a's request is older. */
 bool scheduler_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns, int64_t b_asked_ns);

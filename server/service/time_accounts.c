@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps how much drawing time each client address was charged. An account exists while its address has clients, or as long as it has been
+/* Records how much drawing time each client address was charged. An account exists while its address has clients, or has been
    charged more than the others. */
 #include "service/time_accounts.h"
 

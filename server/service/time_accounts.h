@@ -22,14 +22,13 @@ struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
 
 /* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */
 struct time_account *time_accounts_join(struct time_accounts *accounts, uint64_t id);
-/* Removes a client from the account and sets *account to NULL. An account without clients is kept until as much drawing time was charged to
-   other accounts, so that a client cannot clear its charge by reconnecting. */
+/* Removes a client from the account and sets *account to NULL. An account without clients is kept until other accounts were
+   charged as much drawing time, so that a client cannot clear its charge by reconnecting. */
 void time_accounts_leave(struct time_accounts *accounts, struct time_account **account);
-/* Call it when a client of the account makes a request. It raises the account's charge to that of the account served last, so that time
-   left unused earlier gives no advantage. */
+/* Call it when a client of the account makes a request. It raises the account's charge to that of the account served last, so
+   that unused time gives no advantage. */
 void time_accounts_asked(const struct time_accounts *accounts, struct time_account *account, int share);
-/* Call it when a request of the account is drawn next. The account's charge then becomes the least charge with which other accounts enter
-   the queue. */
+/* Call it when a request of the account is drawn next. Other accounts then enter the queue with at least this account's charge. */
 void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int share);
 /* Charges drawing time to the account with that id. The account may have no clients any more, for example if the last client left while its
    frame was drawn. */
@@ -37,7 +36,7 @@ void time_accounts_charge(struct time_accounts *accounts, uint64_t id, int share
 
 struct time_claim { /* claim of a client to be served: how much drawing time the client was charged, and how long its request has waited */
     const struct time_account *account;
-    /* spent_ns: drawing time charged to the client itself, not to its address; asked_ns: when the client made the request */
+    /* spent_ns: drawing time charged to the client, not to its address; asked_ns: when the client made the request */
     int64_t spent_ns, asked_ns;
 };
 /* Returns whether `a` is served before `b`. The address that was charged less goes first; within one address, the client that

@@ -178,8 +178,8 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
     session_reply(session, reply_picked_text(session->context->plant, &cache));
 }
 
-/* Removes the name that a signed-in user put into a message, because the identity provider's name is used instead. A token may belong to a
-   desk that several people share, so there the name stays. */
+/* Removes the name that a signed-in user put into a message: the identity provider's name is used instead. With a token the
+   name stays, because several people may share a desk's token. */
 static void clear_claimed_name(const struct session *session, struct message *message)
 {
     if (!session->identity.holder.signed_in)
@@ -230,7 +230,7 @@ static void on_note(struct session *session, const struct message *message, int6
 {
     const struct session_context *context = session->context;
     const struct kept_action action = session_kept_begin(session);
-    /* describes the note first: note_do() may remove it, and then its author is not known any more */
+    /* describes the note first: note_do() may remove it, and its author would then be unknown */
     char *what = session_note_what(session, message);
     char *answer = note_do(context->services->notes, context->plant, message, session_who(session),
                            session->identity.role >= ROLE_ENGINEER, now_utc_ns / 1000);
@@ -342,8 +342,8 @@ static bool in_order(const struct session *session, const struct message *messag
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
 
-/* On a renderer (daemon that draws for a core): forwards messages that the core must act on. Returns true if it forwarded the message, or
-   replied with an error because the core is not connected. error: receives that error. */
+/* On a renderer (daemon that draws for a core): forwards messages that the core must act on. Returns true if it forwarded the
+   message, or replied with an error (set in `error`) because the core is not connected. */
 static bool hand_on(struct session *session, const struct message *message, const char *text, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -367,7 +367,7 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     session_reply_error(session, &error);
 }
 
-/* Starts a new second for the limit on messages of a client. Messages that were read beyond the limit of the last second count against the
+/* Starts a new second for the limit on a client's messages. Messages read beyond the limit of the last second count against the
    new one. most: messages allowed per second. */
 static void begin_second(struct message_rate *rate, int64_t most, int64_t now_ns)
 {
@@ -401,8 +401,8 @@ static bool parse(const struct session *session, const char *text, size_t count,
     struct message_error other;
     if (message_parse(known, text, count, message, error))
         return true;
-    /* the first message, hello, may name anything in the plant, because its token is not checked yet; later messages may name only what the
-       token's role may see */
+    /* the first message, hello, may refer to anything in the plant, because its token is not checked yet; later messages only
+       to what the token's role may see */
     return known != plant && !session->hello && message_parse(plant, text, count, message, &other) && message->hello.token[0];
 }
 
@@ -433,10 +433,10 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
     session_reply_error(session, &error);
 }
 
-static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* interval after which a view token is sent again even if the view has not changed */
+static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* a view token is sent again after this time even if the view has not changed */
 
-/* Sends the client a new view token if its view changed, so that another daemon can restore the view if this one dies. View tokens are
-   accepted for a day, and across one restart of the core (daemon that reads the devices). */
+/* Sends the client a new view token if its view changed, so that another daemon can restore the view if this one dies. View
+   tokens are valid for a day, and across one restart of the core (daemon that reads the devices). */
 static void tell_token(struct session *session, int64_t now_ns)
 {
     struct session_identity *identity = &session->identity;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One client's session: the view it is shown, the messages it is sent and the resources it uses. Its state is in session_state.h. Pure:
-   no socket, no clock, no GL; the caller passes the time. Thread: the event loop. */
+/* One client's session: the view it shows, the messages it gets and the resources it uses. Its state is in session_state.h.
+   Pure: no socket, no clock, no GL; the caller passes the time. Thread: the event loop. */
 #ifndef SESSION_SESSION_H
 #define SESSION_SESSION_H
 #include <jansson.h>
@@ -18,25 +18,25 @@
 /* Makes the session of a new connection. Never returns NULL. */
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns);
 void session_destroy(struct session **session); /* destroys the session and sets *session to NULL; accepts a pointer to NULL */
-/* Tells the session who connected. Copies `client`; client->share must outlive the session. If this function is not called, the session has
-   all rights. If it is called, the first frame waits for session_begin(), for a second at most. */
+/* Tells the session who connected. Copies `client`; client->share must outlive the session. Without this call, the session has
+   all rights. After this call, the first frame waits for session_begin(), for a second at most. */
 void session_introduce(struct session *session, const struct session_client *client);
-/* Notes that the session's connection is lost; call it before session_destroy(). Returns the view's pixels to the admission budget and
-   tells the leader. keep: keep the view for the client's return. */
+/* Notes that the session's connection is lost; call it before session_destroy(). Returns the view's pixels to the admission
+   budget and informs the leader. keep: true: keeps the view for the client's return. */
 void session_leave(struct session *session, bool keep, int64_t now_ns);
 /* Records the end of the session in the audit trail. why: static text; NULL: the client left by itself. */
 void session_record_leave(const struct session *session, const char *why);
-/* Queues the answers to actions that are written to disk by now (journal, files and audit trail), or that could not be written. Returns
+/* Queues the answers to actions that have reached the disk (journal, files and audit trail) or could not be written. Returns
    whether it queued any. */
 bool session_settle(struct session *session);
-/* Destroys a session whose client has gone. While it is not known whether an action is on disk, the session stays in the list `gone` of its
-   context, so that a failure is still recorded in the audit trail. */
+/* Destroys a session whose client has gone. Until it is known whether all its actions reached the disk, keeps the session in
+   the context's list `gone`, so that a failure is still recorded in the audit trail. */
 void session_retire(struct session **session);
-/* For the sessions in the context's list `gone`: records in the audit trail which actions failed to reach the disk, and destroys the
-   sessions that have no open action left. */
+/* For the sessions in the context's list `gone`: records in the audit trail which actions failed to reach the disk, and
+   destroys sessions without pending actions. */
 void session_settle_gone(struct kept_answers *answers);
-/* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
-   counts. */
+/* Makes the event loop close the connection once all queued texts are sent. text: static. If called more than once, the first
+   reason counts. */
 void session_close(struct session *session, int code, const char *text);
 /* Returns true with *error if the user has been inactive for longer than --lock-after allows. Always false for tokens of walls
    and programs (unattended), and for a person who signed in with OpenID Connect: access/openid watches that person across
@@ -45,8 +45,8 @@ bool session_left_alone(const struct session *session, int64_t now_ns, struct me
 /* Closes the session if its token was revoked or has expired, or if its user was inactive for too long; otherwise updates the session's
    role from the token. */
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns);
-/* Returns whether frames reach the client (pacer.h). A client that acknowledges nothing is first sent no more frames (PACER_STALLS), then
-   disconnected (PACER_DEAD). */
+/* Returns whether frames reach the client (pacer.h). A client that acknowledges nothing first gets no more frames
+   (PACER_STALLS), and is then disconnected (PACER_DEAD). */
 enum pacer_state session_state(const struct session *session, int64_t now_ns);
 
 /* --- plant reload ---------------------------------------------------------------------------------------------------- */
@@ -54,7 +54,7 @@ enum pacer_state session_state(const struct session *session, int64_t now_ns);
 /* Releases everything that belongs to the old plant. Returns the parameters of the session's view as text for session_take_plant(); the
    caller frees it with mem_free. NULL: the session has no view. */
 char *session_carry(struct session *session);
-/* Switches to the plant that the context now has. carried: the view's parameters from session_carry(), by names; names that the new plant
+/* Switches to the context's new plant. carried: the view's parameters from session_carry(), by names; names that the new plant
    lacks are skipped. */
 void session_take_plant(struct session *session, const char *carried);
 /* Writes into *out the view that the session will have after a reload to the plant of `context`. */
@@ -64,21 +64,21 @@ void session_view_in(const struct session *session, const struct session_context
 
 /* Parses a text message of the client, acts on it, and queues answers. */
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
-/* Refuses a message of `count` bytes, which was too long to be stored. */
+/* Refuses a message of `count` bytes that was too long to be stored. */
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns);
-/* Tells the client that it sent `count` messages, too many for one second; the event loop reads nothing more from it until this second is
-   over. whose: whether the limit is the client's ("") or its address's ("of this address "). */
+/* Tells the client that it sent `count` messages, too many for one second; the event loop reads nothing more from it until this
+   second is over. whose: "" if the limit is the client's, "of this address " if it is its address's. */
 void session_too_fast(struct session *session, int64_t count, const char *whose);
 /* Does the session's timed work, such as playback and the choice of the codec. Call it about every 100 ms, or once a second while
    session_rests() is true for all sessions. */
 void session_on_tick(struct session *session, int64_t now_ns);
-/* Returns the monotonic time up to which the client's display is known to be current. A picture is owed to the client if its view or a
-   reading has changed since the picture it shows. If none is owed, the time is when the client's last message arrived. Otherwise it is the
-   later of two times: when last no picture was owed, and when the last acknowledged picture was sent. */
+/* Returns the monotonic time up to which the client's display is known to be current. A picture is owed to the client if its
+   view or a reading has changed since the picture it shows. If none is owed, returns when the client's last message arrived.
+   Otherwise returns the later of two times: when last no picture was owed, and when the last acknowledged picture was sent. */
 int64_t session_fresh_ns(const struct session *session);
 /* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or in flight, and no text is due. */
 bool session_rests(const struct session *session, int64_t now_ns);
-/* Notes that a reading that this session shows changed at data_ns (monotonic), so that a new frame is due. */
+/* Notes that a reading that this session shows changed at data_ns (monotonic), which makes a new frame due. */
 void session_on_data(struct session *session, int64_t data_ns);
 /* Notes that connections to data sources were made or lost. */
 void session_on_links(struct session *session);
@@ -100,12 +100,12 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded);
 bool session_has_frame(const struct session *session);
 /* Returns whether the client is told that it gets depth grids. */
 bool session_gets_depth(const struct session *session);
-/* depth grids that go with a frame: none; those that the client was sent before; new ones, to be sent before the frame */
+/* depth grids of a frame: none; those that the client already has; new ones, to be sent before the frame */
 enum session_depth { SESSION_DEPTH_NONE, SESSION_DEPTH_SENT, SESSION_DEPTH_NEW };
-/* Takes out the next frame to send and writes its sequence number to *seq. The caller owns the frame. NULL: none is ready. Call
-   session_wrote() after each part of the frame is written. */
+/* Takes the next frame to send out of the session and writes its sequence number to *seq. The caller owns the frame. NULL: none
+   is ready. Call session_wrote() after each part of the frame is written. */
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq, enum session_depth *depth);
-/* Notes that the socket accepted a part of the frame being sent. all: that was the frame's last part. */
+/* Notes that the socket accepted a part of the frame being sent. all: true: this was the frame's last part. */
 void session_wrote(struct session *session, bool all, int64_t now_ns);
 /* Returns whether the rest of the frame being sent is not worth sending: the view of a refined frame has changed, the page is hidden, or
    the client acknowledges nothing at all. Always false for an H.264 frame. */
@@ -120,8 +120,8 @@ const struct pacer *session_take_shown(struct session *session);
 /* Records a measured round-trip time between server and client. */
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
 
-/* Returns the address of the view `id` if that user may see it: a view of the plant file, or a view that a user saved. The address is
-   valid until the saved views change. Returns NULL with *error, which names the member `about`, if there is none. */
+/* Returns the address of the view `id`, a view of the plant file or one that a user saved, if the user may see it. The address
+   is valid until the saved views change. Returns NULL with *error, which names the member `about`, if there is no such view. */
 const char *session_scope_find_view(const struct plant_services *services, enum role role, const struct token_holder *holder,
                                     const char *id, const char *about, struct message_error *error);
 /* Returns the plant file's views that a narrowed token allows, as a JSON array of {id, title}. The caller owns it. */
@@ -131,7 +131,7 @@ json_t *session_scope_views(const struct session *session);
 
 /* Returns whether session_next_text() has a message to send now. */
 bool session_has_text(const struct session *session, int64_t now_ns);
-/* Returns whether the next text may list readings, so that the caller refreshes the context's snapshot first. */
+/* Returns whether the next text may list readings; the caller then refreshes the context's snapshot first. */
 bool session_tags_due(const struct session *session, int64_t now_ns);
 /* Appends the next text message to send to `out`. Returns false if none is due. */
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);
@@ -150,9 +150,9 @@ void session_on_pick(struct session *session, const struct pick_answer *answer);
 /* Returns true if the readings of an instant should be loaded now, with the instant in *at_us. Advances playback, which may end in the
    present. */
 bool session_wants_historical_snapshot(struct session *session, int64_t now_ns, int64_t now_utc_ns, int64_t *at_us);
-/* Call it when loading the readings of at_us has ended. If the session waits for an instant, it now shows at_us, even if the client has
-   asked for another instant since. Otherwise does nothing. If `good` is false (loading failed) or the snapshot is no longer in the cache,
-   replies with the error no_history, stops playback and leaves the view unchanged. */
+/* Call it when loading the readings of at_us has ended. If the session waits for an instant, it now shows at_us, even if the
+   client has since requested another instant. Otherwise does nothing. If `good` is false (loading failed) or the snapshot is no
+   longer in the cache, replies with the error no_history, stops playback and leaves the view unchanged. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns);
 
 /* --- following -------------------------------------------------------------------------------------------------------- */
@@ -163,8 +163,8 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 void session_follow_nobody(struct session *session);
 /* Tells a following session that its leader's view changed. */
 void session_on_leader(struct session *session, int64_t now_ns);
-/* Notes that the leader is about to be destroyed. The leader's last view stays on show until the client follows another session or
-   nobody. */
+/* Notes that the leader is about to be destroyed. The session keeps showing the leader's last view until the client follows
+   another session or nobody. */
 void session_leader_gone(struct session *session, int64_t now_ns);
 /* Copies the view of `session` to the session `heir`, which takes over the lead but keeps its own picture size. */
 void session_inherit(struct session *heir, const struct session *session);
@@ -172,8 +172,8 @@ void session_inherit(struct session *heir, const struct session *session);
 void session_lead_nobody(struct session *session);
 /* Returns the client's request about following (follow or hand over the lead) and clears it. */
 struct follow_request session_take_follow_request(struct session *session);
-/* Give all sessions that are shown the same view a common step of the quality ladder. Call each of the three functions for all sessions
-   before the next one: clear, count, choose. */
+/* Give all sessions that show the same view a common step of the quality ladder. Call each of the three functions for all
+   sessions before the next one: clear, count, choose. */
 void session_clear_steps(struct session *session);
 void session_count_step(struct session *session);
 void session_choose_step(struct session *session);
@@ -186,8 +186,8 @@ bool session_is_tile(const struct session *session);
 /* Shifts the part of the picture that this display shows, as burn-in protection. Requests a new picture, with which the shift
    takes effect. */
 void session_tile_move(struct session *session, struct burn_shift shift, int64_t now_ns);
-/* Drops the tile (one display's part of a wall's picture) from its wall if it has delayed the others for too long, and readmits it after a
-   pause. Returns true if the tile was dropped or readmitted. */
+/* Drops the tile (one display's part of a wall's picture) from its wall if it has delayed the others for too long, and readmits
+   it after a pause. Returns true if it did either. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Tells the client which displays of its wall are connected, if that changed. there, late_us: arrays indexed by display - 1.
    late_us: UTC microseconds when that tile was dropped; 0: it takes part. leads: this session leads the wall. */
@@ -195,9 +195,9 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */
 
-/* Redraws the sensors that the engineer moved on trial, once their exact distances along the surface are computed. */
+/* Redraws the sensors that the engineer moved on trial, once their geodesic distances are computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
-/* Removes from the session the tag list that a reload is to activate, and returns it; the caller owns it. NULL: there is none. */
+/* Removes from the session a tag list that is to be activated by a reload, and returns it; the caller owns it. NULL: there is none. */
 struct tag_save *session_take_save(struct session *session);
 /* Queues the answer to the client's message `gaps`, which asks how far each place is from a sensor. */
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes audit trail entries for a session's messages: which user changed what, and which requests were refused. */
+/* Writes audit trail entries for a session's messages: who changed what, and which requests were refused. */
 #include <jansson.h>
 #include <string.h>
 
@@ -150,8 +150,8 @@ void session_record_params(const struct session *session, const struct message *
     record_baseline(session, &message->split.right);
 }
 
-/* Returns whether a refused message is too frequent to be recorded: while a user drags, a page sends `camera` and `params` many times a
-   second, and a token narrowed to views is refused each time. */
+/* Returns whether a refused message is too frequent to record. While a user drags, a page sends `camera` and `params` many
+   times a second, and for a token narrowed to views each is refused. */
 static bool is_idle(const struct session *session, const char *about)
 {
     return session->identity.holder.views[0] && (!strcmp(about, "camera") || !strcmp(about, "params"));

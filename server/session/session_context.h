@@ -14,13 +14,13 @@ struct view_token_keys;
 
 enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
 
-/* State that all sessions share about answers that wait until their actions are on disk (session_kept.c). */
+/* State shared by all sessions about answers that wait until their actions are on disk (session_kept.c). */
 struct kept_answers {
     bool waiting;         /* true: an answer waits for the disk, so session_settle() and session_settle_gone() must be called soon */
     struct session *gone; /* sessions whose client has gone, kept until it is known whether their actions reached the disk */
 };
 
-/* Members are set by the event loop. Sessions change only members whose comments say so. */
+/* The event loop sets the members. Sessions change only members whose comments say so. */
 struct session_context {
     const struct plant *plant;
     /* sessions change only its named views, short links, baselines, notes, walls, pairings and loop checks */
@@ -35,9 +35,9 @@ struct session_context {
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
     bool core_up; /* on a renderer (daemon that draws for a core): true: the core sends readings */
-    /* keys that sign view tokens, with which clients restore their view at another daemon; NULL: clients get no view tokens */
+    /* keys that sign view tokens, by which clients restore their view at another daemon; NULL: clients get no view tokens */
     const struct view_token_keys *token_keys;
-    const bool *links_up;                     /* connection state of each data source, by source index */
+    const bool *links_up;                     /* by source: connection state of the data source */
     bool imports;                             /* true: engineers may import plants */
     const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
     bool live;                                /* true: at least one data source is connected */

@@ -7,34 +7,33 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS; /* time without movement of the camera after which a refined frame is due */
-/* time without a requested preview after which a refined frame is due while the render thread is overloaded or the network is slow */
+static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due once the camera has not moved for this long */
+/* while the render thread is overloaded or the network is slow: a refined frame is due once no preview was requested for this long */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
 /* while the render thread is overloaded or the network is slow: age of the last refined frame at which another one is requested
    although previews continue */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
-/* maximum time for which a refined frame is postponed while other sessions' cameras move */
+/* how long a refined frame is postponed at most while other sessions' cameras move */
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
-/* limit on the expected transfer time of a refined frame; above it the frame is sent twice: first a draft of low quality, then full
-   quality */
+/* a refined frame whose expected transfer takes longer than this is sent twice: first as a draft of low quality, then in full quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
 /* delay after a draft (refined frame in low quality) before the same frame is sent in full quality */
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS;
-/* maximum time for which the first frame waits for the first bandwidth measurement */
+/* how long the first frame waits at most for the first bandwidth measurement */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
-/* limit on the time to send the rest of a refined frame whose view has changed; if it would take longer, the rest is not sent */
+/* the rest of a refined frame whose view has changed is not sent if that would take longer than this */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
-/* assumed ratio between the sizes of a refined frame and of a preview, used until a refined frame was sent */
+/* assumed size ratio of a refined frame to a preview, until a refined frame was sent */
 static const double STILL_OVER_MOVING = 3;
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 /* maximum time between two camera messages of one movement */
 static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
-enum { SMALL_PX = 128 }; /* shortest side in pixels to which the quality ladder may shrink a picture */
+enum { SMALL_PX = 128 }; /* a side of a picture of at most this many pixels is not shrunk by the quality ladder */
 
-/* Handles the answer that the requested frame could not be drawn. A session that already shows a frame keeps it; a new session would see
-   nothing and is closed. */
+/* Handles the answer that the requested frame could not be drawn. A session that already shows a frame keeps it. A new session
+   is closed, because it would show nothing. */
 static void on_failure(struct session *session, const struct frame_request *request)
 {
     struct message_error error = { 0 };
@@ -61,8 +60,8 @@ static void note_refined(struct session *session, const struct frame_request *re
         session->demand.refined = REFINED_FULL;
 }
 
-/* Returns whether the render service's answer "nothing new" must be ignored: the client wants the refined frame, and the newest frame that
-   came is a preview. Without this check that preview would stay until the view or a reading changes. */
+/* Returns whether the render service's answer "nothing new" must be ignored, because the client wants the refined frame but the
+   newest frame that came is a preview. Otherwise that preview would stay until the view or a reading changes. */
 static bool is_lost(const struct session *session, const struct encoded_frame *encoded, bool late)
 {
     const struct frame_demand *demand = &session->demand;
@@ -77,8 +76,9 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     if (!encoded->packet && encoded->absence == FRAME_FAILED)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
-    /* Notes that the shown picture is not a refined one, because a preview was drawn. This includes two special cases: a refined frame
-       arrived while the preview was being drawn; or the preview equals the frame already shown, and therefore has no packet. */
+    /* Notes that the shown picture is not refined, because a preview was drawn. This includes two special cases: a refined
+       frame arrived while the preview was being drawn; or the preview equals the frame already shown, and therefore has no
+       packet. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
     if (is_lost(session, encoded, late)) {
@@ -146,8 +146,8 @@ static bool refine_due(const struct session *session, int64_t now_ns)
     return session->demand.refined == REFINED_DRAFT ? is_calm(session, now_ns) : now_ns - session->demand.input_ns >= STILL_NS;
 }
 
-/* Returns whether the render thread has time for a refined frame of every session after each change of readings: no camera moves, and it is
-   not overloaded. */
+/* Returns whether the render thread has time for a refined frame of every session after each change of readings: no camera
+   moves, and the thread is not overloaded. */
 static bool all_can_be_refined(const struct session *session, int64_t now_ns)
 {
     return !session->context->overloaded && now_ns >= session->context->moving_until_ns;
@@ -209,8 +209,8 @@ static bool wants(const struct session *session, int64_t now_ns, struct frame_re
         make_moving(session, request);
     } else if (refine_due(session, now_ns)) {
         request->view.input_ns = now_ns;
-        /* a refined frame after a draft is sent even if its content equals the picture that the client shows, because its quality is
-           better */
+        /* sends a refined frame after a draft even if its content equals the picture that the client shows, because its quality
+           is better */
         request->always = session->demand.refined == REFINED_DRAFT || session->demand.lost;
         request->alone = session->demand.lost;
         make_still(session, request);
@@ -305,8 +305,8 @@ bool session_begun(const struct session *session, int64_t now_ns)
     return !starts && (!session->travel.first || session->following.leader);
 }
 
-/* Returns whether a frame may be requested. A refined frame still being drawn does not use the network yet, so a frame for new readings may
-   be requested meanwhile, however slow the client is. */
+/* Returns whether a frame may be requested. While a refined frame is being drawn, it does not use the network yet, so a frame
+   for new readings may be requested, however slow the client is. */
 static bool may_ask(const struct session *session, int64_t now_ns)
 {
     const struct pacer *pacer = &session->delivery.pacer;
@@ -369,8 +369,8 @@ void session_requested(struct session *session, const struct frame_request *requ
 
 /* --- frames in flight --------------------------------------------------------------------------------------------------- */
 
-/* A tile (one display's part of a wall's picture) sends one frame at a time, so that the message that says when to show a frame does not
-   wait behind the next frame. */
+/* A tile (one display's part of a wall's picture) sends one frame at a time. Otherwise the message that says when to show a
+   frame would wait behind the next frame. */
 bool session_has_frame(const struct session *session)
 {
     return session->delivery.ready && (!session_is_tile(session) || session->delivery.pacer.flight_count == 0);
@@ -381,7 +381,7 @@ bool session_gets_depth(const struct session *session)
     return session->asks_depth && !session->context->plant->display.no_reprojection && !session_is_tile(session);
 }
 
-/* Notes that the client will have the depth grid that belongs to this frame. Returns false if it was sent before. */
+/* Notes that the client will have this frame's depth grid. Returns false if it was sent before. */
 static bool take_depth(struct session *session, const struct frame *frame)
 {
     struct depth_grid **sent = session->delivery.depth;
@@ -431,7 +431,7 @@ void session_wrote(struct session *session, bool all, int64_t now_ns)
 
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns)
 {
-    /* an H.264 frame is never cut short: the next frame would have to be a key frame, which is larger */
+    /* never cuts an H.264 frame short: the next frame would have to be a key frame, which is larger */
     if (sending->packet->codec == WIRE_CODEC_H264)
         return false;
     if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS || session->hidden)

@@ -58,8 +58,8 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
     return true;
 }
 
-/* Checks the token and the role. If a token is given, its role counts, even if the server requires no token. Returns false with *error if
-   the client is refused. */
+/* Checks the token and the role. If a token is given, its role applies even if the server requires no token. Returns false with
+   *error if the client is refused. */
 static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
@@ -74,8 +74,8 @@ static bool identify(struct session *session, const struct message *message, int
     return false;
 }
 
-/* Reserves pixels for the session. A tile (one display's part of a wall's picture) counts only its own display, because all tiles share one
-   picture. Returns false with *error if there is no capacity for them. */
+/* Reserves pixels for the session. A tile (one display's part of a wall's picture) counts only its own display, because all
+   tiles share one picture. Returns false with *error if there is no capacity. */
 static bool admit(struct session *session, const struct message *message, const struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -152,8 +152,8 @@ static void take_over(struct session *session, const struct resumed *resumed, co
         session_close(resumed->live, 1000, "a new connection took over this view");
 }
 
-/* Finds the view that a returning client resumes. If this daemon kept the view, finds it by the secret; otherwise reads it from the signed
-   view token, which another daemon may have made. Returns false if there is none. */
+/* Finds the view that a returning client resumes: by the secret if this daemon kept the view, otherwise from the signed view
+   token, which another daemon may have made. Returns false if there is none. */
 static bool find_resumed(const struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns,
                          char secret[RESUME_CHARS + 1], struct resumed *out)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Holds back the answer to a user's action until the journal, the saved file and the audit trail have that action on disk. The event loop
-   does not wait. */
+/* Withholds the answer to a user's action until the journal, the saved file and the audit trail have the action on disk. The
+   event loop does not wait. */
 #include <errno.h>
 #include <jansson.h>
 #include <string.h>
@@ -24,8 +24,8 @@ struct kept_answer {
     struct kept_answer *next;
 };
 
-/* Returns whether the action is in the alarm journal on disk: 0, -EINPROGRESS or an error. A plant reload replaces the journal. A result
-   that the old journal has given stays valid; otherwise the action counts as not kept (-ECANCELED). */
+/* Returns whether the action is in the alarm journal on disk: 0, -EINPROGRESS or an error. A plant reload replaces the journal.
+   A result from the old journal stays valid; an action without one counts as not kept (-ECANCELED). */
 static int journal_state(const struct session *session, struct kept_answer *kept)
 {
     struct alarm_service *service = session->context->services->alarm_service;
@@ -36,15 +36,14 @@ static int journal_state(const struct session *session, struct kept_answer *kept
     return kept->journal_error;
 }
 
-/* Returns whether alarm journal and file have the action on disk: 0, -EINPROGRESS or an error. */
+/* Returns whether alarm journal and saved file have the action on disk: 0, -EINPROGRESS or an error. */
 static int disk_state(const struct session *session, struct kept_answer *kept)
 {
     int journal = journal_state(session, kept), file = file_writer_settled(session->context->file_writer, &kept->file);
     return journal ? journal : file;
 }
 
-/* Changes an answer that reports an action as saved, so that it reports the error. Returns false if the answer says nothing about
-   saving. */
+/* Makes an answer that reports an action as saved report the error instead. Returns false if the answer says nothing about saving. */
 static bool say_not_kept(json_t *answer, int error)
 {
     json_t *done = json_object_get(answer, "done");
@@ -78,8 +77,8 @@ static void answer_now(struct session *session, struct kept_answer *kept, int di
     mem_free(kept);
 }
 
-/* Queues the answer if it is known whether its action is on disk, or immediately if `now` is true. Returns true if the answer was queued
-   and removed from the list; *at then points to the next waiting answer. */
+/* Queues the answer if it is known whether its action is on disk, or in any case if `now` is true. Returns true if the answer
+   was queued and removed from the list; *at then points to the next waiting answer. */
 static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
 {
     struct kept_answer *kept = *at;

@@ -7,8 +7,8 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* Describes the view by names, in the form of the server's `params` message. The extra object `start` lists the assets that the plant file
-   does not show at first (hidden, ghosted). */
+/* Describes the view by names, in the format of the server's `params` message. The extra object `start` lists the assets that
+   are not shown at first (hidden, ghosted) according to the plant file. */
 char *session_carried_text(const struct session_context *context, const struct view *view)
 {
     char *said = reply_params_text(context, view, 0, false);
@@ -38,7 +38,7 @@ char *session_carry(struct session *session)
     return session->hello ? session_carried_text(session->context, &session->view) : NULL;
 }
 
-/* Converts a text of session_carried_text() into the `params` message that a client would send for the same view. */
+/* Converts a text of session_carried_text() into the `params` message of a client that requests the same view. */
 static json_t *request_of(const char *carried)
 {
     static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
@@ -83,8 +83,8 @@ static size_t place_in(const json_t *list, const char *id)
     return n;
 }
 
-/* Applies changes of assets' initial states (shown, hidden or ghosted) in the plant file. An asset that is still in its old initial state
-   gets the new one, and so does a new asset. */
+/* Applies the plant file's changes of assets' initial states (shown, hidden or ghosted). The new initial state applies to new
+   assets, and to assets that are still in their old initial state. */
 static void start_anew(const struct plant *plant, json_t *o)
 {
     static const char *const sets[] = { [PLANT_START_SHOWN] = "", [PLANT_START_GHOST] = "ghost", [PLANT_START_HIDDEN] = "hidden" };
@@ -162,19 +162,19 @@ void session_take_plant(struct session *session, const char *carried)
     session->owed.loop_checks_sent = 0;
     session->owed.views_sent = session->owed.notes_sent = session->owed.walls_sent = session->owed.pointers_sent = 0;
     session->demand.refined = REFINED_NOT;
-    /* counts the outstanding frame requests as dropped, because the old plant's render service will not answer them any more */
+    /* counts the outstanding frame requests as dropped, because the old plant's render service no longer answers them */
     while (session->delivery.pacer.asked > 0)
         pacer_dropped(&session->delivery.pacer);
     if (!session->hello)
         return;
     session->owed.following |= session->following.left != 0;
-    /* if the leader has gone, its last view is still shown; it belongs to the old plant, so the session returns to its own view */
+    /* if the leader has gone, its last view was still shown; the view belongs to the old plant, so the session returns to its own view */
     session->following.left = 0;
     session_look_again(session, &before, carried);
     const bool had_pictures = !session->scope.tags;
     session_scope_begin(session);
     if (had_pictures != !session->scope.tags)
-        /* the display now shows pictures and did not before, or the reverse; the client must connect again to get the right size */
+        /* the display now shows pictures and did not before, or vice versa; the client must connect again to get the right size */
         session_close(session, 1012, "the panes of the display have changed");
     struct message_error error = { 0 };
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))

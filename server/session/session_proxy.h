@@ -6,17 +6,17 @@
 #include "session/session.h"
 
 struct session_person {                /* name of the user who sent the message */
-    const struct token_holder *holder; /* the user's token or sign-in, as this daemon verified it */
+    const struct token_holder *holder; /* the user's token or sign-in, verified by this daemon */
     const char *refusal;               /* reason why the user could not be verified; NULL: the user is verified */
-    const char *from;                  /* the user's address, as the other daemon reports it */
+    const char *from;                  /* the user's address, as reported by the other daemon */
     const char *through;               /* name of the other daemon and of its token, for the audit trail */
 };
-/* Acts on the message in the name of the user who sent it. Returns a session that holds the answers, for session_answers_of(). If renderers
-   may not forward such a message, or the user may not send it, the answer is an error. */
+/* Acts on the message on behalf of the user who sent it. Returns a session that holds the answers, for session_answers_of().
+   The answer is an error if renderers may not forward such a message, or the user may not send it. */
 struct session *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
                                int64_t now_utc_ns);
-/* Returns NULL while an answer still waits for the disk; once all are on disk, destroys the session and returns its answers, a JSON array
-   of texts. */
+/* Returns NULL while an answer still waits for the disk. Once all are on disk, destroys the session and returns its answers, a
+   JSON array of texts. */
 json_t *session_answers_of(struct session **session);
 
 #endif

@@ -17,19 +17,19 @@
 
 enum { SESSION_MAX_REPLIES = 64 };
 
-/* The client's identity, as given by `hello` and by the connection. */
+/* The client's identity, from `hello` and the connection. */
 struct session_identity {
-    uint64_t number; /* random number by which other clients refer to this session; a resumed session keeps its number */
+    uint64_t number; /* random number that identifies this session to other clients; a resumed session keeps its number */
     enum role role;
     uint8_t address[16];        /* address of the client; an IPv4 address has the form ::ffff:a.b.c.d */
     char from[64];              /* address of the client as text; empty: not known */
     enum login login;           /* result of checking the token in the client's hello */
     struct token_holder holder; /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
-    /* on a renderer (daemon that draws for a core): the client's token, to be forwarded to the core; "": none, or not forwarded */
+    /* on a renderer (daemon that draws for a core): the client's token, for the core; "": none, or not forwarded */
     char token[TOKEN_MAX_CHARS + 1];
     /* on a core (daemon that reads the devices): names of the renderer and of its token that forwarded the message; "": not forwarded */
     char through[192];
-    char resume_secret[RESUME_CHARS + 1]; /* secret with which the client can resume its view over another connection */
+    char resume_secret[RESUME_CHARS + 1]; /* secret for resuming the view over another connection */
     int64_t active_ns; /* monotonic time when the user was last active at the page; 0: the user was not active since the page connected */
     bool tokens;       /* true: the client wants its view as a signed view token after each change */
     struct view token_view; /* the view in the last view token that was sent */
@@ -49,7 +49,7 @@ struct session_client {
     struct address_share *share;
 };
 
-/* Reason and code with which the connection is to be closed once all queued texts are sent. */
+/* Reason and code for closing the connection once all queued texts are sent. */
 struct session_close {
     int code;         /* WebSocket close code; 0: the connection stays open */
     const char *text; /* reason why the connection is closed; static text */
@@ -66,30 +66,30 @@ struct session_room {
 struct session_codec {
     struct codec_list list; /* codecs that the client decodes */
     enum wire_codec current;
-    struct codec_choice choice; /* state of the automatic choice of the codec, used if the client leaves the choice to the server */
+    struct codec_choice choice; /* state of the automatic choice of the codec, if the client leaves the choice to the server */
     enum signed_frames signed_frames;
     bool unsigned_said; /* true: the client was told why its frames are unsigned; reset when a signed frame is sent */
 };
 
 /* Reasons to request the next frame, and the quality of the picture that is shown (session_frames.c). */
 struct frame_demand {
-    /* reasons why a frame is wanted. input: the view changed; data: a reading changed; any: a frame must come even if its content is the
-       same, and must decode without earlier frames */
+    /* reasons why a frame is wanted. input: the view changed; data: a reading changed; any: a frame is required even if its
+       content is the same, and must decode without earlier frames */
     bool input, data, any;
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
     int64_t preview_ns, refined_ns; /* monotonic times when the newest preview, and the newest refined frame, was requested */
     /* quality of the best refined frame that was requested for the present view */
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined;
-    /* true: a refined frame is requested and has not arrived; the render thread draws it between other sessions' frames, which may take a
-       minute */
+    /* true: a refined frame is requested and has not arrived; this may take a minute, because the render thread draws it
+       between other sessions' frames */
     bool refining;
     double refined_bytes; /* size in bytes of the last frame of full quality; 0: none was acknowledged */
     bool starting;        /* true: the first frame waits, for a second at most, for session_begin(), which brings the measured bandwidth */
     int64_t starting_ns;
     bool failure_said; /* true: the client was told that the present view cannot be drawn */
     int64_t failed_ns; /* monotonic time of the newest request whose frame was lost, or failed for lack of memory; 0: none */
-    /* true: a refined frame was lost on its way to the client. The render service counts it as shown, so it must be drawn again */
+    /* true: a refined frame was lost on its way to the client. It must be drawn again, although the render service counts it as shown */
     bool lost;
 };
 
@@ -98,7 +98,7 @@ struct frame_delivery {
     struct pacer pacer;
     uint64_t newest_number;          /* sequence number of the newest frame received from the render service */
     bool newest_refined;             /* true: the frame with the number newest_number is refined */
-    struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
+    struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all earlier ones */
     bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
     /* number of sessions that show this view, this session included, by the quality step that each needs */
@@ -106,22 +106,22 @@ struct frame_delivery {
     int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
 
-/* Requests of a client about following, by session numbers. The event loop finds those sessions. */
+/* A client's requests about following, by session numbers. The event loop looks up the sessions. */
 struct follow_request {
     bool returned;   /* true: the session resumed another session, whose followers should follow this one again */
-    uint64_t heir;   /* number of the session that is to take the lead; 0: the lead stays */
+    uint64_t heir;   /* number of the session that takes the lead; 0: the lead stays */
     bool asked;      /* true: the client asked to follow session `wanted`, or nobody */
     uint64_t wanted; /* number of the session to follow; 0: none */
 };
 
 /* The leader and the followers of a session (session_follow.c). */
 struct session_following {
-    struct session *leader;   /* session whose view is shown; NULL: its own view. The event loop keeps it valid */
+    struct session *leader;   /* session whose view this session shows; NULL: its own view. The event loop keeps the pointer valid */
     bool asked;               /* true: the client asked to follow session `wanted`, or nobody */
     uint64_t wanted;          /* number of the session that the client asked to follow; 0: nobody */
-    uint64_t left;            /* number of a leader who has gone and whose last view is still shown; 0: none */
+    uint64_t left;            /* number of the leader who has gone but whose last view is still shown; 0: none */
     struct view own_view;     /* the session's own view while it follows a leader */
-    uint64_t heir_wanted;     /* number of the session to which the client wants to hand the lead; 0: the lead stays */
+    uint64_t heir_wanted;     /* number of the session that the client wants to hand the lead to; 0: the lead stays */
     bool followers_changed;   /* true: the list of followers changed and must be sent to the client */
     int64_t followers_ns;     /* monotonic time when the list of followers was last built */
     char *followers_text;     /* text that lists the followers, to be sent; NULL: none */
@@ -134,7 +134,7 @@ struct session_following {
 struct travel {
     /* readings of the shown instant (a reference); NULL: the session shows the present */
     const struct historical_snapshot *historical;
-    int64_t wanted_us;        /* instant to which the session is moving, UTC microseconds; 0: the session has arrived */
+    int64_t wanted_us;        /* instant that the session is going to, UTC microseconds; 0: it has arrived */
     bool asked;               /* true: the readings of the instant wanted_us are being loaded */
     bool first;               /* true: the session began at a past instant, and nothing is drawn until its readings are loaded */
     double speed;             /* playback speed in seconds of recorded history per second; 0: paused */
@@ -165,7 +165,7 @@ struct owed_texts {
 struct session_placement {
     struct place_set *set; /* trial positions of the sensors that this session moved; NULL: none was moved */
     uint32_t seq;          /* sequence number of the newest `place` message of the client */
-    struct tag_save *save; /* tag list with the engineer's changes, which waits to be saved (session_take_save); NULL: none */
+    struct tag_save *save; /* tag list with the engineer's changes, waiting to be saved (session_take_save); NULL: none */
 };
 
 struct session_pick { /* pick: a query for what is at a pixel */
@@ -177,16 +177,16 @@ struct session_pick { /* pick: a query for what is at a pixel */
 enum { TILE_HELD = 8 };
 struct session_tile {
     struct wall_place place; /* display whose part of the wall's picture this tile shows; display 0: the session is not a tile */
-    /* layout of the wall's picture, computed from the size of this session's display; only the leading session's layout is used */
+    /* layout of the wall's picture, from the size of this session's display; only the leading session's layout is used */
     struct tile_layout layout;
     struct tile_held {
         uint64_t picture; /* number of a picture of the wall */
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */
-    } held[TILE_HELD];    /* frames sent and not yet shown at the wall's common instant, oldest first */
+    } held[TILE_HELD];    /* frames sent but not yet shown at the wall's common instant, oldest first */
     int held_count;
     /* true: the burn-in shift changed after the last picture was requested, so the next picture is sent even if its content is the same */
     bool moved;
-    /* id of a picture of the wall in which this tile's content equals that of a frame still on its way to the client; 0: none */
+    /* id of a wall's picture in which this tile looks the same as in a frame still on its way to the client; 0: none */
     uint64_t unchanged;
     uint32_t presented_seq;
     int64_t made_ns; /* time from the request for a preview to the encoded frame, smoothed, in nanoseconds; 0: not known */
@@ -200,7 +200,7 @@ struct session_tile {
 struct message_rate {
     int64_t begin_ns; /* monotonic start of the second for which messages are counted */
     int count;
-    /* true: the client has sent as many messages as it may in the counted second: the event loop reads none until that second is over */
+    /* true: the client has reached the limit of messages in the counted second, so the event loop reads none until that second is over */
     bool exceeded;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Handles HTTP requests other than the stream: checks rights, finds the handler of a path, and serves the files of the web client. */
+/* Handles HTTP requests other than streams: checks rights, finds the handler of a path, and serves the web client's files. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -60,7 +60,7 @@ static int ready(struct server_context *server, struct http_exchange *request)
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
 
-/* time for which the server remembers why it refused to open a stream: the page may ask for the reason within this time */
+/* how long the server remembers why it refused to open a stream, so that the page can ask for the reason */
 static const int64_t REFUSED_NS = 15 * NS_PER_S;
 
 /* Logs a request to the stream's path that lacks the header Upgrade, the sign of a misconfigured proxy. Proxies drop Upgrade
@@ -78,8 +78,8 @@ static void log_without_upgrade(struct server_context *server, struct lws *wsi, 
              named ? " (Via: " : "", named ? quoted(via, shown) : "", named ? ")" : "", NGINX_LINES, more);
 }
 
-/* Returns why a stream handshake from this address was refused in the last seconds (static text); NULL: none was. A browser asks over
-   another connection, so the address identifies it. */
+/* Returns why a stream handshake from this address was refused in the last seconds (static text); NULL: none was. The address
+   identifies the browser, which asks over another connection. */
 static const char *last_refusal(const struct server_context *server, const char *address, int64_t now_ns)
 {
     for (unsigned i = 1; i <= UPGRADE_REFUSALS; i++) {
@@ -139,8 +139,8 @@ static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct http_exchange *request);
     enum role least;
-    /* bit mask (VIEWS, DISPLAY, NODE) of the kinds of limited tokens that may use this path: tokens for some views only, for one display
-       only, or for other daemons */
+    /* bit mask (VIEWS, DISPLAY, NODE) of the kinds of limited tokens that may use this path: tokens for some views, for one
+       display, or for other daemons */
     unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
@@ -360,7 +360,7 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_HTTP_BODY: return *slot ? import_take_body(server_context_of(wsi), *slot, in, len) : 0;
     case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? import_end_body(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
-    /* the event also comes when the connection is upgraded to a WebSocket; only other connections are handled here */
+    /* also called when a connection is upgraded to a WebSocket; only other connections are handled here */
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
     case LWS_CALLBACK_TIMER: return stuck_head_look(server_context_of(wsi), wsi);

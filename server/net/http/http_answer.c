@@ -8,8 +8,8 @@
 #include "net/http/stuck_head.h"
 #include "net/connection.h"
 
-/* HTTP answers up to this size do not count in an address's quota on unread bytes: memory suffices for one such answer on each permitted
-   connection */
+/* HTTP answers up to this size are exempt from an address's quota on unread bytes: memory suffices for one such answer on each
+   permitted connection */
 enum { SMALL_BYTES = 64 * 1024 };
 enum { HEAD_BYTES = 8192 }; /* room for the headers of an answer with the longest list of allowed origins, of 256 characters each */
 
@@ -260,7 +260,7 @@ void request_await(struct server_context *server, struct http_exchange *request)
     request->next = server->http.waiting;
     server->http.waiting = request;
     request->usage = connection_of(request->wsi)->client;
-    /* time in seconds after which a request for a picture, past readings or a reload is answered with "not ready" */
+    /* seconds after which a waiting request for a picture, past readings or a reload is answered with "not ready" */
     int64_t wait_s = server->room.quotas->at[QUOTA_ANSWER_WAIT_S];
     request->until_ns = clock_mono_ns() + wait_s * NS_PER_S;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, (int)wait_s + 15);

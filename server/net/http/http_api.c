@@ -30,8 +30,7 @@ static int await_history(struct server_context *server, struct http_exchange *re
     return 0;
 }
 
-/* Returns whether the client may read the history that the query asks for. A paired device may read only what its display shows as
-   trends. */
+/* Returns whether the client may read the requested history. A paired device may read only the tags whose trends its display shows. */
 static bool may_read(const struct server_context *server, const struct http_exchange *request, const struct history_query *query)
 {
     const struct token_holder *holder = &connection_of(request->wsi)->holder;
@@ -147,14 +146,14 @@ void http_on_history_answer(struct server_context *server, struct history_answer
         return;
     }
     request_forget(server, request);
-    /* once an answer in pieces has begun, it cannot be replaced by an error; closing the connection shows that the answer is incomplete */
+    /* an answer in pieces that has begun cannot be replaced by an error; closing the connection shows that it is incomplete */
     if (!answer->text)
         request_answered(request, answer->first ? request_answer_unreadable(server, request) : -1);
     else
         request_answered(request, whole ? answer_whole(request, answer, type) : chunked_begin(request, type));
 }
 
-/* Updates the memory metrics of the process; called only when /metrics is read, because it takes time. */
+/* Updates the process's memory metrics. Called only when /metrics is read, because it takes time. */
 static void count_memory(struct server_context *server)
 {
     struct counters *counters = server->params.counters;
@@ -208,7 +207,7 @@ int api_tags(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
 
-/* Answers with the estimate of each sensor of a group from its neighbouring sensors; with tag=NAME, of only that sensor. */
+/* Answers with each sensor's estimate from its neighbouring sensors, for the sensors of a group; with tag=NAME, for that sensor only. */
 int api_neighbours(struct server_context *server, struct http_exchange *request)
 {
     const struct plant *plant = server->session_context.plant;
@@ -287,8 +286,9 @@ int api_walls(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, walls_text(server->params.plant.scene->plant, &reader));
 }
 
-/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The renderer repeats this at each
-   request of the display, because the digits expire otherwise. Returns the state of the request as far as this renderer knows. */
+/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The renderer repeats this
+   at each request of the display, because the digits would expire otherwise. Returns the request's state as known to this
+   renderer. */
 static enum pairing ask_core(struct server_context *server, const struct pairing_request *asked, char digits[PAIRING_DIGITS + 1],
                              int *left_s)
 {
@@ -300,8 +300,8 @@ static enum pairing ask_core(struct server_context *server, const struct pairing
     return now;
 }
 
-/* Answers a display without a token that asks, with its secret, whether an engineer has accepted it (pairing). Meanwhile the display shows
-   the digits that the engineer types. */
+/* Answers a display that has no token yet and asks, with its secret, whether an engineer has accepted it (pairing). Until then
+   the display shows digits that the engineer must type. */
 static int pair(struct server_context *server, struct http_exchange *request, const struct pairing_request *asked)
 {
     char digits[PAIRING_DIGITS + 1];

@@ -37,12 +37,12 @@ struct http_exchange {
         PIECES_NONE,
         PIECES_CHUNKED,
         PIECES_TO_END
-    } pieces; /* how the body follows the headers: at once, in HTTP chunks, or in pieces up to the end of the connection */
+    } pieces; /* how the body is sent: with the headers, in HTTP chunks, or in pieces up to the end of the connection */
     bool last_piece;             /* true: `body` is the last piece of the answer */
     uint64_t client;             /* id by which request_find() finds the request while it waits */
-    int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
+    int64_t until_ns;            /* monotonic time at which the waiting request is answered with "not ready" */
     bool reloads;                /* true: the request waits for a reload of the plant */
-    /* true: the requested action is done, and its answer waits until the line `record` of the audit trail is on disk */
+    /* true: the requested action is done; its answer waits for the line `record` of the audit trail to be on disk */
     bool recorded;
     struct settling_ticket record; /* line of the audit trail that records the request */
     struct upload_body *body_in; /* upload in progress; NULL: none */
@@ -60,14 +60,14 @@ struct args { /* decoded arguments of a query */
 
 #define HTTP_TEXT "text/plain; charset=utf-8"
 
-/* Functions that return int return what the libwebsockets callback must return: 0, or -1 to close the connection. */
+/* Functions that return int return the result for the libwebsockets callback: 0, or -1 to close the connection. */
 
 /* Sends an answer with one extra header (NULL: none). Takes ownership of body (mem_free), which is written as the socket accepts it. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra);
 /* Sends a copy of a text as the answer. */
 int request_answer_text(struct http_exchange *request, int status, const char *text);
-/* Sends the headers of an answer whose body comes in pieces (http_chunked.c). */
+/* Sends the headers of an answer whose body is sent in pieces (http_chunked.c). */
 int chunked_begin(struct http_exchange *request, const char *type);
 /* Adds a piece of the body. Call it only after the previous piece was sent. Takes ownership of body (mem_free). */
 void chunked_append(struct http_exchange *request, char *body, size_t count, bool last);
@@ -89,20 +89,20 @@ int request_answer_error(struct http_exchange *request, const struct message_err
 void request_hold(struct http_exchange *request, char *body, size_t count);
 /* Writes status line and headers. Returns false if the connection is gone. */
 bool request_write_head(struct http_exchange *request, int status, const char *type, const char *extra_name, const char *extra);
-/* Ends the request once its answer is sent completely, and frees what it holds. Returns the result for the libwebsockets callback: 0
-   keeps the connection, -1 closes it. */
+/* Ends the request once its answer is sent completely, and frees what the request holds. Returns the result for the
+   libwebsockets callback: 0 keeps the connection, -1 closes it. */
 int request_done(struct http_exchange *request);
 /* Percent-decodes the arguments of the URL's query. Returns false with *error. */
 bool request_args(struct lws *wsi, struct args *args, struct message_error *error);
 /* Returns the value of the first argument with that name; NULL: there is none. */
 const char *arg_of(const struct args *args, const char *name);
 
-/* Makes the request wait: its answer is given later, outside of the request's own libwebsockets callback. Sets request->client, the id
-   under which the waiting request is found. */
+/* Makes the request wait, to be answered later from outside of its own libwebsockets callback. Sets request->client, the id by
+   which the waiting request is found. */
 void request_await(struct server_context *server, struct http_exchange *request);
 /* Returns the request that waits under that id; NULL: none. */
 struct http_exchange *request_find(const struct server_context *server, uint64_t client);
-/* Ends the request's waiting; does nothing if it does not wait. */
+/* Ends the wait of a request; does nothing if the request does not wait. */
 void request_forget(struct server_context *server, struct http_exchange *request);
 /* Applies the result of an answer that was given outside of the request's own callback: 0 keeps the connection, -1 closes it soon. */
 void request_answered(struct http_exchange *request, int result);
@@ -141,8 +141,7 @@ int metrics(struct server_context *server, struct http_exchange *request);
 /* Answers the request for which ask_instant() was called, once the readings of the past instant are loaded or loading has failed. */
 void answer_instant(struct server_context *server, struct http_exchange *request, const struct history_loader_answer *loaded);
 
-/* Returns whether the request may change state on the server. Returns false for a request that another site's page made the user's browser
-   send. */
+/* Returns whether the request may change state on the server. Requests that another site's page made the user's browser send may not. */
 bool request_may_change(struct server_context *server, struct http_exchange *request);
 
 /* --- http_import.c: requests with which engineers import a plant; only if server->params.import is set */
@@ -153,7 +152,7 @@ bool import_takes_post(const struct server_context *server, const char *path);
 void import_add_posts(const struct server_context *server, struct text *out);
 /* Handles the head of a POST request to a path of the import; the body may follow in later events. */
 int import_post(struct server_context *server, struct http_exchange *request, const char *path);
-/* import_take_body() takes a piece of the POST request's body; import_end_body() is called after the last piece. */
+/* import_take_body() takes a piece of the POST request's body; call import_end_body() after the last piece. */
 int import_take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count);
 int import_end_body(struct server_context *server, struct http_exchange *request);
 /* Removes the file of an upload that will not be completed. */

@@ -23,13 +23,13 @@ struct upload_body {
     int64_t left, bytes; /* left: number of bytes of the upload still to come; bytes: size of the whole file */
     int64_t begun_ns;
     char name[256];
-    /* true: the upload is a file with an engineer's decisions about proposed places of sensors (plantcast match); the end of the upload
+    /* true: the file holds an engineer's decisions about proposed places of sensors (plantcast match), so the end of the upload
        starts an import */
     bool decides;
 };
 
-/* Adds a line about a step of an import (an upload, an order) to the audit trail. result: as in struct audit_entry; why: the reason of a
-   refusal, or NULL. The outcome of an import order is recorded later, by the reload thread. */
+/* Adds a line about an import step (an upload or an order) to the audit trail. result: as in struct audit_entry; why: the
+   reason of a refusal, or NULL. The reload thread records the outcome of an import order later. */
 static void record_file(struct http_exchange *request, const char *file, const char *result, const char *why)
 {
     char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;
@@ -208,7 +208,7 @@ static int remove_file(struct server_context *server, struct http_exchange *requ
 
 /* --- uploads ---------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether `bytes` more bytes may be uploaded as the file `name`; if not, *why is the reason. */
+/* Returns whether `bytes` more bytes may be uploaded as the file `name`. If not, *why receives the reason. */
 static bool has_room(const struct server_context *server, const char *folder, const char *name, int64_t bytes, enum refusal_code *why)
 {
     struct export_list list = { 0 };
@@ -266,8 +266,8 @@ static int begin_decisions(struct server_context *server, struct http_exchange *
     return begin_body(server, request, plant_import_decisions(), true);
 }
 
-/* Returns whether an upload is slower than any real link and would occupy one of the few permitted uploads for hours. An upload that stalls
-   completely needs no check here: libwebsockets closes its connection. */
+/* Returns whether an upload is slower than any real link, and would occupy one of the few permitted uploads for hours. No check
+   is needed for an upload that stalls completely: libwebsockets closes its connection. */
 static bool drips(const struct upload_body *body)
 {
     int64_t taken_s = (clock_mono_ns() - body->begun_ns) / NS_PER_S;

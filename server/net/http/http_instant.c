@@ -15,7 +15,7 @@ static int answer(struct server_context *server, struct http_exchange *request, 
     return request_answer(request, HTTP_STATUS_OK, BINARY, text.at, text.length, NULL, NULL);
 }
 
-/* Answers with the readings of the past instant at_us. at_us=0: the answer has only the time at which recorded history begins. */
+/* Answers with the readings of the past instant at_us. With at_us=0, the answer has only the time when recorded history begins. */
 int ask_instant(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };

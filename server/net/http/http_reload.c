@@ -35,7 +35,7 @@ static void answer_all(struct server_context *server, bool reloads, int status, 
             continue;
         request_forget(server, request);
         request->reloads = false;
-        /* an answer in pieces that has begun cannot be completed: closing the connection shows the client that it is incomplete */
+        /* an answer in pieces that has begun cannot be completed; closing the connection shows the client that it is incomplete */
         bool begun = request->pieces != PIECES_NONE;
         request_answered(request, begun ? -1 : request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
     }

@@ -51,8 +51,9 @@ int ask_login(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* Refuses an identity provider's answer that belongs to no sign-in in progress. Such an answer is counted, but neither recorded nor held
-   against the client's address: it cannot be a guess at a secret of 256 bits, and another site's page can make a user's browser send it. */
+/* Refuses an identity provider's answer that belongs to no sign-in in progress. Counts the answer, but does not record it or
+   hold it against the client's address. It cannot be a guess at a secret of 256 bits, and another site's page can make a user's
+   browser send it. */
 static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {
     server->logins.unasked++;

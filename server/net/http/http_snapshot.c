@@ -25,8 +25,8 @@ static struct params_context context_of(const struct server_context *server)
                                     .now_us = clock_plant_ns(server->params.plant.clock) / 1000 };
 }
 
-/* Adds an argument of the request's query to the arguments of a saved view. Returns false with *error if the user may not use it, or there
-   is no room. */
+/* Adds an argument of the request's query to the arguments of a saved view. Returns false with *error if the user may not use
+   the argument, or there is no room. */
 static bool add_own(struct view_address *out, const struct connection *connection, const char *arg, struct message_error *error)
 {
     char name[48];
@@ -46,9 +46,10 @@ static bool add_own(struct view_address *out, const struct connection *connectio
     return false;
 }
 
-/* Reads from a query which view it asks for and, for a pick, which pixel. If the query names a view, *address receives the view's
-   arguments, which may be those of an engineer, and the query's own, which the role must permit (free with view_address_finish());
-   otherwise the arguments stay in *args. place: as for view_query_parse(). Returns false with *error if the request is not valid. */
+/* Reads from a query the requested view and, for a pick, the pixel. If the query names a saved view, *address receives that
+   view's arguments, even ones that only engineers may send. It also receives the query's own arguments, which the user's role
+   must permit; free it with view_address_finish(). Otherwise the arguments stay in *args. place: as for view_query_parse().
+   Returns false with *error if the request is not valid. */
 static bool read_query(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
                        double place[2], struct message_error *error)
 {
@@ -80,8 +81,7 @@ static struct view *asked_view(struct asked *asked)
     return asked->picks ? &asked->pick.view : &asked->frame_request.view;
 }
 
-/* Requests the frame or pick: immediately if it shows the present; if it shows a past instant, after that instant's readings were
-   loaded. */
+/* Requests the frame or pick: at once if it shows the present, or after the readings of its past instant were loaded. */
 static void begin(struct server_context *server, struct http_exchange *request)
 {
     struct asked *asked = request->asked;
@@ -95,7 +95,7 @@ static void begin(struct server_context *server, struct http_exchange *request)
     }
 }
 
-/* Returns whether the request may wait for its picture. If false, the request was answered already, and *result is the result for the
+/* Returns whether the request may wait for its picture. If not, the request is answered here, and *result is the result for the
    libwebsockets callback. */
 static bool may_ask(struct server_context *server, struct http_exchange *request, const struct view *view, int *result)
 {
@@ -160,7 +160,7 @@ int ask_snapshot(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* Adds a header with the age of the readings that the picture shows, for programs that process it. */
+/* Adds a header with the age of the readings in the picture, for programs that process the picture. */
 static void say_values(const struct frame *frame, struct text *out)
 {
     text_add(out, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));
@@ -172,7 +172,7 @@ static void say_values(const struct frame *frame, struct text *out)
         text_add(out, ", drawn_error=%g", frame->drawn_error);
 }
 
-/* Adds a header with the plant's name, if the client may know the name and it has at most NAME_BYTES. */
+/* Adds a header with the plant's name, if the client may know the name and the name has at most NAME_BYTES. */
 static void say_plant(const struct server_context *server, const struct http_exchange *request, struct text *out)
 {
     const char *name = server->params.plant.scene->plant->name;

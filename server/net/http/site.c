@@ -221,7 +221,7 @@ struct site_file *site_find(const struct web_site *site, const char *path)
     return found;
 }
 
-/* Returns whether an element of Accept-Encoding, `length` bytes long, allows gzip: its weight, 1 unless given as ";q=", is above 0. */
+/* Returns whether an element of Accept-Encoding, `length` bytes long, allows gzip: its weight (";q=", default 1) is above 0. */
 static bool allows_gzip(const char *element, size_t length)
 {
     char text[32];

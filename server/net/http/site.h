@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The web client's files, as found when the daemon starts: read into memory from one folder, so that a running daemon never serves files of
-   a newer version. Thread: the one that creates it, then only the event loop. */
+/* The web client's files, as found when the daemon started. They are read into memory from one folder, so that a running
+   daemon never serves files of a newer version. Thread: the one that creates it, then only the event loop. */
 #ifndef NET_SITE_H
 #define NET_SITE_H
 #include <stdbool.h>
@@ -24,14 +24,13 @@ struct site_file {
 };
 
 struct web_site;
-/* Reads all files of known types in the folder and below; strips comment lines from the page's scripts. folder NULL: a site without
-   files. */
+/* Reads all files of known types below the folder; strips comment lines from the page's scripts. folder NULL: a site without files. */
 struct web_site *site_create(struct log *log, const char *folder);
 void site_destroy(struct web_site **site); /* destroys the site and sets *site to NULL; accepts a pointer to NULL */
-/* Returns the file of a decoded path that starts with '/', or NULL; a path that ends with '/' means index.html there. The file lives as
-   long as the site. */
+/* Returns the file of a decoded path that starts with '/', or NULL. A path that ends with '/' means its index.html.
+   The file lives as long as the site. */
 struct site_file *site_find(const struct web_site *site, const char *path);
-/* Returns the smallest form that the value of the HTTP header Accept-Encoding allows (RFC 9110, 12.5.3). "" allows only plain. */
+/* Returns the smallest form that a value of the HTTP header Accept-Encoding allows (RFC 9110, 12.5.3); "" allows only `plain`. */
 const struct site_form *site_form_for(struct site_file *file, const char *accept_encoding);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds out from the kernel (TCP_INFO) how many bytes a connection received and how long ago the last byte arrived. */
+/* Asks the kernel (TCP_INFO) how many bytes a connection received and how long ago the last byte arrived. */
 #include "net/http/stuck_head.h"
 
 #include <linux/tcp.h>
@@ -38,7 +38,7 @@ void stuck_head_arrived(struct lws *wsi)
     connection_of(wsi)->received_before_head = NOT_WATCHED;
 }
 
-/* Writes the HTTP answer 408 (request timeout) with a single call: bytes that the socket does not accept immediately are lost. */
+/* Writes the HTTP answer 408 (request timeout) in one call; bytes that the socket does not accept at once are lost. */
 static void tell(struct lws *wsi)
 {
     static const char body[] = "408 Request Timeout: the request's headers are incomplete. Is the name of a header truncated?\n";
@@ -65,8 +65,8 @@ static void note(struct server_context *server, struct lws *wsi)
              QUIET_MS / 1000, more);
 }
 
-/* Returns whether libwebsockets has read the request's first line. Over TLS the bytes of the handshake count as received, too, so received
-   bytes alone do not show that a request has begun. */
+/* Returns whether libwebsockets has read the request's first line. Received bytes alone do not show that a request has begun:
+   over TLS they include the handshake. */
 static bool has_request_line(struct lws *wsi)
 {
     return lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0 || lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0 ||

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ends connections whose request has begun but stalls before its head is complete. The parser of libwebsockets never ends a request head in
-   which a header's name is the beginning of a known one, such as `Acc:`: it waits for the rest of the name. Thread: the event loop. */
+/* Closes connections whose request has begun but stalls before its head is complete. The parser of libwebsockets would never
+   end a request head in which a header's name is only the beginning of a known name, such as `Acc:`: it waits for the rest of
+   the name. Thread: the event loop. */
 #ifndef HTTP_STUCK_HEAD_H
 #define HTTP_STUCK_HEAD_H
 #include "net/server_context.h"
 
-/* Begins to watch for the next request's head (its first line and headers): call it when a connection opens, and when a request is done.
-   first: the wait is for the connection's first request, whose bytes may have arrived before the connection was accepted. */
+/* Begins to watch for the next request's head (its first line and headers): call it when a connection opens, and when a request
+   is done. first: true: this is the connection's first request, whose bytes may have arrived before the connection was
+   accepted. */
 void stuck_head_await(struct lws *wsi, bool first);
 /* Ends the watch for stalled heads, because the request's head is complete. */
 void stuck_head_arrived(struct lws *wsi);

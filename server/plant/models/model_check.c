@@ -16,8 +16,8 @@
 #define SLACK_M 0.5
 #define SLACK 0.05
 enum { WHY_BYTES = 400, SHOWN_NODES = 6 };
-/* Memory in bytes that serving a plant takes: TRIANGLE_BYTES for each triangle, and BASE_BYTES. Measured with 20 million triangles in 3,040
-   assets: 3.1 GB. */
+/* Memory in bytes needed to serve a plant: TRIANGLE_BYTES for each triangle, plus BASE_BYTES. Measured with 20 million
+   triangles in 3,040 assets: 3.1 GB. */
 enum { TRIANGLE_BYTES = 150, BASE_BYTES = 350 << 20 };
 
 struct plant_models_check {
@@ -25,7 +25,7 @@ struct plant_models_check {
     struct diag *diag;
     struct model_header header; /* header of the model file that is being checked */
     bool *taken;                /* by model node: true: the node belongs to the asset being checked */
-    bool *counted;              /* by model node: true: the node belongs to an asset checked so far, so its triangles are counted already */
+    bool *counted;              /* by model node: true: the node belongs to an asset checked so far, so its triangles are already counted */
     uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */
     uint32_t *found;
 };
@@ -78,7 +78,7 @@ static bool find_better(const struct plant_asset *asset, const struct model_box 
     static const struct {
         const char *name;
         double m;
-        /* table of units in ascending order, so that the smallest unit that fits is chosen */
+        /* ascending, so that the smallest unit that fits is chosen */
     } units[] = { { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { "m", 1 } };
     size_t best = within, placed;
     for (int pass = 0; pass < 3; pass++) /* pass 0: another axis; 1: other units; 2: both */
@@ -130,8 +130,8 @@ static void place_of(const struct model_header *header, uint32_t node, double ou
         out[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : header->origins[node][axis];
 }
 
-/* Returns whether all nodes of the model with a certain name have the same position. If nodes of that name belong to the asset, only these
-   are compared. *count receives the number of nodes compared. Returns true if the header does not state all positions, because
+/* Returns whether all nodes of the model with a certain name have the same position. If nodes of that name belong to the asset,
+   compares only these. *count receives the number of nodes compared. Returns true if the header lacks some positions, because
    plantcast-prep compares them later. */
 static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {

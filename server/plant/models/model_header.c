@@ -34,7 +34,7 @@ static uint32_t u32_of(const unsigned char *at)
     return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-/* Reads the JSON chunk only; the other chunks may have gigabytes. Returns NULL with the reason in `why` on failure. */
+/* Reads only the JSON chunk, because the other chunks may have gigabytes. Returns NULL with the reason in `why` on failure. */
 static char *read_json_chunk(FILE *file, size_t *count, char *why, size_t why_bytes)
 {
     unsigned char head[GLB_HEAD_BYTES];
@@ -113,7 +113,7 @@ static double divisor_of(const json_t *accessor)
     }
 }
 
-/* Reads the bounding box that a glTF accessor states (min and max). Returns false if the accessor states none. */
+/* Reads the bounding box (min and max) of a glTF accessor. Returns false if the accessor has none. */
 static bool range_of(const json_t *accessor, struct model_box *out)
 {
     const json_t *low = json_object_get(accessor, "min"), *high = json_object_get(accessor, "max");

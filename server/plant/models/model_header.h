@@ -14,11 +14,11 @@ struct model_header {
     struct model_box *boxes;  /* bounding box of each node's own mesh in scene coordinates, in the model's units and axes */
     double (*origins)[3];     /* origin of each node's own frame in scene coordinates, in the model's units and axes */
     size_t count;
-    bool partial; /* true: boxes may be too small, because the model has instances, or accessors that state no bounds (min and max) */
+    bool partial; /* true: boxes may be too small, because the model has instances, or accessors without bounds (min and max) */
     void *json;   /* parsed JSON of the model file, which owns the names */
 };
 
-/* Reads a file. Returns false with the reason in `why` on failure, and then model_header_finish() is not needed. */
+/* Reads a file. On failure, returns false with the reason in `why`; model_header_finish() is then not needed. */
 bool model_header_read(struct model_header *header, const char *path, char *why, size_t why_bytes);
 /* Returns the number of triangles of the node's own mesh, from the counts of its accessors. */
 uint64_t model_header_triangles(const struct model_header *header, size_t node);

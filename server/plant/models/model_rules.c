@@ -17,8 +17,8 @@ struct model_rule {
     const char *list, *path;
     enum rule_kind kind;
     enum rule_need need;
-    /* kinds INDEX, INDICES, ATTRIBUTES: name of the glTF array into which the property's value is an index; NULL for ATTRIBUTES: any number
-       is allowed */
+    /* kinds INDEX, INDICES, ATTRIBUTES: name of the glTF array that the property's value is an index into; NULL for ATTRIBUTES:
+       any number is allowed */
     const char *target;
     size_t length;      /* kind NUMBERS: length of the array */
 };
@@ -38,8 +38,8 @@ struct model_rule {
 #define INSTANCING "extensions.EXT_mesh_gpu_instancing"
 
 /* clang-format off */
-/* the table has no rule for an accessor's bufferView: it is checked only when the accessor is read, because some files have unused
-   accessors with invalid views */
+/* no rule for an accessor's bufferView: it is checked only when the accessor is read, because some files have unused accessors
+   with invalid views */
 static const struct model_rule rules[] = {
     { "buffers", "byteLength", SIZE, MUST, NULL, 0 }, { "buffers", "uri", TEXT, MAY, NULL, 0 },
     { "bufferViews", "buffer", INDEX, MUST, "buffers", 0 }, { "bufferViews", "byteOffset", SIZE, MAY, NULL, 0 },
@@ -97,7 +97,7 @@ static const char *const known_extensions[] = {
     "EXT_texture_webp",
 };
 
-/* prefixes of the names of glTF extensions that change neither shape nor position of a model; this program ignores such extensions */
+/* prefixes of names of glTF extensions that change neither shape nor position of a model; they are ignored */
 static const char *const look_extensions[] = {
     "KHR_materials_", "EXT_materials_",     "ADOBE_materials_",        "KHR_texture_", "EXT_texture_",           "MSFT_texture_",
     "KHR_lights_",    "EXT_lights_",        "KHR_xmp",                 "KHR_audio",    "KHR_techniques_webgl",   "KHR_animation_pointer",
@@ -148,7 +148,7 @@ static bool object_wrong(const struct rule_check *c, const char *fmt, ...)
     return wrong(c->why, "%s: %s", what, text);
 }
 
-/* Writes to *out the whole number that a JSON value holds, whether written as 3 or as 3.0. Returns false if it holds none. */
+/* Writes the whole number of a JSON value, written as 3 or 3.0, to *out. Returns false if the value is not a whole number. */
 static bool whole(const json_t *value, json_int_t *out)
 {
     double real = json_real_value(value);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Validates the types and references of a glTF document, because the glTF library accepts wrong ones, or drops them without an error.
-   Thread: any. */
+/* Validates the types and references of a glTF document, because the glTF library accepts invalid ones, or drops them without
+   an error. Thread: any. */
 #ifndef PLANT_MODELS_MODEL_RULES_H
 #define PLANT_MODELS_MODEL_RULES_H
 #include <jansson.h>
 
 #include "plant/models/model_refusal.h"
 
-/* Checks the version, required extensions, the type and range of every property that is read later, and that every index names an existing
-   object. Rewrites whole numbers written as 3.0 to 3. Returns false with the reason in why. */
+/* Checks the version, the required extensions, the type and range of every property that is read later, and that every index
+   refers to an existing object. Rewrites whole numbers such as 3.0 to 3. Returns false with the reason in why. */
 bool model_rules_check(json_t *root, char why[MODEL_WHY_BYTES]);
 
 /* Writes the name of an object for messages, such as "mesh 3 'pump', primitive 0"; without the primitive if `primitive` is negative. */

@@ -152,7 +152,7 @@ static bool is_mesh(const char *text, const struct node_list *model)
     return false;
 }
 
-/* Writes ": did you mean ...?" with the name that is most similar to the pattern, or nothing if none is similar. */
+/* Writes ": did you mean ...?" with the name most similar to the pattern, or nothing if no name is similar. */
 static void suggest(const struct pattern *pattern, const struct node_list *model, char *out, size_t bytes)
 {
     const char *text = pattern->kind == PATH ? pattern->segments[pattern->segment_count - 1] : pattern->text;

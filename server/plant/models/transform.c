@@ -18,8 +18,8 @@ void transform_multiply(const double a[16], const double b[16], double out[16])
         }
 }
 
-/* Computes sine and cosine of degrees, exact at multiples of a right angle, so that an asset rotated by a right angle is rotated
-   exactly. */
+/* Computes the sine and cosine of an angle in degrees. They are exact at multiples of a right angle, so that an asset is
+   rotated exactly by a right angle. */
 static void sin_cos_deg(double deg, double *sine, double *cosine)
 {
     static const double sines[4] = { 0, 1, 0, -1 };

@@ -35,7 +35,7 @@ static void skip_blanks(struct csv *csv)
         step(csv);
 }
 
-/* Reads a quoted cell from its opening quote on. Leaves csv->at after the closing quote; *end receives the end of the cell's text. */
+/* Reads a quoted cell, starting at its opening quote. Leaves csv->at after the closing quote; *end receives the end of the cell's text. */
 static void read_quoted(struct csv *csv, struct csv_cell *cell, char **end)
 {
     char *out = csv->at;
@@ -162,8 +162,8 @@ static void check_header(struct csv *csv)
 
 static const char WANTED[] = "a table (CSV)";
 
-/* Begins to read CSV: takes ownership of `text`, the content of the file, and reads the header row. text NULL: the file could not be read,
-   so the function returns false. */
+/* Begins to read CSV: takes ownership of `text`, the content of the file, and reads the header row. Returns false if that
+   fails, or if text is NULL because the file could not be read. */
 static bool begin(struct csv *csv, const char *path, char *text, struct diag *diag)
 {
     if (!text)

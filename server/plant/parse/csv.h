@@ -44,8 +44,8 @@ char csv_separator(const char *text);
 int csv_find(const struct csv *csv, const char *name);
 /* Returns the text of a cell of the current row; "" if column is -1 or the row is shorter. Valid until csv_close(). */
 const char *csv_text(const struct csv *csv, int column);
-/* csv_cell_line() returns the line and csv_cell_column() the column of a cell of the current row. If the row is too short to have that
-   cell, they return the position of the row's first cell. */
+/* csv_cell_line() returns the line and csv_cell_column() the column of a cell of the current row. If the row is too short for
+   that cell, they return the position of the row's first cell. */
 int csv_cell_line(const struct csv *csv, int column);
 int csv_cell_column(const struct csv *csv, int column);
 #define csv_error(csv, col, ...) diag_error((csv)->diag, (csv)->path, csv_cell_line(csv, col), csv_cell_column(csv, col), __VA_ARGS__)

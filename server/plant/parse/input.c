@@ -16,7 +16,7 @@ enum {
     TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: minimum number of valid characters per invalid byte in a file that counts as text */
 };
 
-/* Reports bytes that are not valid UTF-8. Returns false if the bytes are not text at all; nothing is then reported. */
+/* Reports bytes that are not valid UTF-8. If the bytes are not text at all, returns false and reports nothing. */
 static bool check_characters(char *text, size_t bytes, const char *path, struct diag *diag)
 {
     size_t wrong = 0;

@@ -4,8 +4,8 @@
 #define PLANT_PARSE_SUGGEST_H
 #include <stddef.h>
 
-/* Returns the name most similar to `wrong`, or NULL if none is similar enough to be meant. `names`: `count` records of `stride` bytes, each
-   beginning with a char * that may be NULL. */
+/* Returns the name most similar to `wrong`, or NULL if no name is similar enough. `names`: `count` records of `stride` bytes,
+   each beginning with a char * that may be NULL. */
 const char *suggest_nearest(const char *wrong, const void *names, size_t count, size_t stride);
 
 #endif

@@ -46,7 +46,7 @@ struct yaml_key { /* an allowed key of a YAML mapping; a table of keys ends with
 };
 
 #define YAML_MAP_MAX_KEYS 56
-/* result of reading a mapping: the positions in the file of the mapping and of each value, and whether each value was good */
+/* result of reading a mapping: the file positions of the mapping and its values, and whether each value was good */
 struct yaml_map {
     const struct yaml_key *keys;
     struct text_position place;

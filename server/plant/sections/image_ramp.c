@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads an image and takes 256 colours of a colour map from it. */
+/* Reads an image and samples the 256 colours of a colour map. */
 #include "plant/sections/image_ramp.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `notify`: which recipients are notified of which alarms, when and how. Immutable once loaded. Thread: any. */
+/* The plant file's `notify`: who is notified of which alarms, when and how. Immutable once loaded. Thread: any. */
 #ifndef PLANT_SECTIONS_NOTIFICATION_H
 #define PLANT_SECTIONS_NOTIFICATION_H
 #include <stddef.h>
@@ -40,7 +40,7 @@ struct notify_shift {     /* a time of day in the plant's time zone during which
 };
 
 struct notify_step {
-    /* time in minutes from the alarm to this step of the notification: 0 in a rule's first step, ascending in the later ones */
+    /* minutes from the alarm to this step of the notification: 0 in a rule's first step, ascending in later steps */
     double after_min;
     uint32_t to;      /* bit mask of the recipients that are notified in this step; bit n: recipient with index n */
 };
@@ -48,7 +48,7 @@ struct notify_step {
 struct notify_rule {
     char *id;
     int priority;             /* least urgent priority of the alarms that the rule covers */
-    struct notify_list areas; /* patterns of area names to which the rule applies; none: all areas */
+    struct notify_list areas; /* patterns for the names of areas that the rule applies to; none: all areas */
     struct notify_shift shift;
     struct notify_step steps[NOTIFY_STEPS];
     size_t step_count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the plant file's `colormaps`: their names, and the images from which their colours are read. */
+/* Reads the plant file's `colormaps`: names of colour maps, and the images that they are made from. */
 #include "plant/colormaps.h"
 
 #include <stdio.h>

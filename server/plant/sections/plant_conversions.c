@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the plant file's `convert`: models that plantcast-prep makes by running a program, which the site provides. */
+/* Reads the plant file's `convert`: models that plantcast-prep makes by running a program of the site's own. */
 #include <string.h>
 
 #include "base/mem.h"

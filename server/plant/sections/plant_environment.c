@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the plant file's `environment`: panorama images. Opens each image to report errors with its position in the plant file. */
+/* Reads the plant file's `environment`: panorama images. Opens each image to report errors with a position in the plant file. */
 #include <string.h>
 
 #include "base/image/image.h"

@@ -181,7 +181,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     int errors = reader->diag->errors;
     bool is_map = yaml_map_read(reader, node, "an asset", keys, &record, &map);
     *asset = record.asset;
-    /* the scale of the placement becomes part of the unit, because distances on the asset are measured at its size in the plant */
+    /* multiplies the unit by the placement's scale, because distances on the asset are measured at its size in the plant */
     asset->unit_m *= record.scale;
     transform_compose(record.translate_m, record.rotate_deg, asset->placement);
     if (!is_map)
@@ -211,8 +211,8 @@ static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *rec
         read_asset(reader, yaml_list_item(reader, node, i), plant, &plant->assets[plant->asset_count++]);
 }
 
-/* Turns each asset from its own frame (Z up) so that its Z axis points along the plant's upward axis. So in a plant with Y up, an asset
-   without a rotation stands upright. */
+/* Turns each asset, whose own frame is Z up, so that its Z axis points along the plant's upward axis. So in a plant with Y up,
+   an asset without a rotation stands upright. */
 static void stand_upright(struct plant *plant)
 {
     static const double y_up_from_z_up[16] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1 };
@@ -355,7 +355,7 @@ static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *rec
 
 /* --- other keys ------------------------------------------------------------------------------------------------------------- */
 
-/* Reader of the key `convert` that does nothing, because read_conversions() has already read it. */
+/* Does nothing for the key `convert`, because read_conversions() has already read it. */
 static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     (void)reader;
@@ -363,8 +363,7 @@ static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void
     (void)record;
 }
 
-/* Reads `convert` before the assets, wherever the key is in the file, because a model that will be made by a conversion need not exist
-   yet. */
+/* Reads `convert` before the assets, wherever the key is in the file: a model that a conversion will make need not exist yet. */
 static void read_conversions(struct yaml_reader *reader, const yaml_node_t *root, struct plant *plant)
 {
     if (!root || root->type != YAML_MAPPING_NODE)

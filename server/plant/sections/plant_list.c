@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions for lists, paths, files with secrets and alarm limits, which several sections of the plant file and the tag list use. */
+/* Functions for lists, paths, files with secrets and alarm limits, used by several sections of the plant file and the tag list. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads an asset's key `nodes`: patterns that select the nodes of the model that belong to the asset. */
+/* Reads an asset's key `nodes`: patterns that select the model's nodes that belong to the asset. */
 #include <string.h>
 
 #include "base/mem.h"

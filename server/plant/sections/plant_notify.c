@@ -13,7 +13,7 @@ enum { MIN_PER_DAY = 24 * 60, DAYS = 7, ALL_DAYS = (1 << DAYS) - 1 };
 
 /* --- mail addresses --------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the text is a mail address that a header line can hold unquoted. */
+/* Returns whether the text is a mail address that needs no quoting in a header line. */
 static bool is_mail_address(const char *text)
 {
     const char *at = strchr(text, '@');
@@ -342,8 +342,8 @@ static yaml_node_t *value_of(struct yaml_reader *reader, const yaml_node_t *map,
     return NULL;
 }
 
-/* Reader of a key that does nothing: plant_notify_read() reads these keys later in a fixed order, because rules refer to recipients and
-   recipients to the mail server. */
+/* Skips a key: plant_notify_read() reads these keys later in a fixed order, because rules refer to recipients and recipients to
+   the mail server. */
 static void read_later(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     (void)reader;

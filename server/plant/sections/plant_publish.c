@@ -7,8 +7,8 @@
 
 static const char PREFIX[] = "plantcast/";
 
-/* Checks the prefix of the topics to which readings are published. It must begin with plantcast/: otherwise a device might subscribe to a
-   topic, and publishing would write to the device. */
+/* Checks the topic prefix for published readings. It must begin with plantcast/: otherwise a device might subscribe to a topic,
+   and publishing would write to the device. */
 static void check_prefix(struct yaml_reader *reader, const struct yaml_map *map, const char *prefix)
 {
     size_t length = strlen(prefix);

@@ -15,7 +15,7 @@ struct type_name {
     enum data_type type;
 };
 
-/* Names of data types; for each type our own name comes first, then the name in tag lists of the program Kepware. */
+/* Names of data types: for each type, our own name and then Kepware's, if its tag lists use another. */
 static const struct type_name type_names[] = {
     { "bool", DATA_BIT },      { "boolean", DATA_BIT },     { "bit", DATA_BIT },        { "int16", DATA_INT16 },
     { "short", DATA_INT16 },   { "uint16", DATA_UINT16 },   { "word", DATA_UINT16 },    { "int32", DATA_INT32 },

@@ -93,8 +93,8 @@ static bool read_word(const char **at, const char *word)
     return true;
 }
 
-/* Reads the literal (text, number, true, false or null) on the right side of a comparison. Returns false with `why` unchanged if no literal
-   begins here. */
+/* Reads the literal (text, number, true, false or null) on the right-hand side of a comparison. Returns false with `why`
+   unchanged if no literal begins here. */
 static bool read_literal(const char **at, struct json_path_test *out, char why[200])
 {
     static const char *const words[] = { "true", "false", "null" };
@@ -116,8 +116,8 @@ static bool read_literal(const char **at, struct json_path_test *out, char why[2
     return true;
 }
 
-/* Reads the left side of a comparison: `@.a.b`, `@['a']`, `@`, or the name of a member alone. Returns false with the reason in `why` if
-   that fails. */
+/* Reads the left-hand side of a comparison: `@.a.b`, `@['a']`, `@`, or just the name of a member. Returns false with the reason
+   in `why` if that fails. */
 static bool read_operand(const char **at, struct json_path_test *out, char why[200])
 {
     struct json_path_step step;
@@ -160,7 +160,7 @@ static bool read_test(const char **at, struct json_path_test *out, char why[200]
     return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null after ==", begin));
 }
 
-/* Reads a filter's comparisons, joined by &&, optionally in parentheses. Returns false with the reason in `why` if that fails. */
+/* Reads a filter's comparisons, joined by && and optionally in parentheses. Returns false with the reason in `why` if that fails. */
 static bool read_tests(const char **at, struct json_path_step *out, int depth, char why[200])
 {
     for (;;) {

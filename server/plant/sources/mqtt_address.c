@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses addresses of MQTT values of the form TOPIC#PATH: the first `#` separates the two parts, because topics cannot contain it. */
+/* Parses addresses of MQTT values, TOPIC#PATH. The first `#` separates the two parts, because topics cannot contain it. */
 #include "plant/sources/mqtt_address.h"
 
 #include <stdio.h>
@@ -35,8 +35,7 @@ bool mqtt_template_check(const char *text, char why[200])
     return true;
 }
 
-/* Returns the tag's text for a placeholder in a topic template, or NULL if the tag has none. address: the part of the tag's address before
-   the #. */
+/* Returns the tag's text for a placeholder in a topic template, or NULL if the tag has none. address: the tag's address up to the #. */
 static const char *field_text(const struct plant *plant, const struct plant_tag *tag, const char *address, enum address_field field)
 {
     switch (field) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses OPC UA addresses. An array element is written before the node ([3]), because names of nodes may themselves end in brackets. */
+/* Parses OPC UA addresses. The index of an array element ([3]) precedes the node, because names of nodes may themselves end in brackets. */
 #include "plant/sources/opcua_address.h"
 
 #include <ctype.h>
@@ -61,8 +61,8 @@ static bool check_identifier(const char *text)
     return true;
 }
 
-/* Returns the namespace URI of an address: the one in its prefix nsu=URI, or else the one stated for the source. Returns NULL with the
-   reason in `why` if neither is given. */
+/* Returns the namespace URI of an address: that of its prefix nsu=URI, or else the source's. Returns NULL with the reason in
+   `why` if there is neither. */
 static char *read_namespace(const char **at, const char *of_source, char why[200])
 {
     const char *end = strchr(*at, ';');

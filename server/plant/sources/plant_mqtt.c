@@ -37,8 +37,8 @@ static void check_files(struct yaml_reader *reader, const struct yaml_map *map, 
         plant_secret_check(reader, map, plant, "tls", files[i]);
 }
 
-/* Checks the topic of the last will (a message that the broker publishes if the connection breaks). It must begin with plantcast/: a device
-   might subscribe to another topic and take the message for a command. */
+/* Checks the topic of the last will (a message that the broker publishes if the connection breaks). It must begin with
+   plantcast/: a device that subscribes to another topic might take the message for a command. */
 static void check_will(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
 {
     if (mqtt->will && (strncmp(mqtt->will, WILL_PREFIX, strlen(WILL_PREFIX)) != 0 || strpbrk(mqtt->will, "+#")))

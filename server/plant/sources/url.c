@@ -21,7 +21,7 @@ bool url_is_here(const char *url)
     return false;
 }
 
-/* Returns a message that says what is wrong with a URL. Returns NULL if the URL is good. */
+/* Returns what is wrong with a URL, or NULL if the URL is good. */
 static const char *wrong_with(const char *url, const char *plain, const char *secure)
 {
     size_t plain_length = strlen(plain), secure_length = strlen(secure);

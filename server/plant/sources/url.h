@@ -12,7 +12,7 @@ bool url_is_here(const char *url);
    server, and contain neither a password nor white space. */
 void url_check(struct yaml_reader *reader, const struct yaml_map *map, const char *key, const char *url, const char *plain,
                const char *secure);
-/* Reports a URL that has a `token_file` but to which no token may be sent: only https:// URLs and URLs of this machine may get tokens. */
+/* Reports a `token_file` for a URL that may not get tokens: only https:// URLs and URLs of this machine may get them. */
 void url_check_token(struct yaml_reader *reader, const struct yaml_map *map, const char *url);
 
 #endif

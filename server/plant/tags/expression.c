@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiles expressions by recursive descent into steps of a stack machine, and computes their values with it. */
+/* Compiles expressions by recursive descent into steps of a stack machine, and evaluates them. */
 #include "plant/tags/expression.h"
 
 #include <assert.h>
@@ -79,8 +79,8 @@ static double difference_of(const double *v, int count)
     return v[0] - v[1];
 }
 
-/* Returns the approach temperature of a counterflow heat exchanger: the smaller temperature difference of its two ends. Inputs: hot in,
-   hot out, cold in, cold out. */
+/* Returns the approach temperature of a counterflow heat exchanger: the smaller of the temperature differences at its two ends.
+   Inputs: hot in, hot out, cold in, cold out. */
 static double approach_of(const double *v, int count)
 {
     (void)count;
@@ -346,8 +346,8 @@ double expression_value(const struct expression *expression, const double *value
             top--;
             stack[top - 1] = join(step->operation, stack[top - 1], stack[top]);
         }
-        /* an intermediate result without a value makes the whole expression undefined: min(), or a division by infinity, would otherwise
-           hide it */
+        /* an undefined intermediate result makes the whole expression undefined: min(), or a division by infinity, would
+           otherwise hide it */
         if (!isfinite(stack[top - 1]))
             return NAN;
     }

@@ -9,8 +9,8 @@ enum { EXPRESSION_INPUTS = 64 };
 
 struct expression;
 
-/* Parses an expression. `find` returns the index of the tag with a name in brackets, or -1. Returns NULL on errors, with the reason in
-   `why` and the character position, from 0, in *at. */
+/* Parses an expression. `find` returns the index of the tag named in brackets, or -1. On errors, returns NULL with the reason
+   in `why` and the character position, from 0, in *at. */
 struct expression *expression_parse(const char *text, int (*find)(const void *arg, const char *name), const void *arg, char why[200],
                                     size_t *at);
 void expression_destroy(struct expression **expression); /* Frees the expression and sets *expression to NULL; accepts a pointer to NULL. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Derived tags, which are computed from other tags: parses their expressions, and sorts them so that each tag comes after the tags in its
-   expression. */
+/* Derived tags, which are computed from other tags: parses their expressions, and sorts the tags so that each comes after the
+   tags in its expression. */
 #include <math.h>
 
 #include "base/mem.h"
@@ -31,8 +31,8 @@ static bool parse(const struct tag_link *link, struct plant *plant, struct diag 
     return tag->expression != NULL;
 }
 
-/* Warns if tags of one quantity, such as two temperatures, enter an expression in different units: expressions compute in the units of the
-   tags' rows, without conversion. */
+/* Warns if tags of one quantity, such as two temperatures, enter an expression in different units: expressions use the units of
+   the tags' rows, without conversion. */
 static void check_units(const struct tag_link *link, const struct plant *plant, struct diag *diag)
 {
     const struct plant_tag *tag = &plant->tags[link->tag];
@@ -52,8 +52,8 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
     }
 }
 
-/* Adds the derived tags on which a tag depends, then the tag itself, to the sorted list (depth first). Unless its row states stale_s, a tag
-   gets the largest stale_s of its inputs. Returns false on a cycle. */
+/* Adds the derived tags in a tag's expression, then the tag itself, to the sorted list (depth first). Unless its row states
+   stale_s, the tag gets the largest stale_s of its inputs. Returns false on a cycle. */
 static bool visit(struct derived_walk *walk, int index)
 {
     struct plant_tag *tag = &walk->plant->tags[index];

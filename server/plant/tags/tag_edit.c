@@ -308,8 +308,8 @@ static void say(struct tag_lines *out, int line, const struct cell_span *before,
     out->at[out->count++] = (struct tag_line){ line, before ? copy_of(*before) : NULL, after ? copy_of(*after) : NULL };
 }
 
-/* Lists the lines of two texts between their first and their last difference: pairwise if both texts have the same number of lines, else
-   removed lines, then added lines. */
+/* Lists the lines of two texts between their first and their last difference. If both texts have the same number of lines,
+   lists them pairwise; else removed lines first, then added ones. */
 static void say_middle(const struct text_lines *a, const struct text_lines *b, size_t head, size_t tail, struct tag_lines *out)
 {
     bool even = a->count == b->count;

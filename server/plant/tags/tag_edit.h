@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the text of a tag list to move sensors, or to confirm an assumed place. Everything else stays unchanged to the byte: order, unknown
-   columns, blank rows, quotes, number format, line ends. Pure. Thread: any. */
+/* Edits the text of a tag list to move sensors, or to confirm an assumed place. Everything else stays the same to the byte:
+   order, unknown columns, blank rows, quotes, number format, line ends. Pure. Thread: any. */
 #ifndef PLANT_TAGS_TAG_EDIT_H
 #define PLANT_TAGS_TAG_EDIT_H
 #include <stdbool.h>
@@ -30,9 +30,9 @@ enum { TAG_LINES = 200 };
 /* Returns the text of the tag list with the edits applied; free with mem_free(). Returns NULL if a tag is missing or the list is invalid,
    with the reason in *why (mem_free()). */
 char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, struct refusal *why);
-/* Appends the lines in which two texts differ to *out, at most TAG_LINES lines. If both texts have the same number of lines, they are
-   compared one by one; otherwise all lines between the first and the last difference are listed, including equal ones: removed lines
-   first, then added lines. Free with tag_lines_finish(). */
+/* Appends the lines in which two texts differ to *out, at most TAG_LINES lines. Texts with the same number of lines are
+   compared line by line. Otherwise all lines between the first and the last difference are listed, even equal ones: removed
+   lines first, then added lines. Free with tag_lines_finish(). */
 void tag_lines(const char *before, const char *after, struct tag_lines *out);
 void tag_lines_finish(struct tag_lines *lines);
 

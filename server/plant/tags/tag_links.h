@@ -23,7 +23,7 @@ bool tag_is_derived(const struct tag_columns *columns);
 void tag_links_add(struct tag_links *links, struct tag_links *derived, struct tag_columns *columns, struct plant *plant, size_t tag);
 /* Parses the expressions of derived tags and fills plant->derived. tags_by_name must be set. */
 void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, struct diag *diag);
-/* Replaces the names of tags by their indices, also for heartbeats, and reports unknown tags. tags_by_name must be set. Frees `links`. */
+/* Replaces names of tags, and of heartbeats, by indices; reports unknown tags. tags_by_name must be set. Frees `links`. */
 void tag_links_resolve(struct tag_links *links, struct plant *plant, struct diag *diag);
 
 #endif

@@ -139,7 +139,7 @@ static void read_unit(struct tag_list *list)
         report_unit(list, match, text);
 }
 
-/* Reads one limit of a row, which is in the row's own unit; "none" drops the group's limit. Returns false if the cell is blank. */
+/* Reads one limit of a row, given in the row's own unit; "none" drops the group's limit. Returns false if the cell is blank. */
 static bool read_limit(struct tag_list *list, enum tag_column column, double *limit)
 {
     bool drops = !strcasecmp(cell_text(&list->columns, column), "none");
@@ -288,7 +288,7 @@ static int by_register(const void *pa, const void *pb, void *plant_ptr)
     return (keys[i][0] > keys[i][1]) - (keys[i][0] < keys[i][1]);
 }
 
-/* Warns about pairs of values that share only some of their registers: the address or the data type of one is wrong. */
+/* Warns about pairs of values that share some registers but not all: the address or the data type of one must be wrong. */
 static void check_overlaps(const struct plant *plant, struct diag *diag)
 {
     int *tags = mem_array(plant->tag_count + 1, sizeof(*tags));

@@ -23,7 +23,7 @@ struct tag_wire {
 
 /* --- address and type ------------------------------------------------------------------------------------------------------------ */
 
-/* Reads the byte order of a tag's value, which its row may state in a column or in the address. Returns false after an error (reported). */
+/* Reads the byte order that a tag's row states in a column or in the address. Returns false after an error (reported). */
 static bool read_stated_order(struct tag_wire *wire, const struct modbus_address *address, enum byte_order *out)
 {
     const char *text = cell_text(wire->columns, COL_BYTE_ORDER);
@@ -92,8 +92,8 @@ static bool is_number(const struct tag_wire *wire)
     return tag_is_derived(wire->columns) || (kind && !strcmp(kind, "replay"));
 }
 
-/* Reports a plain address of a multi-register value if its source does not state address_base: a value that is read from the next register
-   by mistake may still look plausible. */
+/* Reports a plain address of a multi-register value if its source does not state address_base. A value read from the next
+   register by mistake may still look plausible. */
 static void check_base(struct tag_wire *wire, int registers)
 {
     struct plant_tag *tag = wire->tag;
@@ -113,7 +113,7 @@ static bool comes_from(const struct tag_wire *wire, const char *kind)
     return !tag_is_derived(wire->columns) && its_kind && !strcmp(its_kind, kind);
 }
 
-/* Reads type and address of a value that is published over MQTT or OPC UA: its type is a number, unless the row states bool. */
+/* Reads type and address of a value published over MQTT or OPC UA. The type is a number, unless the row states bool. */
 static void read_published(struct tag_wire *wire)
 {
     struct plant_tag *tag = wire->tag;

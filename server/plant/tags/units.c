@@ -257,7 +257,7 @@ enum { UNIT_COUNT = sizeof(units) / sizeof(*units) };
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* Brings a unit's name into the form of the table: drops blanks, brackets and dots, and replaces signs by letters. */
+/* Converts a unit's name to the form used in the table: drops blanks, brackets and dots, and replaces signs by letters. */
 static void normalise(const char *name, char out[NAME_BYTES])
 {
     static const struct {
@@ -297,8 +297,7 @@ static bool has_name(const struct unit_entry *unit, const char *name, bool exact
     return false;
 }
 
-/* Finds a unit by name: first exactly, then ignoring case. The second search counts only if it finds a single unit: MPA could be MPa or
-   mPa. */
+/* Finds a unit by name: first exactly, then ignoring case. The second search must find exactly one unit: MPA could be MPa or mPa. */
 static const struct unit_entry *look_up(const char *name)
 {
     const struct unit_entry *found = NULL;
@@ -367,8 +366,8 @@ static bool find(const char *name, struct unit_entry *out)
 
 /* --- interface -------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether two unknown units are equal: case-insensitive except for the first letter, since prefixes such as M and m, P and p
-   differ. */
+/* Returns whether the names of two unknown units are equal. Ignores case except for the first letter, since prefixes such as M
+   and m, P and p differ. */
 static bool written_alike(const char *a, const char *b)
 {
     return *a == *b && !strcasecmp(a, b);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Engineering units: tells which units measure the same quantity, and converts between such units. Pure. Thread: any. Names are UCUM codes
-   (https://ucum.org/ucum, 2.1) and others in common use; factors are from NIST SP 811 (2008), appendix B. */
+/* Engineering units: knows which units measure the same quantity, and converts between them. Pure. Thread: any. Names are UCUM
+   codes (https://ucum.org/ucum, 2.1) and others in common use; factors are from NIST SP 811 (2008), appendix B. */
 #ifndef PLANT_TAGS_UNITS_H
 #define PLANT_TAGS_UNITS_H
 #include <stdbool.h>
@@ -18,8 +18,8 @@ enum unit_match {
     UNITS_UNKNOWN     /* not comparable, because at least one of the units is unknown */
 };
 
-/* Compares two units by their names and sets *change to the conversion, all zero if there is none. Blanks, brackets, dots, superscript
-   digits and variants of the degree sign do not matter; case matters only where it distinguishes units (mW, MW). */
+/* Compares two units by name and sets *change to the conversion, all zero if there is none. Ignores blanks, brackets, dots,
+   superscript digits and variants of the degree sign, and ignores case unless it distinguishes units (mW, MW). */
 enum unit_match units_compare(const char *from, const char *to, struct unit_change *change);
 /* Returns the quantity that a unit measures, such as "volume flow" (static); NULL if the unit is unknown. */
 const char *unit_kind(const char *name);

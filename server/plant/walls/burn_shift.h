@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Slow shift of everything that a wall display shows, so that still content does not burn into the screen. The page uses the same function
-   (clients/web/core/wall.js). Pure. */
+/* Slow shift of a wall display's whole content, so that still content does not burn into the screen. The page uses the same
+   function (clients/web/core/wall.js). Pure. */
 #ifndef PLANT_WALLS_BURN_SHIFT_H
 #define PLANT_WALLS_BURN_SHIFT_H
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the plant file's `other_plants`: servers of other plants, whose pictures are shown in panes of wall displays. */
+/* Reads the plant file's `other_plants`: servers of other plants, whose pictures appear in panes of wall displays. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -216,7 +216,7 @@ static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *reco
         read_pane(reader, yaml_list_item(reader, node, i), display, &display->panes[display->pane_count++]);
 }
 
-/* Reads the width of bezels: one number, for both directions, or two numbers: horizontal and vertical. */
+/* Reads the width of bezels: one number for both directions, or two numbers (horizontal, vertical). */
 static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     double *bezel_mm = ((struct wall_tile *)record)->bezel_mm;

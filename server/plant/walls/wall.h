@@ -33,12 +33,12 @@ struct tour {
     int line;
 };
 
-/* A plant with a server of its own, whose pictures are shown in panes of wall displays. */
+/* A plant with a server of its own, whose pictures appear in panes of wall displays. */
 struct other_plant {
     char *id, *url;
     char *token_file, *ca_file; /* paths; NULL: none */
     char *view;                 /* id of a view in the other plant's file; NULL: the whole plant */
-    double every_s;             /* interval in seconds at which the other plant's server is queried */
+    double every_s;             /* interval in seconds between queries of the other plant's server */
     int width_px, height_px;
     int line;
 };
@@ -54,7 +54,7 @@ struct wall_pane {
     char *items[PANE_ITEMS];
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
-    double every_s; /* seconds for which the pane shows each of its views */
+    double every_s; /* how long the pane shows each of its views, in seconds */
     double hours;   /* hours that a trend covers */
     bool on_alarm;  /* true: when an alarm is raised, the pane shows the alarm's view; only for panes of views and tours */
 };
@@ -66,7 +66,7 @@ struct wall_display {
     size_t pane_count;
 };
 
-/* A span of the day in minutes; if to_min is before from_min it ends on the next day. */
+/* A time span of the day in minutes; if to_min is before from_min, the span ends on the next day. */
 struct day_span {
     int from_min, to_min;
 };
@@ -99,14 +99,14 @@ const struct wall *wall_find(const struct plant *plant, const char *id);
 int other_plant_find(const struct plant *plant, const char *id); /* Returns the index of the other plant with this id, or -1. */
 /* Returns a display of a wall of the plant file, NULL if the wall has no such display. number: from 1. */
 const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number);
-/* Each function answers one question about a wall's display, and returns false for a NULL display: whether it has a pane of views or a
-   tour; whether one of its trends or tiles shows the tag; whether one of its panes shows the view with that id. */
+/* Each function answers one question about a wall's display: whether it has a pane of views or a tour; whether one of its
+   trends or tiles shows the tag; whether one of its panes shows the view with that id. All return false for a NULL display. */
 bool wall_display_has_pictures(const struct wall_display *display);
 bool wall_display_shows_tag(const struct wall_display *display, const char *tag);
 bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id);
-/* Returns whether a display has a pane of that kind; item not NULL: one that shows this view, tag, tour or other plant. */
+/* Returns whether a display has a pane of that kind and, unless item is NULL, with that view, tag, tour or other plant. */
 bool wall_display_has(const struct wall_display *display, enum pane_kind kind, const char *item);
-/* Returns a message (static) that says what is wrong with a title or a view address, or NULL. */
+/* Returns what is wrong with a title or a view address (static text), or NULL. */
 const char *named_view_title_wrong(const char *title);
 const char *named_view_address_wrong(const char *address);
 

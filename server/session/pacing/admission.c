@@ -94,7 +94,7 @@ enum refusal_code admission_refuses_pixels(const struct admission *admission, co
 
 /* --- whether the render thread can serve one more moving camera ------------------------------------------------------------ */
 
-/* Type of a function that returns one figure of the drawing statistics of a client address; 0: the figure is not known. */
+/* Function that returns one figure of a client address's drawing statistics; 0: the figure is not known. */
 typedef int64_t of_share(const struct address_share *share);
 
 static int64_t cost_of(const struct address_share *share)
@@ -128,8 +128,7 @@ static int64_t usual(const struct admission *admission, of_share *of)
 }
 
 struct moving_sessions { /* numbers of sessions whose camera moves now */
-    /* own: moving sessions of the address in question; all: moving sessions of all addresses; others: number of other addresses that have
-       moving sessions */
+    /* own: moving sessions of the address in question; all: of all addresses; others: number of other addresses with moving sessions */
     int own, all, others;
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Admission: decides whether the server can take one more session, by configured limits and by the drawing cost measured from finished
-   frames. Capacity is shared equally among client addresses, then among each address's sessions, so that one address cannot exhaust it.
-   Pure: the caller passes the time. Thread: the event loop. */
+/* Admission: decides whether the server can take one more session, from configured limits and the measured drawing cost of
+   finished frames. Capacity is shared equally among client addresses, then among each address's sessions, so that one address
+   cannot exhaust it. Pure: the caller passes the time. Thread: the event loop. */
 #ifndef SESSION_PACING_ADMISSION_H
 #define SESSION_PACING_ADMISSION_H
 #include "service/encoded_frame.h"
@@ -39,24 +39,22 @@ struct admission {
     struct address_share *shares; /* linked list of the client addresses that have sessions */
 };
 
-/* admission_join() counts a session as one of the client address `share`, admission_leave() removes it. The share must outlive its
-   sessions. */
+/* admission_join() adds a session to the client address `share`, admission_leave() removes it. The share must outlive its sessions. */
 void admission_join(struct admission *admission, struct address_share *share);
 void admission_leave(struct admission *admission, struct address_share *share);
-/* Counts the cost of a preview that answers an input or changed readings; ignores other frames. share: figures of the client's address;
+/* Counts the cost of a preview that answers an input or changed readings; ignores other frames. share: the client's address;
    NULL: no address is charged. */
 void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *encoded);
 /* Starts a new measuring window if the current one is at least a second old. */
 void admission_on_tick(struct admission *admission, int64_t now_ns);
-/* Returns the percentage of the render thread's time that was spent on frames that clients wait for, in the least busy of the last
+/* Returns the percentage of the render thread's time spent on frames that clients wait for, in the least busy of the last
    ADMISSION_WINDOWS seconds. */
 int admission_busy_percent(const struct admission *admission);
-/* Returns REFUSAL_NONE if a view may grow from `before` to `pixels` pixels; otherwise the reason. share: figures of the client's
-   address; NULL: only the limit for all addresses together applies. */
+/* Returns REFUSAL_NONE if a view may grow from `before` to `pixels` pixels; otherwise the reason. share: the client's address;
+   NULL: only the limit for all addresses together applies. */
 enum refusal_code admission_refuses_pixels(const struct admission *admission, const struct address_share *share, int64_t before,
                                            int64_t pixels);
-/* Returns REFUSAL_NONE if a session with a view of `pixels` pixels can be added; otherwise the reason. share: figures of the client's
-   address. */
+/* Returns REFUSAL_NONE if a session with a view of `pixels` pixels can be added; otherwise the reason. share: the client's address. */
 enum refusal_code admission_refuses(const struct admission *admission, const struct address_share *share, int64_t pixels);
 
 #endif

@@ -24,8 +24,8 @@ static void smooth(double *value, double sample)
     *value = *value > 0 ? *value + SAMPLE_WEIGHT * (sample - *value) : sample;
 }
 
-/* Adds a sample, and updates *value from the minimum of the last `most` samples. Until there are more than `most` samples, *value is that
-   minimum itself; afterwards it is smoothed. */
+/* Adds a sample, and updates *value from the minimum of the last `most` samples. Sets *value to the minimum itself until there
+   are more than `most` samples; afterwards smooths it. */
 static void add_sample(double *value, struct channel_last *last, int most, double sample)
 {
     last->at[last->count % CHANNEL_LAST] = sample;
@@ -73,8 +73,9 @@ bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns)
     return channel->rtt_ns[0] && now_ns - channel->rtt_begin_ns >= RTT_WINDOW_NS;
 }
 
-/* The client acknowledges a frame after decoding it and reports the decoding time, which gives the time of arrival. On the server's clock
-   every arrival appears late by the time of the return path. Only differences between arrivals are used, so that this delay cancels out. */
+/* The client acknowledges a frame after decoding it and reports the decoding time, which gives the arrival time. On the
+   server's clock every arrival appears late by the delay of the return path. Only differences between arrivals are used, so
+   this delay cancels out. */
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 {
     int64_t rtt_ns = channel_rtt_ns(channel), took_ns = more(ack->now_ns - ack->sent_ns, 0);

@@ -8,8 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Number of recent samples kept. A client that is busy for a moment (its page loads, a decoder starts) looks like a slow network for one
-   or two samples; a slow network does so all the time. So the minimum of the last two samples counts, and of the last three for
+/* Number of recent samples kept. A client that is briefly busy (its page loads, a decoder starts) looks like a slow network for
+   one or two samples; a slow network stays slow. So the minimum of the last two samples counts, and of the last three for
    decoding. */
 enum { CHANNEL_LAST = 3 };
 struct channel_last { /* ring buffer of the last samples of one figure; zero-initialise */
@@ -20,7 +20,7 @@ struct channel_last { /* ring buffer of the last samples of one figure; zero-ini
 struct channel { /* estimate for the connection to one client; zero-initialise; a member that is 0 was not measured yet */
     int64_t rtt_ns[2], rtt_begin_ns; /* minimum round trip: [0] in the current measuring window, [1] in the one before; 0: not measured */
     double ns_per_byte; /* nanoseconds that the network needs per byte, smoothed; reacts faster to a slowdown than to a recovery */
-    double lag_ns;      /* time from sending to acknowledgement, minus round trip and decoding, smoothed: the delay that the network adds */
+    double lag_ns;      /* delay added by the network: time from sending to acknowledgement, minus round trip and decoding, smoothed */
     double decode_ns;   /* decoding time of a frame in nanoseconds, as reported by the client, smoothed */
     struct channel_last last_ns_per_byte, last_lag_ns, last_decode_ns;
     int64_t arrived_ns, acked_ns;
@@ -42,8 +42,8 @@ void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns);
 void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);
 /* Returns the round-trip time; 0: not measured yet. */
 int64_t channel_rtt_ns(const struct channel *channel);
-/* Returns whether the round-trip time should be measured again because the last measurement is old. Measure only while nothing else is in
-   flight to the client. */
+/* Returns whether the last measurement of the round-trip time is old, so that another is needed. Measure only while nothing
+   else is in flight to the client. */
 bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns);
 /* Returns the time that the client's bandwidth needs for `bytes` bytes, without the round trip; 0: the bandwidth is not known. */
 int64_t channel_transfer_ns(const struct channel *channel, double bytes);

@@ -9,13 +9,12 @@
 
 /* size of a JPEG frame in bytes per pixel (196 kB at 1920x1080, quality 78), and number of frames per second */
 static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;
-/* ratios of the measured bandwidth to the bandwidth that JPEG needs: above PLENTY a switch to JPEG is allowed, below SCARCE the codec
-   returns to H.264 */
+/* measured bandwidth as a multiple of what JPEG needs: above PLENTY a switch to JPEG is allowed, below SCARCE the codec returns to H.264 */
 static const double PLENTY = 4, SCARCE = 2;
 /* idle part of the processors, 0..1: below BUSY_IDLE_SHARE the codec changes to JPEG, above FREE_IDLE_SHARE back to H.264 */
 static const double BUSY_IDLE_SHARE = 0.15, FREE_IDLE_SHARE = 0.4;
-/* time for which bandwidth and processor load (codec_facts) must favour the other codec before a switch; long, since a switch costs a key
-   frame */
+/* how long bandwidth and processor load (codec_facts) must favour the other codec before a switch; long, since a switch costs a
+   key frame */
 static const int64_t TO_JPEG_NS = 5 * NS_PER_S, TO_H264_NS = 30 * NS_PER_S;
 
 static bool speaks_for_other(const struct codec_choice *choice, const struct codec_facts *facts)

@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 
-/* time, in addition to one round trip, within which the bytes in flight to a client must be able to arrive */
+/* the bytes in flight to a client must be able to arrive within this time plus one round trip */
 static const int64_t AHEAD_NS = 33 * NS_PER_MS;
 /* time without acknowledgement and progress after which a client is stalled (STALL_NS) or disconnected (DEAD_NS); see PROTOCOL.md */
 static const int64_t STALL_NS = PACER_STALL_S * NS_PER_S, DEAD_NS = 15 * NS_PER_S;
@@ -37,8 +37,8 @@ static int most_frames(const struct pacer *pacer)
     return most > PACER_MOST ? PACER_MOST : (int)most;
 }
 
-/* Returns whether one more frame may be requested without exceeding the limit on unacknowledged bytes (AHEAD_NS). Frames that are requested
-   but not made yet count with the expected size of a preview at the present step of the quality ladder. */
+/* Returns whether one more frame may be requested within the limit on unacknowledged bytes (AHEAD_NS). A frame that is
+   requested but not made yet counts with the expected size of a preview at the present step of the quality ladder. */
 static bool fits_window(const struct pacer *pacer)
 {
     int64_t window_ns = AHEAD_NS + channel_rtt_ns(&pacer->channel);

@@ -7,15 +7,15 @@
 #define SESSION_PACING_PACER_H
 #include "session/pacing/quality_ladder.h"
 
-/* limits on the number of frames in flight to one client: PACER_LEAST, growing with the round-trip time up to PACER_MOST */
+/* limits on the number of frames in flight to one client: from PACER_LEAST, growing with the round-trip time, to PACER_MOST */
 enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
-struct pacer_note {    /* facts about a sent frame that are needed when the frame is acknowledged */
+struct pacer_note {    /* facts about a sent frame, needed when the frame is acknowledged */
     /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is refined, in full quality */
     bool moving, full;
     int step;
     bool of_data; /* true: the frame was made because a reading changed; false: because of an input */
-    /* input_ns: monotonic time of the input or of the changed reading; made_ns: monotonic time when the frame was encoded */
+    /* monotonic: input_ns: time of the input or the changed reading; made_ns: when the frame was encoded */
     int64_t input_ns, made_ns;
 };
 
@@ -39,7 +39,7 @@ struct pacer {                              /* limits the frames that are under 
     struct quality_ladder ladder;
 };
 
-/* seconds after which a client that acknowledges no frame and accepts no bytes counts as stalled (PROTOCOL.md) */
+/* a client that acknowledges no frame and accepts no bytes for this many seconds counts as stalled (PROTOCOL.md) */
 enum { PACER_STALL_S = 2 };
 enum pacer_state { PACER_FLOWS, PACER_STALLS, PACER_DEAD };
 enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };
@@ -49,13 +49,13 @@ void pacer_init(struct pacer *pacer);
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
 /* Counts a frame that was requested. */
 void pacer_asked(struct pacer *pacer);
-/* Counts a requested frame that will not be sent, because the render service does not deliver it or the session drops it. */
+/* Counts a requested frame that will not be sent: the render service does not deliver it, or the session drops it. */
 void pacer_dropped(struct pacer *pacer);
 /* Counts a frame whose first byte is being sent. Returns the frame's sequence number in the session. */
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns);
-/* Notes that the socket accepted a part of the newest frame; all: it was the frame's last part. */
+/* Notes that the socket accepted a part of the newest frame. all: true: this was the frame's last part. */
 void pacer_wrote(struct pacer *pacer, bool all, int64_t now_ns);
-/* Notes that the newest frame was cut short: the client will not acknowledge it. */
+/* Notes that the newest frame was cut short, so the client will not acknowledge it. */
 void pacer_gave_up(struct pacer *pacer);
 /* Records the acknowledgement of frame seq, which covers all earlier frames too, and updates the channel estimate and the quality ladder.
    decode_ns: decoding time reported by the client; negative: not reported. Returns PACER_ACK_NEW, PACER_ACK_OLD if the frame was

@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 
-/* transfer time of a frame above which the frame is too large for the network, so the ladder steps down */
+/* the ladder steps down if a frame's transfer takes longer than this */
 static const int64_t SLOW_NS = 80 * NS_PER_MS;
 /* the ladder steps up to a better step if its frames are expected to transfer faster than this */
 static const int64_t FAST_NS = 40 * NS_PER_MS;
@@ -15,15 +15,14 @@ static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 /* decoding time of a frame above which the client cannot keep up with 25 frames a second */
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS;
 static const int64_t FAST_DECODE_NS = 20 * NS_PER_MS;
-/* limit on the time that the server takes to make a picture. It makes two pictures at a time, so a longer time means fewer than 15 pictures
-   a second */
+/* limit on the time to make a picture. The server makes two pictures at a time, so a longer time means fewer than 15 pictures a second */
 static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
 /* limit on the bytes of all copies of a frame for the viewers of a view: the event loop needs some tens of ms to send this many */
 static const double CROWD_BYTES = 30e6;
-/* MIN_VIEWERS: minimum number of viewers of a view for which a common step is chosen; MAX_STEPS_WORSE: a viewer whose own step is worse
+/* MIN_VIEWERS: minimum number of viewers of a view that get a common step; MAX_STEPS_WORSE: a viewer whose own step is worse
    than the common one by more than this uses its own */
 enum { MIN_VIEWERS = 3, MAX_STEPS_WORSE = 2 };
 static const double BYTES_PER_PIXEL = 0.08; /* expected bytes per pixel of a frame at step 0, before any frame was sent */
@@ -127,7 +126,7 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     } else if (up >= ladder->step || channel->lag_ns > SLOW_NS) {
         ladder->good_since_ns = 0;
     } else if (!ladder->known) {
-        go_up(ladder, up, now_ns); /* steps up without delay, because the initial quality step was only a guess */
+        go_up(ladder, up, now_ns); /* steps up without delay, because the initial step was only a guess */
     } else if (!ladder->good_since_ns) {
         ladder->good_since_ns = now_ns;
     } else if (now_ns - ladder->good_since_ns >= ladder->patience_ns) {

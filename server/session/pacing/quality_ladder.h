@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The quality ladder (adaptive bitrate): the quality of one session's previews. As bandwidth drops, first the JPEG or H.264 quality is
-   lowered, then the number of pixels; if that is not enough, the pacer sends fewer frames. Steps down are immediate. Steps up take a
-   delay, which doubles if the last step up did not hold. Pure; the caller passes the time. Thread: the event loop. */
+/* The quality ladder (adaptive bitrate): the quality of one session's previews. As bandwidth drops, first the JPEG or H.264
+   quality is lowered, then the number of pixels; if that is not enough, the pacer sends fewer frames. Steps down are immediate.
+   Steps up wait for a delay, which doubles if the last step up did not hold. Pure; the caller passes the time. Thread: the
+   event loop. */
 #ifndef SESSION_PACING_QUALITY_LADDER_H
 #define SESSION_PACING_QUALITY_LADDER_H
 #include "session/pacing/channel.h"
@@ -20,8 +21,8 @@ struct quality_ladder { /* chooses the quality and size of one client's frames; 
     double unit_bytes;  /* estimated size in bytes of a frame of the best quality (step 0), smoothed */
     bool reprojects;    /* true: the client shows its newest picture from the present camera, so fewer and better frames suffice */
     bool known;         /* true: at least one frame was acknowledged, so unit_bytes is measured */
-    /* monotonic times since when these conditions hold: the network can carry a better step; client and server can handle a larger picture;
-       decoding takes too long. 0: the condition does not hold now */
+    /* monotonic times since which these conditions have held: the network can carry a better step; client and server can handle
+       a larger picture; decoding takes too long. 0: the condition does not hold now */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
     int64_t up_ns, down_ns; /* monotonic times when the ladder last stepped up, and last stepped down */
     int64_t patience_ns;    /* delay in nanoseconds before the ladder may step up again */
@@ -33,13 +34,13 @@ void quality_ladder_init(struct quality_ladder *ladder);
 void quality_ladder_begin(struct quality_ladder *ladder, const struct channel *channel, double pixels);
 /* Returns the quality and scale of a step, at the ladder's own picture size. */
 struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
-/* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the best step that at least
-   three quarters of the viewers can receive. A worse step is returned if sending that step's frames to all would occupy the event loop.
-   counts: number of viewers at each step. seen: ladder of the session whose view the viewers see. Returns a negative number if there
-   are too few viewers to share a step. */
+/* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the best step that
+   at least three quarters of the viewers can receive, or a worse one if sending that step's frames to all would occupy the
+   event loop. counts: number of viewers at each step. seen: ladder of the session whose view the viewers see. Returns a
+   negative number if there are too few viewers to share a step. */
 int quality_ladder_common(const struct quality_ladder *seen, const int counts[QUALITY_LADDER_STEPS]);
-/* Returns the step to use for this client: the common one, or the client's own step if that is much worse. common negative: the client's
-   own step. */
+/* Returns the step for this client: the common one, or the client's own step if that is much worse. common negative: the
+   client's own step. */
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that a preview of that step and size in bytes was acknowledged, and adjusts the step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts the pixels that a session's view takes from the admission budget: reserved when the view gets its size, returned while the page is
-   hidden. */
+/* Counts the pixels that a session's view takes from the admission budget. They are reserved when the view gets its size, and
+   returned while the page is hidden. */
 #include <string.h>
 
 #include "base/clock.h"
 #include "session/session_impl.h"
 
-/* A page loses its reserved pixels if it was hidden for longer than this time, or if it is shown again within this time after it was last
-   shown. It is then admitted like a new session. */
+/* A page loses its reserved pixels if it was hidden for longer than this time, or if it is shown again within this time after
+   it was last shown. It must then be admitted like a new session. */
 static const int64_t HIDDEN_NS = 15 * NS_PER_S;
 
 static void hold(struct session *session, int64_t pixels)
@@ -65,7 +65,7 @@ static bool take_again(struct session *session, enum refusal_code *why)
     return !*why;
 }
 
-/* If a session that becomes visible is not admitted, sends its client an error; pictures follow once there is capacity. */
+/* If a session becomes visible but is not admitted, sends its client an error; pictures follow once there is capacity. */
 void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 {
     struct message_error error = { 0 };

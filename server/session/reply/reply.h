@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the texts that the server sends: JSON messages of PROTOCOL.md, and bodies of /api as in HTTP.md. Each function returns the
-   message that its name contains; the caller frees the text with mem_free. Pure. Thread: the event loop. */
+/* Builds the texts that the server sends: JSON messages of PROTOCOL.md, and bodies of /api answers (HTTP.md). Each function
+   returns the message in its name; the caller frees the text with mem_free. Pure. Thread: the event loop. */
 #ifndef SESSION_REPLY_REPLY_H
 #define SESSION_REPLY_REPLY_H
 #include "session/session_context.h"
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
-/* Returns the parameters of a view as a JSON message: quantity, colour range, hidden assets and so on. open: the text is for clients
-   without a token; names of tags and baselines are left out. */
+/* Returns the parameters of a view as a JSON message: quantity, colour range, hidden assets and so on. open: true: for clients
+   without a token; omits names of tags and baselines. */
 char *reply_params_text(const struct session_context *context, const struct view *view, uint32_t seq, bool open);
-/* Lists the followers of a session, at most REPLY_FOLLOWERS. open: the text is for clients without a token; names of users are left out. */
+/* Lists the followers of a session, at most REPLY_FOLLOWERS. open: true: for clients without a token; omits names of users. */
 enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const struct session *const *followers, size_t count, bool open);
-/* Says whose view the session is shown, and whether that leader has gone. */
+/* Returns whose view the session shows, and whether that leader has gone. */
 char *reply_following_text(const struct session *session);
-/* Lists all readings or, if `all` is false, only readings that the client was not sent yet (reading.changes differs from `sent`, an array
-   by tag). Updates `sent`. */
+/* Lists all readings or, if `all` is false, only those that the client does not have yet (reading.changes differs from `sent`,
+   an array by tag). Updates `sent`. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
 char *reply_status_text(const struct session_context *context, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
@@ -29,8 +29,8 @@ char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, 
                        const int64_t *late_us, bool leads);
 /* Lists the named views. id: the view whose earlier versions are listed too; NULL: no earlier versions. */
 char *reply_views_text(const struct session_context *context, const char *id);
-/* Adds an error to the JSON of a named view whose address is not valid in this plant, for example because it names an unknown tag: the
-   member `wrong` has the error's text, `refusal` its code. */
+/* Adds an error to the JSON of a named view whose address is not valid in this plant, for example because of an unknown tag.
+   The member `wrong` gets the error's text, `refusal` its code. */
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address);
 /* Returns the answer to the message `fit`: the camera that shows the requested object as a whole. */
 char *reply_camera_text(const struct camera *camera, uint32_t seq);

@@ -15,9 +15,9 @@ static inline json_int_t us(int64_t ns)
 
 /* --- reply_view.c --- */
 
-/* Adds the parameters of a view to a JSON object. open: for clients without a token; leaves out the names of tags and baselines. */
+/* Adds the parameters of a view to a JSON object. open: true: for clients without a token; omits the names of tags and baselines. */
 void reply_set_params(json_t *object, const struct session_context *context, const struct view *view, bool open);
-/* Returns the name of the environment (lighting) with that index in a view; the text is static or belongs to the plant. */
+/* Returns the name of the environment (lighting) with that index in a view. The text is static or belongs to the plant. */
 const char *reply_environment_name(const struct plant *plant, int environment);
 
 /* --- reply_plant.c --- */

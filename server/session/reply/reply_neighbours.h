@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares each sensor with the estimate from its neighbours, as the API reports it (HTTP.md, /api/v1/neighbours). Thread: the event
-   loop. */
+/* Compares each sensor with the estimate from its neighbours, for the API (HTTP.md, /api/v1/neighbours). Thread: the event loop. */
 #ifndef SESSION_REPLY_REPLY_NEIGHBOURS_H
 #define SESSION_REPLY_REPLY_NEIGHBOURS_H
 #include "field/neighbours.h"
@@ -10,8 +9,8 @@ struct neighbour_text_cache { /* cache for neighbour_text(); zero-initialise; ea
     struct neighbours_cache found;
 };
 
-/* Returns the sensors of a group as JSON text, those that disagree most with their neighbours first. tag: only that sensor; -1: all. The
-   caller frees the text. */
+/* Returns the sensors of a group as JSON text, those that differ most from their neighbours' estimate first. tag: only that
+   sensor; -1: all. The caller frees the text. */
 char *neighbour_text(struct neighbour_text_cache *cache, const struct session_context *context, int group, int tag);
 /* Frees the cache's contents; leaves an empty cache. */
 void neighbour_text_cache_finish(struct neighbour_text_cache *cache);

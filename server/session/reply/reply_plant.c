@@ -189,8 +189,8 @@ static void set_home(json_t *object, const struct session_context *context, int 
     json_object_set_new(object, "plant", plant_object(context, &home.camera));
 }
 
-/* Adds the lists of the plant's groups, colour maps, assets, tags and so on, which are the same for all clients with the same rights. open:
-   for clients without a token; leaves out the names of people and tags. */
+/* Adds the lists of the plant's groups, colour maps, assets, tags and so on, which are the same for all clients with the same
+   rights. open: true: for clients without a token; omits the names of people and tags. */
 static void set_lists(json_t *object, const struct session_context *context, bool open)
 {
     json_object_set_new(object, "groups", groups(context->plant));
@@ -226,8 +226,8 @@ static char *join(char *first, char *second)
     return both;
 }
 
-/* Returns the cached JSON lists of groups, assets, tags and so on for clients with the same rights (enum audience_lists), building them on
-   first use; the caller frees the text with mem_free. */
+/* Returns the cached JSON lists of groups, assets, tags and so on for clients with the same rights (enum audience_lists).
+   Builds the lists on first use; the caller frees the text with mem_free. */
 static char *lists_said(const struct session_context *context, enum audience_lists kind)
 {
     if (!context->lists_said)

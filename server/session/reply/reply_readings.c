@@ -22,7 +22,7 @@ static json_t *alarm_of(const struct reading *reading)
     return string(alarm_kind_name((enum alarm_kind)reading->alarm));
 }
 
-/* Returns whether the reading can be sent as a value alone, because it has good quality and no alarm. */
+/* Returns whether the reading can be sent as a bare value, because it has good quality and no alarm. */
 static bool is_plain(const struct reading *reading)
 {
     return reading->quality == QUALITY_GOOD && !reading->alarm;
@@ -39,7 +39,7 @@ static void add_alarm(const struct plant *plant, size_t tag, const struct readin
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
     json_t *values = json_array();
-    int64_t oldest_ns = 0; /* age of the oldest reading among those that are sent as a value alone, without quality and age */
+    int64_t oldest_ns = 0; /* age of the oldest reading among those sent as a bare value, without quality and age */
     for (size_t i = 0; i < snapshot->count; i++) {
         const struct reading *r = &snapshot->readings[i];
         if (!all && sent[i] == r->changes)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which JSON message a client is sent next, and when. */
+/* Chooses the next JSON message for a client, and the time to send it. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -57,8 +57,8 @@ static bool views_due(const struct session *session)
            named_views_number(session->context->services->named_views) > session->owed.views_sent;
 }
 
-/* Returns whether the list of notes must be sent: after a change of the notes, and when a session that shows the past moves to an instant
-   at which other notes existed. */
+/* Returns whether the list of notes must be sent: after a change of the notes, and when a session that shows the past moves to
+   an instant that had other notes. */
 static bool notes_due(const struct session *session)
 {
     const struct notes *notes = session->context->services->notes;

@@ -6,15 +6,15 @@
 #include "session/session.h"
 
 struct tag_text_cache { /* zero-initialise */
-    /* by tag: change counter (reading.changes) that clients had received before this message; the message is right only for clients with
-       the same counters */
+    /* by tag: change counter (reading.changes) that clients had before this message, which is right only for clients with the
+       same counters */
     uint32_t *before;
     int64_t taken_ns; /* time of the snapshot of readings that `text` lists */
     bool all;
     char *text; /* `tags` message in the cache; NULL: none yet */
 };
 
-/* Returns the text that reply_tags_text() would; the caller frees it with mem_free. cache NULL: nothing is cached. Updates `sent`. */
+/* Returns the same text as reply_tags_text(); the caller frees it with mem_free. cache NULL: nothing is cached. Updates `sent`. */
 char *tag_text_cache_get(struct tag_text_cache *cache, const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent,
                          bool all);
 void tag_text_cache_finish(struct tag_text_cache *cache);

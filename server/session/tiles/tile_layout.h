@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Positions, in pixels, of the tiles of one picture that spans many displays. The picture continues unseen behind the bezels, and has a
-   margin around all tiles, so that the tiles can shift together without a gap. Pure; any thread. */
+/* Positions, in pixels, of the tiles of one picture that spans many displays. The picture continues behind the bezels, and has
+   a margin around all tiles, so that the tiles can shift together without a gap. Pure; any thread. */
 #ifndef SESSION_TILES_TILE_LAYOUT_H
 #define SESSION_TILES_TILE_LAYOUT_H
 #include "plant/walls/burn_shift.h"
@@ -16,8 +16,8 @@ struct tile_layout {
     struct burn_shift shift; /* burn-in shift of all tiles within the picture, in the display's own pixels */
 };
 
-/* Lays out the tiles of a wall for displays of that size; the wall must have tiles. If the picture would have more than most_px pixels
-   or too long a side, all tiles shrink by one factor. */
+/* Lays out the tiles of a wall, which must have tiles, for displays of that size. If the picture would have more than most_px
+   pixels or too long a side, all tiles shrink by one factor. */
 void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int width_px, int height_px, int64_t most_px);
 /* Returns the layout with tiles, gaps and margin scaled by `scale`, which is at most 1. */
 struct tile_layout tile_layout_scale(const struct tile_layout *layout, double scale);

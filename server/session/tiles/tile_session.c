@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One tile of a picture over many displays: its size, the pictures that its client has, and whether it delays the other tiles. */
+/* One tile of a picture over many displays: its size, the pictures that its client has, and whether it delays other tiles. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -53,9 +53,9 @@ void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)
     tile->held[tile->held_count++] = (struct tile_held){ picture, seq };
 }
 
-/* Records that the tile's content in this picture equals the previous frame, so that no new frame is sent. That frame may still be on
-   its way from the encoder, because an answer without a frame overtakes it; then the picture number is attached to that frame when it
-   arrives. */
+/* Records that the tile looks the same in this picture as in the previous frame, so no new frame is sent. The previous frame
+   may still be on its way from the encoder, because an answer without a frame overtakes it. The picture number is then attached
+   to that frame when it arrives. */
 void session_tile_unchanged(struct session *session, uint64_t picture)
 {
     struct session_tile *tile = &session->tile;

@@ -19,8 +19,8 @@ bool session_tile_takes_part(const struct session *session, int64_t now_ns)
 
 /* --- requests --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether request a is more urgent than request b. A preview goes before a refined picture, because it means that a user moves the
-   camera, or that a tile has just connected. */
+/* Returns whether request a is more urgent than request b. A preview goes before a refined picture: it means that a user moves
+   the camera, or that a tile has just connected. */
 static bool goes_first(const struct frame_request *a, const struct frame_request *b)
 {
     if (a->view.tier != b->view.tier)
@@ -28,7 +28,7 @@ static bool goes_first(const struct frame_request *a, const struct frame_request
     return a->urgency < b->urgency;
 }
 
-/* Returns the worst quality that any of the wall's tiles needs: tiles of different quality would not look like one picture. */
+/* Returns the worst quality that any of the wall's tiles needs, because tiles of different quality would not look like one picture. */
 static struct rung worst_rung(const struct session_tiles *tiles, int *step)
 {
     struct quality_ladder worst = tiles->members[0]->delivery.pacer.ladder;
@@ -42,8 +42,7 @@ static struct rung worst_rung(const struct session_tiles *tiles, int *step)
     return quality_ladder_rung(&worst, worst.step);
 }
 
-/* Adjusts the size of the wall's picture to the server's speed. Does so only while the view moves, because a still picture measures
-   nothing. */
+/* Adjusts the size of the wall's picture to the server's speed, but only while the view moves: a still picture measures nothing. */
 static void follow_server(const struct session_tiles *tiles, bool moving, int64_t now_ns)
 {
     int64_t made_ns = 0;
@@ -90,7 +89,7 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
     first.view.width_px = tile_layout_width(&layout);
     first.view.height_px = tile_layout_height(&layout);
     first.always = always;
-    /* if no picture may be added to those in flight, this request may still replace one, such as a refined picture whose view has moved */
+    /* this request may not add a picture to those in flight, but may replace one, such as a refined picture whose view has moved */
     first.only_replace = !may_add;
     first.picture = number;
     for (size_t i = 0; i < tiles->count; i++) {
@@ -101,8 +100,8 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         requests[i].codec = member->codec.current;
         requests[i].account = member->room.share ? member->room.share->account : 0;
         requests[i].view.camera_seq = member->view.camera_seq;
-        /* members show the leader's parameters, so their frames carry the leader's params_seq, which the message `following` told the
-           client */
+        /* members show the leader's parameters, so their frames carry the leader's params_seq, known to the client from the
+           message `following` */
         requests[i].view.params_seq = tiles->leader->view.params_seq;
         requests[i].part = tile_layout_part(&layout, member->tile.place.display);
     }
@@ -111,7 +110,7 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
 
 /* --- which tile has received which picture of the wall ----------------------------------------------------------------------- */
 
-/* Returns the sequence number of the session's frame that holds its part of the wall's picture with the id `picture`, once the client has
+/* Returns the sequence number of the session's frame for the wall's picture with the id `picture`, once the client has
    acknowledged the frame; otherwise 0. */
 static uint32_t seq_of(const struct session *session, uint64_t picture)
 {
@@ -145,8 +144,8 @@ static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
     return 0;
 }
 
-/* Requests another picture for all members if no frame is in flight and some member has a frame that it never presented, because other
-   members lack a frame of the same picture: a newer request replaced theirs before it was drawn. */
+/* Requests another picture for all members if no frame is in flight and a member has a frame that it could not present. It
+   could not, because other members lack a frame of the same picture: a newer request replaced theirs before it was drawn. */
 static void ask_anew(const struct session_tiles *tiles)
 {
     bool any = false;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Synchronises sessions that are tiles of one picture over many displays (`tile` of the plant file). One session leads and the others
-   follow it. All request a picture together; it is drawn once, cut into tiles, and shown at one instant once every client has it, so no
-   tile is ahead of the others. A tile that delays the rest is dropped for a while and told so. Pure; the caller passes the time. Thread:
-   the event loop. */
+/* Synchronises sessions that are tiles of one picture over many displays (`tile` of the plant file). One session leads and the
+   others follow it. All request a picture together. It is drawn once, cut into tiles, and shown at one instant once every
+   client has it, so no tile is ahead of the others. A tile that delays the rest is dropped for a while, and its client is
+   informed. Pure; the caller passes the time. Thread: the event loop. */
 #ifndef SESSION_TILES_TILE_SYNC_H
 #define SESSION_TILES_TILE_SYNC_H
 #include "session/session.h"
@@ -14,12 +14,13 @@ struct session_tiles { /* members of a wall's picture (tiles that are neither dr
     struct session *const *members;
     size_t count;
     const struct session *leader;
-    struct quality_ladder *made; /* quality ladder of the wall: its picture size follows how long the server takes to make pictures */
+    struct quality_ladder *made; /* quality ladder of the wall, whose picture size depends on how long the server takes to make pictures */
 };
 
-/* Returns true if a new picture may be requested (or may replace one in flight) and a member wants it; fills requests[] with one request
-   per member. All requests have the same view and the quality that the slowest client, or the server, can keep up with. number: sequence
-   number of the new picture, larger than the last. Call session_requested() once the render service accepts them. */
+/* Returns true if a new picture may be requested (or may replace one in flight) and a member wants it; fills requests[] with
+   one request per member. All requests have the same view, and a quality that even the slowest client and the server can keep
+   up with. number: sequence number of the new picture, larger than the last. Call session_requested() once the render service
+   accepts them. */
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[]);
 /* Makes all members show, at one instant, the newest picture that every member has, if its number exceeds *presented. If nothing is in
    flight and some members have pictures that others lack, requests another picture for all. */

@@ -5,7 +5,7 @@
 #define SESSION_VIEW_RESUME_H
 #include "message/message.h"
 
-static const int64_t RESUME_KEPT_NS = 60LL * 1000000000; /* time for which a view is kept after its connection is lost */
+static const int64_t RESUME_KEPT_NS = 60LL * 1000000000; /* how long a view is kept after its connection is lost */
 enum { RESUME_MAX_KEPT = 256 }; /* maximum number of views kept for lost connections; the oldest is dropped first */
 
 struct session;
@@ -15,7 +15,7 @@ void resumes_destroy(struct resumes **resumes); /* destroys the list and sets *r
 
 /* Makes a connected session resumable from now on. Writes the secret that its client must present after a lost connection. */
 void resumes_open(struct resumes *resumes, struct session *session, char secret[RESUME_CHARS + 1]);
-/* Notes that the session's connection is lost. keep: keep its view for RESUME_KEPT_NS; false: the session cannot be resumed. */
+/* Notes that the session's connection is lost. keep: true: keeps its view for RESUME_KEPT_NS; false: the session cannot be resumed. */
 void resumes_close(struct resumes *resumes, const struct session *session, bool keep, int64_t now_ns);
 
 struct resumed {
@@ -24,11 +24,11 @@ struct resumed {
     double pixel_ratio;
     uint64_t called; /* session number that other sessions use to follow this one */
     double speed;    /* playback speed, recorded seconds per second, if view.at_us is a past instant */
-    /* session that has the view and is still connected, and must be closed now; NULL: the view's connection is lost */
+    /* session that has the view and is still connected, so that it must be closed now; NULL: the view's connection is lost */
     struct session *live;
 };
-/* Finds the view that a secret resumes. Returns false if no view has this secret, the view has expired, or it belongs to another token than
-   the session's. */
+/* Finds the view that a secret resumes. Returns false if no view has this secret, the view has expired, or the session has
+   another token than the view. */
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out);
 /* Returns whether a connected session has that number. */
 bool resumes_has_live(const struct resumes *resumes, uint64_t number);

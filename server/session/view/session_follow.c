@@ -15,7 +15,7 @@ void session_ask_follow(struct session *session, const struct message *message)
     session->following.asked = true;
 }
 
-/* Ends a session's display of the last view of a leader who has gone, and returns to the session's own view. */
+/* Ends the display of the last view of a leader who has gone, and returns to the session's own view. */
 static void come_to_own(struct session *session)
 {
     const struct view shown = session->view;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides what a narrowed token lets a session see and send. Such a token is limited to views of the plant file; a paired device is limited
-   to its display. */
+/* Decides what a narrowed token lets a session see and send: only certain views of the plant file or, for a paired device, only
+   what its display shows. */
 #include <jansson.h>
 #include <stdio.h>
 #include <string.h>
@@ -34,8 +34,8 @@ const char *session_scope_find_view(const struct plant_services *services, enum 
     return address;
 }
 
-/* Sets *view to a saved view, whatever the session itself may see, but keeps the size of `view`. Returns false with *error if the view
-   cannot be shown live. */
+/* Sets *view to a saved view, even one that the session may not see, but keeps the size of `view`. Returns false with *error if
+   the view cannot be shown live. */
 static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -162,8 +162,8 @@ static bool is_own(const struct session *session, const json_t *item)
            json_integer_value(json_object_get(item, "display")) == session->identity.holder.display;
 }
 
-/* Returns whether an item of a JSON list (`item`) concerns the display of this session. Items about a picture across many displays are
-   listed under the first of these displays. */
+/* Returns whether an item of a JSON list (`item`) is for the display of this session. Items for a picture across many displays
+   are listed under the first of these displays. */
 static bool is_ours(const struct session *session, const json_t *item)
 {
     const char *id = json_string_value(json_object_get(item, "wall"));
@@ -248,7 +248,7 @@ bool session_scope_allows(const struct session *session, const struct message *m
                      "key_frame and ping",
                      holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
-             /* picks are allowed to a display with pictures, because it uses them to find a free side for an alarm's label */
+             /* a display with pictures may pick, because it thus finds a free side for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
         message_fail(error, "not_allowed",
                      "this token belongs to display %d of wall %s, and permits only the messages that a display sends", holder->display,

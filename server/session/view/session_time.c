@@ -162,8 +162,8 @@ static void on_failure(struct session *session)
     session->owed.time = true;
 }
 
-/* Shows the loaded instant at_us even if the client has asked for a later one since. So a user who drags the time slider sees pictures
-   while dragging. */
+/* Shows the loaded instant at_us even if the client has since requested a later one. So a user who drags the time slider sees
+   pictures while dragging. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns)
 {
     struct travel *travel = &session->travel;

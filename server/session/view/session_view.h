@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The view that a session is shown: its own or its leader's, with readings of the present or of an instant. Thread: the event loop. */
+/* The view that a session shows: its own or its leader's, with readings of the present or of an instant. Thread: the event loop. */
 #ifndef SESSION_VIEW_SESSION_VIEW_H
 #define SESSION_VIEW_SESSION_VIEW_H
 #include "session/session_state.h"
@@ -10,7 +10,7 @@ const struct view *session_view(const struct session *session);
 struct view session_shown(const struct session *session);
 /* Returns the readings that the session is shown: of the present, or of an instant. */
 const struct snapshot *session_snapshot(const struct session *session);
-/* Applies the parameters of a message to a view. Returns false with *error if a parameter is wrong; then the view is unchanged. */
+/* Applies the parameters of a message to a view. If a parameter is wrong, returns false with *error and leaves the view unchanged. */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
 #endif
