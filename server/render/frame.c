@@ -116,7 +116,7 @@ struct then {
     /* wanted: the half shows differences from a baseline. distance: the half shows distances from a sensor, which its markers
        already hold and which do not depend on readings */
     bool wanted, distance;
-    /* readings of the baseline, which are subtracted from those of the view; NULL: the baseline no longer exists */
+    /* the baseline's readings, which are subtracted from the view's; NULL: the baseline no longer exists */
     const struct snapshot *snapshot;
 };
 

@@ -52,8 +52,7 @@ struct frame {
     struct frame_pool *pool;      /* pool to which this frame's pixel buffer returns; NULL: the buffer does not belong to a pool */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    /* visible points on isolines at which the isoline's value may be written (more than labels fit), and the arrows of
-       directional fields */
+    /* visible points on isolines where the isoline's value may be written (more than labels fit), and the arrows of directional fields */
     struct frame_label *labels;
     size_t label_count;
     int64_t data_utc_ns;   /* UTC time in nanoseconds of the snapshot of readings that the frame shows */
@@ -64,8 +63,8 @@ struct frame {
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
     /* time that the render thread spent on this frame, waiting for the GPU included; 0: not drawn by a render thread */
     int64_t turn_ns;
-    struct baseline baseline;    /* baseline from which the frame shows differences; id 0: none */
-    /* copies of the readings from which the frame was drawn (render/frame_record.h); NULL: none were requested */
+    struct baseline baseline;    /* baseline whose readings are subtracted; id 0: the frame shows no differences */
+    /* copies of the readings used to draw the frame (render/frame_record.h); NULL: none were requested */
     struct frame_record *record;
     /* depth grid of the frame, or of each half of a split view, with which clients warp the picture for a moved camera; NULL: none */
     struct depth_grid *depth[2];

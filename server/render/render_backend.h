@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interface of a render backend: GL or software. On machines without a GPU, renderer.c asks the software backend first; GL draws the frames
-   that the software backend cannot. Thread: the one of the GL context. */
+/* Interface of a render backend: GL or software. On machines without a GPU, renderer.c asks the software backend first; GL
+   draws the frames that the software backend cannot. Thread: the one that owns the GL context. */
 #ifndef RENDER_RENDER_BACKEND_H
 #define RENDER_RENDER_BACKEND_H
 #include <stdbool.h>

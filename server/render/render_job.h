@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Render job: a frame being drawn in steps. The job holds everything that the frame shows, until its last step. Thread: the one of the GL
-   context. */
+/* Render job: a frame being drawn in steps. The job holds everything that the frame shows, until its last step. Thread: the one
+   that owns the GL context. */
 #ifndef RENDER_RENDER_JOB_H
 #define RENDER_RENDER_JOB_H
 #include "render/frame.h"

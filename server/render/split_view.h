@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws views that may be split into two halves under one camera. Each half is planned and drawn as a frame of its own; then
-   the two are joined side by side. A view that is not split has one half. Thread: the one of the GL context. */
+   the two are joined side by side. A view that is not split has one half. Thread: the one that owns the GL context. */
 #ifndef RENDER_SPLIT_VIEW_H
 #define RENDER_SPLIT_VIEW_H
 #include "render/renderer.h"

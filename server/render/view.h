@@ -21,7 +21,7 @@ enum look {
     LOOK_FLAT,     /* no shading */
     LOOK_MATERIALS /* the view shows no field, but all assets in full colour with the materials of their models */
 };
-/* form in which sensor directions are drawn, for groups that have directions */
+/* how sensor directions are drawn, in groups that have directions */
 enum directions_look { DIRECTIONS_ARROWS, DIRECTIONS_STROKES, DIRECTIONS_NONE };
 enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_SIDE_PX 8192
@@ -52,7 +52,7 @@ struct view {
     struct camera camera;
     uint32_t camera_seq; /* the client's sequence number of this camera, echoed in the frame */
     uint32_t params_seq; /* the client's sequence number of the parameters, echoed in the frame */
-    int64_t input_ns;    /* monotonic time at which the newest input of the user arrived */
+    int64_t input_ns;    /* arrival time of the user's newest input, on the monotonic clock */
     /* device pixels per CSS pixel of the page. The size of the area in which a click picks a marker is proportional to this; 0:
        counts as 1 */
     double pixel_ratio;
@@ -87,8 +87,8 @@ void view_default_scale(const struct scene *scene, struct view *view);
    legend, and ignores colormap and color_scale. */
 bool view_is_operator(const struct view *view);
 void view_scale(const struct plant *plant, const struct view *view, struct scale *scale);
-/* Fills `lines` with the ascending values at which a line is drawn: isolines, and edges of colour bands within the range. Returns the
-   number of lines. */
+/* Fills `lines` with the values at which a line is drawn, ascending: isolines, and edges of colour bands within the range.
+   Returns the number of lines. */
 enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 /* Copies half 0 (all of a view that is not split) or half 1 into `out` as a view of its own. */
@@ -100,7 +100,7 @@ void view_set_instant(struct view *view, int64_t at_us, int slot);
 /* Sets the trial whose sensor positions the view uses (field/trials.h), in both halves; 0: the plant's positions. Call this again after
    replacing the field parameters. */
 void view_set_trial(struct view *view, uint32_t trial);
-/* returns the width of the left half in pixels, which is the x coordinate at which the right half begins */
+/* returns the width of the left half in pixels, which is the x coordinate of the right half */
 int view_left_px(const struct view *view);
 /* Splits the view into two halves. right: a view that is not split, for example one from view_half(); the right half shows its content. */
 void view_split(struct view *view, const struct view *right);

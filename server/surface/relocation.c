@@ -36,7 +36,7 @@ struct relocation {
     pthread_cond_t idle;
     /* --- below: under lock */
     enum relocation_state state;
-    /* surface of the asset, on which distances are computed; once it is built, it is read without the mutex */
+    /* surface of the asset, used to compute distances; once it is built, it is read without the mutex */
     struct surface *surface;
     /* positions of the asset's vertices on the surface, read without the mutex once the surface is built. NULL: not needed,
        because the surface was built from these vertices */

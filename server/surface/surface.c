@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the surface on which distances are computed from a model's triangles: welds vertices, repairs cracks, samples (surface.h). */
+/* Builds the surface for computing distances from a model's triangles: welds vertices, repairs cracks, samples (surface.h). */
 #include "surface/surface.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@
 #include "surface/surface_impl.h"
 #include "surface/mesh/decimate.h"
 
-/* distance up to which vertices are welded (treated as one), relative to the model's size: the resolution of float positions */
+/* vertices closer than this, relative to the model's size, are welded (treated as one): the resolution of float positions */
 #define WELD_OF_SIZE 1e-6
 #define TOLERANCE_OF_SIZE 5e-4
 #define SAMPLES 15000.0        /* number of points that sampling should add to the model's vertices */
@@ -292,8 +292,8 @@ static void find_strays(struct surface *surface)
     mem_free(used);
 }
 
-/* Groups the visible triangles of the surface by the model triangle of which they are pieces; coplanar model triangles that were merged
- * form one group. */
+/* Groups the visible triangles of the surface by model triangle (each is a piece of one); coplanar model triangles that were
+ * merged form one group. */
 static void list_pieces(struct surface *surface)
 {
     const struct trimesh *mesh = &surface->visible;

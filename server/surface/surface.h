@@ -64,7 +64,7 @@ void surface_destroy(struct surface **surface);
 const struct surface_report *surface_report(const struct surface *surface);
 
 struct crack_bridge;
-/* The mesh on which distances are computed, for debug views. The surface owns the arrays. */
+/* The mesh used to compute distances, for debug views. The surface owns the arrays. */
 struct surface_debug_mesh {
     const double (*points_m)[3];
     const uint32_t (*tris)[3]; /* visible triangles first */
@@ -74,7 +74,7 @@ struct surface_debug_mesh {
     const struct crack_bridge *bridges; /* repair.h */
     size_t bridge_count;
 };
-/* Fills *look with the mesh on which distances are computed. Its arrays are owned by the surface. */
+/* Fills *look with the mesh used to compute distances. The surface owns its arrays. */
 void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh *look);
 
 /* result of projecting a point onto the surface */

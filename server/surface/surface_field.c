@@ -203,7 +203,7 @@ SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
-    /* cut / dy: position along the edge, counted from a, at which the straight path crosses it */
+    /* cut / dy: position of the straight path's crossing with the edge, counted from a */
     float dx = x - sx, dy = y + sy, cut = sx * y + x * sy;
     float straight2 = dx * dx + dy * dy;
     /* if da or db is INFINITY, the conditions are not all true, and the result is INFINITY */

@@ -18,7 +18,7 @@ struct surface {
     size_t vertex_count;
     uint32_t *vertex_point; /* per model vertex */
     struct trimesh mesh;    /* mesh after welding, bridging of gaps and sampling; visible triangles first */
-    struct trimesh visible; /* mesh of the visible triangles only; its arrays are those of `mesh` */
+    struct trimesh visible; /* mesh of the visible triangles only; shares the arrays of `mesh` */
     /* by point: its connected component, by visible triangles; NULL: not computed yet, because the surface was read from a file */
     uint32_t *component;
     struct stray *strays; /* sorted by vertex */
@@ -26,7 +26,7 @@ struct surface {
     struct intrinsic intrinsic;
     struct propagation propagation;
     struct bvh *bvh;
-    uint32_t *plane; /* by model triangle: lowest index of the coplanar model triangles with which it was merged (decimate.h) */
+    uint32_t *plane; /* by model triangle: lowest index of the coplanar model triangles merged with it (decimate.h) */
     /* pieces: visible triangles, grouped by `plane` of their model triangle; piece_first: by plane, index in `pieces` of its first
        triangle */
     uint32_t *piece_first, *pieces;

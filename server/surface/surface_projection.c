@@ -15,7 +15,7 @@
 #define MAX_TRIED_PIECES 24
 /* a triangle whose front faces along the requested normal is preferred to the nearest triangle, up to this many times its distance */
 #define FACING_FACTOR 4.0
-#define ROUNDING 1e-9 /* relative amount by which search limits are enlarged, because computed distances have rounding errors */
+#define ROUNDING 1e-9 /* relative enlargement of search limits, because computed distances have rounding errors */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {

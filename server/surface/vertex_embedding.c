@@ -11,7 +11,7 @@
 #include "surface/surface_impl.h"
 
 #define GRAIN 512
-#define ON_SURFACE 1e-3 /* distance from a face up to which a vertex counts as lying on it, in multiples of the mean edge length */
+#define ON_SURFACE 1e-3 /* a vertex counts as lying on a face up to this distance, in multiples of the mean edge length */
 
 struct anchor {
     /* index of the surface point at the vertex's position; TRIMESH_NONE: no surface point is there, and `hit` is the vertex's position on

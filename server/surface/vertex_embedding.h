@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertex embedding: positions on a surface of vertices from which the surface was not built, so that distances can be computed there. The
-   vertices of an asset file need this: their order differs from the model's, and there are additional ones. Thread: create and destroy from
-   one thread; distances from any. */
+/* Vertex embedding: finds the positions of vertices on a surface that was not built from them, so that distances can be
+   computed there. The vertices of an asset file need this: their order differs from the model's, and there are additional ones.
+   Thread: create and destroy from one thread; distances from any. */
 #ifndef SURFACE_VERTEX_EMBEDDING_H
 #define SURFACE_VERTEX_EMBEDDING_H
 #include "surface/surface.h"

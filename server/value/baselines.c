@@ -72,7 +72,7 @@ static struct baseline_slot *find_name(struct baselines *baselines, const char *
     return NULL;
 }
 
-/* Returns the baseline with that id, or NULL. Call with the lock held. */
+/* Returns the baseline with this id, or NULL. Call with the lock held. */
 static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
 {
     for (size_t i = 0; i < baselines->count; i++)

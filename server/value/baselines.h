@@ -20,8 +20,8 @@ struct baselines;
 struct baselines *baselines_create(void);
 void baselines_destroy(struct baselines **baselines); /* Frees the baselines and sets *baselines to NULL. *baselines may be NULL. */
 
-/* Stores a copy of the snapshot as a baseline with that name and returns its id. An existing baseline with the name is replaced and
-   keeps its id, so that views that show it use the new readings. Returns 0 if BASELINES_NAMED other names are in use. */
+/* Stores a copy of the snapshot as a baseline with this name and returns its id. An existing baseline with the name is replaced
+   and keeps its id, so that views that show it use the new readings. Returns 0 if BASELINES_NAMED other names are in use. */
 uint32_t baselines_set(struct baselines *baselines, const char *name, const struct snapshot *snapshot);
 /* Stores a copy of the snapshot as an unnamed baseline and returns its id; the oldest unnamed baseline is dropped if there are too many.
    Readings of one time are stored only once. */

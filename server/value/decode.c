@@ -104,7 +104,7 @@ static bool is_number(double raw, double number)
     return raw == number || raw == (double)(float)number;
 }
 
-/* Returns true if a device's value is one of the special values by which it reports a failure, such as an open circuit. bits: the bits
+/* Returns true if a device's value is one of the special values that report a failure, such as an open circuit. bits: the bits
    of the registers; NULL: the source received a number instead of registers. */
 static bool is_sentinel(const struct tag_scale *scale, const uint64_t *bits, double raw)
 {
@@ -116,8 +116,8 @@ static bool is_sentinel(const struct tag_scale *scale, const uint64_t *bits, dou
     return false;
 }
 
-/* Returns the quality of a current in mA by NAMUR NE 43: from 3.8 to 20.5 mA it is a measurement; at most 3.6 or at least 21 mA means that
- * the transmitter or its loop has failed. */
+/* Returns the quality of a current in mA by NAMUR NE 43. From 3.8 to 20.5 mA it is a measurement. At most 3.6 or at least 21 mA
+ * means that the transmitter or its loop has failed. */
 static uint32_t judge_current(const struct tag_scale *scale, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;

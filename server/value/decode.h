@@ -20,8 +20,8 @@ void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sa
  * of type bool, the number becomes 0 or 1. */
 void decode_number(const struct plant_tag *tag, double raw, struct sample *out);
 
-/* Returns the quality of a value that needs no scaling, in the unit of the tag list: Good, Uncertain_EngineeringUnitsExceeded beyond the
-   instrument's range, or Bad_SensorFailure if the value is not finite. */
+/* Returns the quality of a value that is already in the tag list's unit: Good, Uncertain_EngineeringUnitsExceeded beyond the
+   instrument's range, or Bad_SensorFailure if not finite. */
 uint32_t decode_quality(const struct plant_tag *tag, double value);
 
 #endif

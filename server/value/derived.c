@@ -80,9 +80,9 @@ static struct reading combine(const struct derived_state *state, const struct pl
     return all;
 }
 
-/* Writes a derived tag's result to the store only if an input is newer than at the last write, or value or quality differ, because
-   writing an unchanged result would make it look newer than its inputs. Inputs have the times that their devices state, so an input that
-   arrives late may change the value without being the newest. */
+/* Writes a derived tag's result to the store only if an input is newer than at the last write, or value or quality differ.
+   Writing an unchanged result would make it look newer than its inputs. Inputs have the times that their devices state, so an
+   input that arrives late may change the value without being the newest. */
 static void write_new(struct derived_state *state, struct store *store, size_t i, struct reading *reading)
 {
     struct written *written = &state->written[i];

@@ -8,8 +8,9 @@ struct lookup;
 
 /* Starts resolving the name `host`. Never returns NULL. */
 struct lookup *lookup_start(const char *host, int port);
-/* Waits for the addresses of the host until the deadline. Returns 0 with the list of addresses in *out, valid until lookup_destroy();
-   -ETIMEDOUT: not resolved yet, call again; -ECANCELED: stop_fd became readable; -EHOSTUNREACH: the host name does not resolve. */
+/* Waits for the addresses of the host until the deadline. Returns 0 with the list of addresses in *out, valid until
+   lookup_destroy(). -ETIMEDOUT: not resolved yet, call again. -ECANCELED: stop_fd became readable. -EHOSTUNREACH: the host name
+   does not resolve. */
 int lookup_wait(struct lookup *lookup, int stop_fd, int64_t deadline_mono_ns, const struct addrinfo **out);
 /* Frees the lookup without waiting for the system's resolver, and sets *lookup to NULL. *lookup may be NULL. */
 void lookup_destroy(struct lookup **lookup);

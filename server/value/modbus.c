@@ -56,8 +56,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus_manners_after(modbus);
 }
 
-/* Returns the time from which a block (tags read by one request) may be read. That is the latest of three: the block's due time; the retry
-   time of its unit, while the unit is down; the time of the next connection attempt, while the link is closed. */
+/* Returns the time from which a block (tags read by one request) may be read. It is the latest of the block's due time, the
+   retry time of its unit while that is down, and the time of the next connection attempt while the link is closed. */
 static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     const struct modbus_unit *unit = modbus_unit_of(modbus, block);
@@ -69,8 +69,9 @@ static int64_t ready_ns(const struct modbus_source *modbus, const struct read_pl
     return at_ns;
 }
 
-/* Returns the index of the block (tags read by one request) that may be read now and has waited longest, so that a block that always fails
-   cannot keep others from being read. Returns block_count if no block may be read yet; *wake_ns is then the time when one may. */
+/* Returns the index of the block (tags read by one request) that may be read now and has waited longest. So a block that always
+   fails cannot keep others from being read. Returns block_count if no block may be read yet; *wake_ns is then the time when one
+   may. */
 static size_t choose_block(const struct modbus_source *modbus, int64_t now_ns, int64_t *wake_ns)
 {
     size_t chosen = modbus->plan.block_count;

@@ -45,8 +45,8 @@ static uint32_t quality_of_exception(int code)
     case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
     case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
-    /* for exceptions such as busy, Good means that no quality is written: the device is asked again soon, and the readings become stale if
-       it stays busy */
+    /* for exceptions such as busy, Good means that no quality is written. The device is asked again soon; if it stays busy, the
+       readings become stale */
     default: return QUALITY_GOOD;
     }
 }
@@ -98,7 +98,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
-        /* reads both halves of the split block (tags read by one request) immediately; a half that the device refuses is split
+        /* reads both halves of the split block (tags read by one request) immediately. A half that the device refuses is split
            again, until the refused register is found */
         block->due_ns = now_ns;
         read_plan_split(&modbus->plan, modbus->base.plant, index);

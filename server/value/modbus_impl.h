@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Declarations shared by the files of a Modbus source: its thread (modbus.c), the state of each unit (modbus_units.c), its
-   adaptation to the way the device handles connections (modbus_manners.c), and processing of responses (modbus_answers.c).
-   Thread: the source's own. */
+/* Declarations shared by the files of a Modbus source. These are its thread (modbus.c), the state of each unit
+   (modbus_units.c), its adaptation to the way the device handles connections (modbus_manners.c), and processing of responses
+   (modbus_answers.c). Thread: the source's own. */
 #ifndef VALUE_MODBUS_IMPL_H
 #define VALUE_MODBUS_IMPL_H
 #include "base/log/log_pace.h"
@@ -19,8 +19,8 @@ struct modbus_unit { /* one Modbus unit (slave address); a gateway or a serial l
     int64_t retry_ns;
     struct log_pace pace, busy_pace;
     bool loss_said; /* true: the log says that the unit does not answer, but not yet that it answers again */
-    /* true: a block (tags read by one request) failed on a new connection while the unit was up; the result of the next block decides
-       whether the block or the unit is to blame */
+    /* true: a block (tags read by one request) failed on a new connection while the unit was up. The result of the next block
+       decides whether the block or the unit is to blame */
     bool doubted;
     enum register_table doubted_table;
     int doubted_first;
@@ -73,11 +73,11 @@ struct modbus_source {
 /* The gateway counts as lost if this many units stop answering one after the other, without an answer from any unit in between. */
 enum { GATEWAY_UNITS = 3 };
 
-/* Returns the Modbus unit (slave address) from which a block of the read plan is read. */
+/* Returns the Modbus unit (slave address) that a block of the read plan belongs to. */
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
 /* Records that a unit answered. Logs this if the log said before that the unit does not answer. */
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
-/* Records that a unit does not answer: the readings of its tags are lost (store_tags_lost()), and the unit gets no request
+/* Records that a unit does not answer. The readings of its tags are lost (store_tags_lost()), and the unit gets no request
    before a backoff delay has passed. If GATEWAY_UNITS units have now failed without an answer in between, the readings of all
    units of the source are lost immediately. */
 void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why);

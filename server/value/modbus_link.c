@@ -37,15 +37,15 @@ struct modbus_link {
     uint16_t number;  /* transaction identifier of the last request, for TCP frames */
     int stop_fd;
     int null_fd;
-    /* A low file descriptor that is reserved when the link is created. Each connection is moved into it with dup3(), because
-       the daemon may have more than FD_SETSIZE files open, and select(), which libmodbus calls, cannot handle descriptors of
-       FD_SETSIZE or higher. */
+    /* A low file descriptor that is reserved when the link is created; dup3() moves each connection into it. The daemon may
+       have more than FD_SETSIZE files open, and select(), which libmodbus calls, cannot handle descriptors of FD_SETSIZE or
+       higher. */
     int slot_fd;
     bool open;
     /* true (RTU frames only): the device may still answer an abandoned request, so the next answer may belong to that request */
     bool suspect;
-    /* For RTU frames. asked_ns: monotonic time when the last request was sent; abandoned_ns: when the oldest request that may
-       still be answered was sent, 0: none; late_ns: how long the device took to answer an abandoned request, 0: it answers in
+    /* For RTU frames. asked_ns: monotonic time when the last request was sent. abandoned_ns: when the oldest request that may
+       still be answered was sent; 0: none. late_ns: how long the device took to answer an abandoned request; 0: it answers in
        time */
     int64_t asked_ns, abandoned_ns, late_ns;
     int host;     /* index in source->hosts of the host that is used now */
@@ -324,8 +324,8 @@ static int status_of(int got, int count)
 }
 
 /* Sends a request in TCP frames and receives its answer. The first request of a connection is repeated until it is answered or
-   patience_ns have passed: some devices drop requests that come soon after connecting, others take long for their first answer. The
-   answer to any of the repeated requests is accepted. */
+   patience_ns have passed. Some devices drop requests that come soon after connecting, others take long for their first answer.
+   The answer to any of the repeated requests is accepted. */
 static int ask_framed(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     struct modbus_question numbered = *question;
@@ -370,9 +370,10 @@ static int drain(struct modbus_link *link, int64_t quiet_ns)
     return count;
 }
 
-/* Discards the answers to abandoned requests: RTU frames have no transaction numbers, so such an answer could be taken for the answer to
-   the next request. Sends a request, discards its answer, and waits until the line is quiet. The discarded answer may have been the one
-   to the oldest abandoned request; then the device takes as long for each of the others. Returns false if the device does not answer. */
+/* Discards the answers to abandoned requests: RTU frames have no transaction numbers, so such an answer could be taken for the
+   answer to the next request. Sends a request, discards its answer, and waits until the line is quiet. The discarded answer may
+   have been the one to the oldest abandoned request. The device then takes as long for each of the others. Returns false if the
+   device does not answer. */
 static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     int64_t timeout_ns = link->source->timeout_ms * NS_PER_MS, quiet_ns = timeout_ns;
@@ -392,9 +393,9 @@ static bool clear_line(struct modbus_link *link, const struct modbus_question *q
     return !link->suspect;
 }
 
-/* Records that the last request, in RTU frames, was abandoned without an answer. cleared: clear_line() was called before that request.
-   The missing answer then need not come late: the device may be one that answers only one request on each connection, unless late
-   answers were seen. */
+/* Records that the last request, in RTU frames, was abandoned without an answer. cleared: clear_line() was called before that
+   request. The missing answer then need not come late: unless late answers were seen, the device may answer only one request
+   per connection. */
 static void abandon(struct modbus_link *link, bool cleared)
 {
     if (!link->abandoned_ns)

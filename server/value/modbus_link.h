@@ -26,8 +26,8 @@ int modbus_link_open(struct modbus_link *link);
 /* Switches to the next of the source's hosts. Returns true if it switched from the last host back to the first. */
 bool modbus_link_next_host(struct modbus_link *link);
 /* Reads `count` registers, or bits as 0 and 1, into `words`, within the source's timeout_ms however slowly the device sends.
-   Returns 0; a Modbus exception code (> 0; the connection stays open); or -errno with the connection closed, so that a late or
-   foreign response is never mistaken for the response to the next request. */
+   Returns 0; a Modbus exception code (> 0), with the connection still open; or -errno, with the connection closed. Closing it
+   prevents a late or foreign response from being mistaken for the response to the next request. */
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words);
 /* Closes the connection; modbus_link_open() makes a new one. */
 void modbus_link_close(struct modbus_link *link);
@@ -42,8 +42,8 @@ int modbus_link_answered_unit(const struct modbus_link *link);
 void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns);
 /* Returns the number of requests that were answered on the current connection, or on the last one if none is open. */
 int modbus_link_answers(const struct modbus_link *link);
-/* For RTU frames: returns how long after an abandoned request the device answered it, in nanoseconds; 0: no late answer was seen since
-   the last answer in time. */
+/* For RTU frames: returns the time in nanoseconds that the device took to answer an abandoned request. 0: no late answer was
+   seen since the last answer in time. */
 int64_t modbus_link_late_ns(const struct modbus_link *link);
 /* Returns the time in nanoseconds from connecting until the first answered request was sent. *answered_ns receives the time from
    connecting until its answer. */

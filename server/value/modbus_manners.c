@@ -50,8 +50,8 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
     int64_t patience_ns = manners->first_wait_ns;
     if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < FIRST_ANSWER_TIMEOUT_NS)
         patience_ns = manners->silent_connections == 1 ? FIRST_ANSWER_TIMEOUT_NS : 2 * FIRST_ANSWER_TIMEOUT_NS;
-    /* waits longer than the timeout only once for a gateway that may be busy with a silent unit: after that, the gateway itself may be
-       lost */
+    /* waits longer than the timeout only once for a gateway that may be busy with a silent unit: a second time, the gateway
+       itself may be lost */
     bool waits = manners->timed_out && manners->timed_out != unit && modbus->fallen < GATEWAY_UNITS - 1;
     manners->first_excused = waits && unit->state == UNIT_UP && patience_ns < GATEWAY_TIMEOUT_NS;
     if (manners->first_excused)
@@ -75,8 +75,8 @@ static void log_found(struct modbus_source *modbus, const char *found)
     log_info(modbus->base.log, "source %s: device %s %s", modbus->base.config->id, modbus_link_name(modbus->link), found);
 }
 
-/* Learns from a late first answer on a connection why it was late: the device dropped the first request and answered a repeated one, or
-   it took long to answer the first. */
+/* Learns why the first answer on a connection was late. Either the device dropped the first request and answered a repeated
+   one, or it took long to answer the first. */
 static void learn_start(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -166,8 +166,8 @@ static bool is_closed(int status)
     return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
 }
 
-/* Logs why the source reads one block (tags read by one request) per connection from now on. A device that takes long for each answer looks
-   like one that answers only once for each connection: its second answer does not come in time. */
+/* Logs why the source reads one block (tags read by one request) per connection from now on. A slow device looks like one that
+   answers only once per connection, because its second answer does not come in time. */
 static void log_one_per_connection(struct modbus_source *modbus, int status)
 {
     int64_t wait_ns = modbus->manners.first_wait_ns;
@@ -198,7 +198,7 @@ static void learn_end(struct modbus_source *modbus, int answers, int status)
 }
 
 /* Returns true, and sets the time of the next attempt, if the device refused or closed a connection soon after its last answer
-   on an earlier one: it may take a while to release the earlier connection. */
+   on an earlier one. It may take a while to release the earlier connection. */
 static bool may_be_early(struct modbus_source *modbus, int status, int most)
 {
     struct modbus_manners *manners = &modbus->manners;

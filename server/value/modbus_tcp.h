@@ -11,8 +11,7 @@
 struct modbus_question {
     uint16_t number; /* transaction identifier */
     uint8_t unit;
-    /* true: a response may state unit 0 or 255 in place of the requested unit; a response to a request for unit 0 or 255 may state any
-       unit */
+    /* true: a response may state unit 0 or 255 instead of the requested unit; and if unit 0 or 255 was requested, it may state any unit */
     bool any_unit;
     /* transaction identifier of the first copy of this request, if it was repeated on this connection; equal to `number` if it was sent
        once */
@@ -27,9 +26,10 @@ struct modbus_answered {
     bool began; /* true: at least one byte of the response has arrived */
 };
 
-/* Sends a request and receives its response; `words` as in modbus_link_read(). *answered receives the response's transaction identifier and
- * unit. Returns 0, a Modbus exception code, or -errno. -EBADMSG: the response has another transaction identifier. -EPROTO: header, unit,
- * function or size of the response do not match the request; returned without waiting for the number of bytes that the header announces. */
+/* Sends a request and receives its response; `words` as in modbus_link_read(). *answered receives the response's transaction
+ * identifier and unit. Returns 0, a Modbus exception code, or -errno. -EBADMSG: the response has another transaction
+ * identifier. -EPROTO: header, unit, function or size of the response do not match the request. It is returned immediately,
+ * without waiting for all the bytes that the header announces. */
 int modbus_tcp_ask(int fd, int stop_fd, int64_t deadline_mono_ns, const struct modbus_question *question, uint16_t *words,
                    struct modbus_answered *answered);
 

@@ -11,8 +11,7 @@
 /* Delay before a register that the device refused is read again. The delay doubles after each refusal up to MAX_REFUSED_DELAY_NS,
    because a device may refuse only while it starts up. */
 static const int64_t REFUSED_DELAY_NS = 2 * NS_PER_S, MAX_REFUSED_DELAY_NS = 60 * NS_PER_S;
-/* delay between two requests to a unit while blocks (tags read by one request) are split, to find the addresses for which the device
-   does not answer */
+/* delay between two requests to a unit while blocks (tags read by one request) are split to find the addresses that get no answer */
 static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS;
 
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
@@ -107,8 +106,8 @@ static void lose_tags_of(struct modbus_source *modbus, const struct modbus_unit 
     store_tags_lost(modbus->base.store, modbus->lost, count, clock_mono_ns());
 }
 
-/* Switches to the source's next host and connects to it without a delay; once all hosts were tried, backs off before trying the
-   first one again. */
+/* Switches to the source's next host and connects to it without a delay. Once all hosts were tried, backs off before trying the
+   first again. */
 static void try_elsewhere(struct modbus_source *modbus)
 {
     int64_t now_ns = clock_mono_ns();
@@ -158,8 +157,8 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit,
 
 /* --- deciding whether a block or its unit is to blame ----------------------------------------------------------------------- */
 
-/* Returns the block (tags read by one request) that is due first among the other blocks of the same unit whose last request was
-   answered; NULL: there is none. */
+/* Returns the block (tags read by one request) to try instead: of the unit's other blocks whose last request was answered, the
+   one due first. NULL: none. */
 static struct read_plan_block *other_block(struct modbus_source *modbus, const struct read_plan_block *block)
 {
     struct read_plan_block *other = NULL;
@@ -184,7 +183,7 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
     return true;
 }
 
-/* Records that a block rather than its unit is to blame for a missing answer: splits the block in two or, if it has a single
+/* Records that a block rather than its unit is to blame for a missing answer. Splits the block in two or, if it has a single
    tag, requests it again after growing delays. */
 static void blame(struct modbus_source *modbus, size_t index)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quality of a reading as an OPC UA status code (Part 4, 7.39; Part 8, annex A), whose two top bits are the severity: Good, Uncertain or
- * Bad. */
+/* Quality of a reading as an OPC UA status code (Part 4, 7.39; Part 8, annex A). Its two top bits are the severity: Good,
+ * Uncertain or Bad. */
 #ifndef VALUE_QUALITY_H
 #define VALUE_QUALITY_H
 #include <stdbool.h>

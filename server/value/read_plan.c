@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes the read plan of a Modbus source: sorts its tags by register address and divides the list into blocks, at gaps and at the
+/* Makes the read plan of a Modbus source: sorts its tags by register address, and divides them into blocks at gaps and at the
    protocol's limits. */
 #include "value/read_plan.h"
 
@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "value/decode.h"
 
-struct register_place { /* register address of a tag; tags are sorted by these members, in the order in which they are declared */
+struct register_place { /* register address of a tag; tags are sorted by these members, in order of declaration */
     int unit, table, scan_ms, first, end, tag;
 };
 

@@ -5,7 +5,7 @@
 #include "base/text/text.h"
 #include "plant/plant.h"
 
-/* Appends the read plan of one source. For a source that is not Modbus, appends one line that says so. */
+/* Appends the read plan of one source. If the source is not Modbus, appends one line that says so. */
 void read_plan_text(struct text *out, const struct plant *plant, int source);
 
 #endif

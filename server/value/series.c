@@ -32,8 +32,8 @@ struct series_lines {
     size_t count, capacity;
 };
 
-/* Begins to read the text of a CSV file. The separator of its cells is the character among , ; and tab that occurs most in the first
-   line, so that `21,5` in a file with semicolons is one cell. */
+/* Begins to read the text of a CSV file. The separator of its cells is the most frequent of comma, semicolon and tab in the
+   first line. So `21,5` in a file with semicolons is one cell. */
 static struct series_lines lines_of(const char *path, const char *text)
 {
     size_t most = 0;
@@ -188,8 +188,8 @@ static bool read_number(struct clock *clock, const struct series_cell *cell, dou
     return true;
 }
 
-/* Reads a line's time in seconds since the first line. Returns false if the cell is not a time, or the time is before that of the
-   previous line. */
+/* Reads a line's time in seconds since the first line. Returns false if the cell is not a time, or the time is before the
+   previous line's. */
 static bool tick(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     if (!(clock->instants ? read_instant : read_number)(clock, cell, time_s) || *time_s < clock->last_s)
@@ -199,8 +199,8 @@ static bool tick(struct clock *clock, const struct series_cell *cell, double *ti
     return true;
 }
 
-/* Returns true if a line has more non-empty cells than the header has columns, for example because of the number `1,234` in a file with
-   commas. */
+/* Returns true if a line has more non-empty cells than the header has columns, for example because a file with commas contains
+   the number `1,234`. */
 static bool has_surplus(const struct series_lines *lines, size_t columns)
 {
     for (size_t i = columns; i < lines->count; i++)

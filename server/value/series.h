@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads recorded series from CSV files; times count from the start of the file. Three forms are supported:
-   wide: a header line; one column is the time, the others are series named by their headers. The name of the time column ends in _ms, _s,
-   _min or _h. Or the column has dates and times (timestamp.h), and is called Time, Timestamp, UTC, DateTime or Date, or is the first one;
-   values: a header line with Tag, Time and Value, perhaps Quality and Unit; one value a line, as `plantcast history export` prints;
-   long: no header, lines of `time in ms,type,entity,property,value,...`; a series is called `entity/property`.
+/* Reads recorded series from CSV files; times count from the start of the file. Three forms are supported. Wide: a header line;
+   one column is the time, the others are series named by their headers. The name of the time column ends in _ms, _s, _min or
+   _h. Or the column has dates and times (timestamp.h), and is called Time, Timestamp, UTC, DateTime or Date, or is the first
+   one. Values: a header line with Tag, Time and Value, perhaps Quality and Unit; one value a line, as printed by `plantcast
+   history export`. Long: no header, lines of `time in ms,type,entity,property,value,...`; a series is called `entity/property`.
    Dates and times without a zone are in the local zone of the process. Thread: one. */
 #ifndef VALUE_SERIES_H
 #define VALUE_SERIES_H

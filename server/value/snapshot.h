@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Snapshot: the readings of all tags at one time, from which the field is computed. A plain copy, owned by its creator. */
+/* Snapshot: the readings of all tags at one time, used to compute the field. A plain copy, owned by its creator. */
 #ifndef VALUE_SNAPSHOT_H
 #define VALUE_SNAPSHOT_H
 #include <stddef.h>

@@ -25,8 +25,7 @@ struct source_impl {
     struct source *(*create)(const struct source *base, struct counters *counters);
     /* main function of the source's thread: runs until stop_fd becomes readable or no more data can arrive */
     void (*run)(struct source *source);
-    /* called by any thread; interrupts a wait in which the source's thread does not watch stop_fd; NULL: this kind of source has no such
-       wait */
+    /* called by any thread to interrupt a wait that does not watch stop_fd; NULL: this kind of source has no such wait */
     void (*interrupt)(struct source *source);
     /* frees the source, after its thread has ended or if it never ran */
     void (*destroy)(struct source *source);

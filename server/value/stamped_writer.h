@@ -18,7 +18,7 @@ struct stamped_writer {
     /* largest difference between a time stated in the message and our clock, in nanoseconds; above 0: the sender's clock is ahead; 0: no
        difference */
     int64_t worst_skew_ns;
-    size_t written; /* number of samples of this message that were written to the store so far */
+    size_t written; /* number of samples of this message written to the store so far */
     /* samples of the current batch, which are not written yet and all have the same time; room for as many as there are tags */
     struct sample *samples;
     size_t count;

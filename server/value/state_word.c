@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of state words, which historians and spreadsheets write instead of a value: digital states of PI, errors of PI DataLink,
-   quality codes of Ignition and errors of spreadsheets. */
+/* The table of state words, which historians and spreadsheets write instead of a value. It has digital states of PI, errors of
+   PI DataLink and of spreadsheets, and quality codes of Ignition. */
 #include "value/state_word.h"
 
 #include <ctype.h>

@@ -5,9 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Returns true if the text says that there is no value, and sets *quality to the matching Bad quality. This holds for blank text,
-   dashes, NaN, null, spreadsheet errors (#N/A), digital states of PI and quality names of OPC UA and Ignition; case and punctuation do
-   not matter. Other text leaves *quality unchanged. */
+/* Returns true if the text says that there is no value, and sets *quality to the matching Bad quality. Such texts are blanks,
+   dashes, NaN, null, spreadsheet errors (#N/A), digital states of PI, and quality names of OPC UA and Ignition. Case and
+   punctuation do not matter. Other text leaves *quality unchanged. */
 bool state_word_is_bad(const char *text, uint32_t *quality);
 
 #endif

@@ -19,8 +19,8 @@ struct held {
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value */
     int64_t changed_mono_ns;                   /* monotonic time at which a usable value last differed from the one before */
     int64_t stale_ns, flatline_ns;
-    /* A quality tag decides the quality of other tags, which form a list. first_vouched: index of the first tag whose quality this tag
-       decides; next_vouched: index of the next tag in the list to which this tag belongs; -1: none. */
+    /* A quality tag decides the quality of a list of other tags. first_vouched: index of the first tag whose quality this tag
+       decides. next_vouched: index of the next tag in the list to which this tag belongs. -1: none. */
     int first_vouched, next_vouched;
     uint32_t shown_quality; /* quality that the tag had when `changes` was last incremented */
     uint32_t changes;
@@ -291,8 +291,8 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* A sample older than the last one is ignored, unless the tag is dead and the sample is not older in UTC than the last value:
-           then it shows that the lost source is back. */
+        /* Ignores a sample older than the last one. An exception: if the tag is dead and the sample is not older in UTC than
+           the last value, the sample shows that the lost source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The store holds the newest sample of every tag. Sources write samples, any thread takes snapshots. The quality of a reading is the
-   worst of these: the sample's quality; the quality that follows from the sample's age; Uncertain_SensorNotAccurate if the value has not
-   changed for flatline_s; the quality that the tag's quality tag decides; Bad_DeviceFailure if the heartbeat of the tag's source has
-   stopped. */
+/* The store holds the newest sample of every tag. Sources write samples, any thread takes snapshots. The quality of a reading
+   is the worst of the following. (1) The sample's quality. (2) The quality that follows from the sample's age. (3)
+   Uncertain_SensorNotAccurate if the value has not changed for flatline_s. (4) The quality that the tag's quality tag decides.
+   (5) Bad_DeviceFailure if the heartbeat of the tag's source has stopped. */
 #ifndef VALUE_STORE_H
 #define VALUE_STORE_H
 #include <stdbool.h>
@@ -20,9 +20,9 @@ struct sample {
     uint32_t quality;
 };
 
-/* Argument of a listener, which the store calls for every sample and for every tag that can no longer be read, in the order in which
-   this happens. A listener runs under the store's lock, so it must only copy the event and return. A link that is lost before the first
-   sample causes no call, because the UTC time is not known yet; only snapshots show it. */
+/* Argument of a listener. The store calls listeners, in order of events, for every sample and for every tag that can no longer
+   be read. A listener runs under the store's lock, so it must only copy the event and return. A link that is lost before the
+   first sample causes no call, because the UTC time is not known yet; only snapshots show it. */
 struct sample_event {
     int tag;
     double value;
@@ -45,7 +45,7 @@ void store_listen_all(struct store *store, store_listener *listener, void *arg);
    stale. Returns false, without a call, if a sample of the tag has arrived since event->mono_ns: that sample has already
    reported the quality. */
 bool store_tell_aged(struct store *store, const struct sample_event *event);
-/* Returns the monotonic time at which time alone gave a tag its current quality: its reading, or that of its quality tag,
+/* Returns the monotonic time at which time alone gave a tag its current quality, because its reading or that of its quality tag
    became stale, or a heartbeat stopped. Returns now if there is no such time since the tag's newest sample. */
 int64_t store_aged_ns(struct store *store, int tag, int64_t now_mono_ns);
 /* Removes a listener; the store no longer calls it once this function has returned. */
@@ -65,8 +65,9 @@ struct mirrored {
     bool has_value;
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the value, on this machine's monotonic clock and in UTC */
 };
-/* Writes readings of a core (daemon that reads the devices) instead of samples: their quality is the core's, and does not change as they
-   get older. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */
+/* Writes readings of a core (daemon that reads the devices) instead of samples. Their quality is the core's, and does not
+   change as they get older. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such
+   readings too. */
 void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s after their arrival, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */
@@ -87,8 +88,8 @@ void store_set_alarm(struct store *store, int tag, int alarm, int status);
 bool store_link_is_up(const struct store *store, int source);
 /* Copies all readings, with their qualities as of now, into a snapshot that was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
-/* Copies all readings into a snapshot, for the owner of the store_watch() callback, which from now on reports later changes. Returns the
-   monotonic time at which a quality next changes because of time alone; INT64_MAX: never. */
+/* Copies all readings into a snapshot, for the owner of the store_watch() callback; from now on, the callback reports later
+   changes. Returns the monotonic time at which a quality next changes because of time alone; INT64_MAX: never. */
 int64_t store_take(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 
 #endif

@@ -34,7 +34,7 @@ struct kept_list {
 void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind,
                     struct file_writer *writer);
 void kept_list_close(struct kept_list *kept);
-/* Returns the list to which the next change must be made: it includes the changes that are queued for the disk. */
+/* Returns the list to which the next change must be made, including changes that are queued for the disk. */
 json_t *kept_list_newest(const struct kept_list *kept);
 /* Returns the index of the entry with this id, or the length of the list if no entry has it. */
 size_t kept_list_find(const json_t *list, const char *id);

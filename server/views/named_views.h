@@ -28,16 +28,16 @@ void named_views_close(struct named_views **views); /* Frees the views and sets 
 /* Saves a new or changed view, and queues the file (kept_list_put()). who: the user; time_us: UTC. Returns REFUSAL_NONE, or why it
    failed. */
 enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
-/* Removes a saved view with its earlier versions, and queues the file (kept_list_put()). Returns REFUSAL_NONE, or why it failed. */
+/* Removes a saved view and its earlier versions, and queues the file (kept_list_put()). Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code named_views_remove(struct named_views *views, const char *id);
 /* Returns the address of a saved view, owned by `views` until the next change; NULL: no user saved a view with this id. */
 const char *named_views_address(const struct named_views *views, const char *id);
-/* Returns whether `address` is that of a saved view, or of one of its earlier versions. */
+/* Returns whether `address` belongs to a saved view, or to one of its earlier versions. */
 bool named_views_have(const struct named_views *views, const char *address);
 /* Returns a counter that increases with each change of the views; 0: there has been no view. */
 uint64_t named_views_number(const struct named_views *views);
-/* Returns the JSON message `views` with all views. Only the view `id` includes its earlier versions, as `before` (id NULL: none does). The
- * caller releases it. */
+/* Returns the JSON message `views` with all views. Only the view `id` includes its earlier versions, as `before` (id NULL: no
+ * view does). The caller releases it. */
 json_t *named_views_message(const struct named_views *views, const char *id);
 /* For the connection between a core and its renderers. named_views_list() returns the list of saved views, owned by `views`.
    named_views_mirror() replaces the list with that of the other daemon; it returns false, with nothing changed, if that list is

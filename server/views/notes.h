@@ -38,8 +38,8 @@ enum refusal_code notes_end(struct notes *notes, const char *id, const char *who
 const char *notes_author(const struct notes *notes, const char *id);
 /* Returns a counter that increases with each change of the notes; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
-/* Return the message `notes`: notes_text() with the notes valid at an instant; notes_text_between() with all notes valid at some time
- * between two instants, and how they ended. The caller frees the text (mem_free()). */
+/* Return the message `notes`. notes_text() includes the notes valid at an instant, notes_text_between() all notes valid at some
+ * time between two instants, and how they ended. The caller frees the text (mem_free()). */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
 /* Returns whether the notes valid at one instant differ from those valid at the other. */

@@ -17,7 +17,7 @@ struct other_picture {
 /* Parses the header `Plantcast-Frame` of an answer. Returns false if the header is invalid; the answer then does not come from a Plantcast
  * server. */
 bool other_picture_read_header(const char *header, struct other_picture *out);
-/* Returns whether the bytes are one complete PNG file of that size; does not decode its pixels. */
+/* Returns whether the bytes are one complete PNG file of this size; does not decode its pixels. */
 bool other_picture_is_png(const uint8_t *bytes, size_t count, int width_px, int height_px);
 
 #endif

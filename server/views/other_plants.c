@@ -298,7 +298,7 @@ char *other_plants_text(struct other_plants *others, const int *which, size_t co
     pthread_mutex_lock(&others->lock);
     for (size_t i = 0; i < count; i++) {
         struct other *other = &others->at[which[i]];
-        if (!other->wanted_ns) { /* notes the time of the first request after a period in which no display wanted the picture */
+        if (!other->wanted_ns) { /* records the time of the first request after a period when no display wanted the picture */
             other->why = WHY_WAITING;
             other->since_us = clock_plant_ns(others->clock) / 1000;
             wakes = true;

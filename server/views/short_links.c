@@ -15,14 +15,14 @@ enum { FEWEST_ID_CHARS = 8 /* minimum length of an id: 40 bits, too many for an 
 /* minimum time between two marks of a link as used: a day, because each change writes the file */
 static const int64_t USED_US = INT64_C(86400000000);
 
-/* At most BURST_LINKS new links may be made at once, and one per LINK_US on average, so that one user can neither replace all links nor
-   keep the disk busy. */
+/* At most BURST_LINKS new links may be made at once, and one per LINK_US on average. So one user can neither replace all links
+   nor keep the disk busy. */
 enum { BURST_LINKS = 20 };
 static const int64_t LINK_US = 2000000;
 
 struct short_links {
     struct kept_list kept; /* form of an entry: { id, view, time_us, used }; time_us: when the link was made or last marked as used, UTC */
-    int64_t whole_us;      /* time (UTC) from which BURST_LINKS links may be made at once again; each new link moves it by LINK_US */
+    int64_t whole_us;      /* time (UTC) from which BURST_LINKS links may again be made at once; each new link moves it by LINK_US */
 };
 
 static bool good_list(const json_t *list)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the cells of a frame's depth grid (depth_grid.h) on the GPU. Thread: the one of the GL context. */
+/* Computes the cells of a frame's depth grid (depth_grid.h) on the GPU. Thread: the one that owns the GL context. */
 #ifndef RENDER_GL_DEPTH_QUERY_H
 #define RENDER_GL_DEPTH_QUERY_H
 #include "render/depth_grid.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Collects the draw commands of a render pass into batches that need the same GL state. Each batch is one GL call, however many
    assets it draws. Data that differ between assets are in GPU buffers: the placement per instance, light and field values per
-   vertex (gpu/pool.h). Order of calls to draw_batches_*: begin, choose and add, upload, draw. Thread: the one of the GL
+   vertex (gpu/pool.h). Order of calls to draw_batches_*: begin, choose and add, upload, draw. Thread: the one that owns the GL
    context. */
 #ifndef RENDER_GL_DRAW_BATCHES_H
 #define RENDER_GL_DRAW_BATCHES_H

@@ -43,7 +43,7 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
     block->lines[2] = block->lines[3] = 0;
 }
 
-/* Sets block->shade, which maps a surface's brightness to a row of the shaded colour map. In looks in which light must not
+/* Sets block->shade, which maps a surface's brightness to a row of the shaded colour map. Where the look forbids light to
    change colours, that is always the middle row. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fixed number of slots for frames whose results the GPU has not delivered yet: pixels, visibility of markers and of labels, depth. With
-   several slots, the GPU draws one frame while the pixels of another are copied to main memory. Thread: the one of the GL context. */
+/* A fixed number of slots for frames whose results the GPU has not delivered yet: pixels, visibility of markers and of labels,
+   depth. With several slots, the GPU draws one frame while the pixels of another are copied to main memory. Thread: the one
+   that owns the GL context. */
 #ifndef RENDER_GL_FRAMES_IN_FLIGHT_H
 #define RENDER_GL_FRAMES_IN_FLIGHT_H
 #include "gpu/readback.h"

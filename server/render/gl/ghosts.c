@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws ghosted assets: writes their depth into a separate depth buffer, in which a full-screen pass finds the edges to draw. */
+/* Draws ghosted assets: writes their depth into a separate depth buffer; a full-screen pass then finds the edges to draw in it. */
 #include "render/gl/ghosts.h"
 
 #include <math.h>

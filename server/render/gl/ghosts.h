@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pass that draws ghosted assets: an outline and a faint tint over the resolved picture, where no other surface is nearer.
-   Where ghosts overlap, the nearest is drawn. Thread: the one of the GL context. */
+   Where ghosts overlap, the nearest is drawn. Thread: the one that owns the GL context. */
 #ifndef RENDER_GL_GHOSTS_H
 #define RENDER_GL_GHOSTS_H
 #include "gpu/target.h"

@@ -34,7 +34,7 @@ struct gl_job {
     struct frame_tiles tiles;
     /* slot of the frame while the GPU computes its results (frames_in_flight.h); NULL: the frame is not submitted to the GPU yet */
     struct frame_in_flight *in_flight;
-    size_t drawn;                      /* number of assets of the current tile drawn so far, nearest first */
+    size_t drawn;                      /* number of the current tile's assets drawn so far, nearest first */
     bool short_of_memory;              /* true: the GPU ran out of memory while drawing, so the frame's content is undefined */
 };
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of the GL render backend, which draws whole frames on a GPU and tile by tile on a processor. Thread: the one of the GL context. */
+/* State of the GL render backend, which draws whole frames on a GPU and tile by tile on a processor. Thread: the one that owns the
+   GL context. */
 #ifndef RENDER_GL_BACKEND_H
 #define RENDER_GL_BACKEND_H
 #include "render/gl/frames_in_flight.h"

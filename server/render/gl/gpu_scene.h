@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scene on the GPU: one model for each asset file, with all its levels of detail. Thread: the one of the GL context. */
+/* The scene on the GPU: one model for each asset file, with all its levels of detail. Thread: the one that owns the GL context. */
 #ifndef RENDER_GL_GPU_SCENE_H
 #define RENDER_GL_GPU_SCENE_H
 #include "gpu/gl.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The passes that draw lines over the resolved frame: feature edges, and the outline of the selected asset. Thread: the one of the GL
-   context. */
+/* The passes that draw lines over the resolved frame: feature edges, and the outline of the selected asset. Thread: the one
+   that owns the GL context. */
 #ifndef RENDER_GL_LINES_H
 #define RENDER_GL_LINES_H
 #include "gpu/target.h"

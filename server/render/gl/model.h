@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One asset file on the GPU: geometry, materials, textures, and submeshes in drawing order. All instances of the asset share it.
-   Thread: the one of the GL context. */
+/* One asset file on the GPU: geometry, materials, textures, and submeshes in drawing order. All instances of the asset share
+   it. Thread: the one that owns the GL context. */
 #ifndef RENDER_GL_MODEL_H
 #define RENDER_GL_MODEL_H
 #include "gpu/gl.h"
@@ -51,7 +51,7 @@ struct gl_model {
     GLuint ramps[MODEL_RAMPS];          /* textures of the colour ramps, by MODEL_MUTED and MODEL_OWN; one row per material */
 };
 
-struct model_draws { /* working memory for the index ranges with which one submesh is drawn; zero-initialise */
+struct model_draws { /* working memory for the index ranges of one submesh's draws; zero-initialise */
     GLsizei *counts;
     const void **offsets;
     size_t count_capacity, offset_capacity;

@@ -11,8 +11,9 @@
 #include "render/matrix.h"
 
 enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
-/* Occlusion culling draws assets in rounds, nearest first, and tests the bounding boxes of the next round's assets against the depth buffer
-   so far. The first round draws 1/8 of all triangles untested; each later round draws as many as all rounds before. */
+/* Occlusion culling draws assets in rounds, nearest first. Before each round, it tests the bounding boxes of the round's assets
+   against the depth buffer. The first round draws 1/8 of all triangles untested; each later round draws as many as all rounds
+   before. */
 enum { FIRST_ROUND_DIVISOR = 8 };
 /* minimum number of triangles of an asset whose bounding box is tested: drawing fewer triangles costs no more than the test */
 static const int MIN_TESTED_TRIANGLES = 200;

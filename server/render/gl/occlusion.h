@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Occlusion culling of assets: the GPU tests an asset's bounding box against the depth drawn so far, without writing depth. If a fragment
-   of the box is visible, the shader enables the asset's draw commands in the command buffer, so the CPU reads nothing back. Conservative:
-   the box encloses the asset with a margin larger than any rounding, so culling never changes a pixel. Thread: the one of the GL
-   context. */
+/* Occlusion culling of assets: the GPU tests an asset's bounding box against the depth drawn so far, without writing depth. If
+   a fragment of the box is visible, the shader enables the asset's draw commands in the command buffer, so the CPU reads
+   nothing back. Conservative: the box encloses the asset with a margin larger than any rounding, so culling never changes a
+   pixel. Thread: the one that owns the GL context. */
 #ifndef RENDER_GL_OCCLUSION_H
 #define RENDER_GL_OCCLUSION_H
 #include "render/gl/draw_batches.h"
@@ -25,8 +25,8 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
     struct occlusion_box *boxes;
     struct occlusion_asset *assets;
     size_t box_count, asset_count;
-    size_t box_capacity, asset_capacity; /* number of elements for which `boxes` and `assets` have room */
-    size_t box_room;                     /* number of bytes for which the GPU buffer box_buffer has room */
+    size_t box_capacity, asset_capacity; /* capacity of `boxes` and of `assets`, in elements */
+    size_t box_room;                     /* size of the GPU buffer box_buffer in bytes */
 };
 
 /* Compiles the shader program that tests bounding boxes. Returns false on failure, logged. */

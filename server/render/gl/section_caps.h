@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that fills the cut faces (caps) of closed bodies where a section plane cuts them. Caps have a neutral colour, since no sensor
-   measures the field inside a body. The pass draws over the resolved frame and writes its depth. Thread: the one of the GL context. */
+/* The pass that fills the cut faces (caps) of closed bodies where a section plane cuts them. Caps have a neutral colour, since
+   no sensor measures the field inside a body. The pass draws over the resolved frame and writes its depth. Thread: the one that
+   owns the GL context. */
 #ifndef RENDER_GL_SECTION_CAPS_H
 #define RENDER_GL_SECTION_CAPS_H
 #include "gpu/target.h"

@@ -86,8 +86,8 @@ static enum surface_program_kind kind_of(const struct frame_context *context, co
     return context->measured ? picture + SURFACE_MEASURE : picture;
 }
 
-/* Returns the shader features (enum surface_variant) with which one material of an asset is drawn. field NULL: the asset shows no field.
-   cut: a section plane cuts the asset. */
+/* Returns the shader features (enum surface_variant) needed to draw one material of an asset. field NULL: the asset shows no
+   field. cut: a section plane cuts the asset. */
 static int choose_variant(const struct frame_context *context, const struct model_material *material, const struct fields_entry *field,
                           bool cut)
 {
@@ -220,8 +220,8 @@ static void set_material(const struct frame_context *context, const struct draw_
         glBindTextures(UNIT_MAPS, MODEL_MAPS, material->maps);
 }
 
-/* Sets those parts of the GL state in which a batch (`is`) differs from the current state (`was`). was NULL: the current state
-   is unknown, so everything is set. */
+/* Sets the members of the GL state that differ between a batch (`is`) and the current state (`was`). was NULL: the current
+   state is unknown, so everything is set. */
 static void set_state(const struct draw_batches *batches, const struct frame_context *context, const struct draw_batch_state *is,
                       const struct draw_batch_state *was)
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that draws the surfaces of all visible assets, for previews and refined frames. Thread: the one of the GL context. */
+/* The pass that draws the surfaces of all visible assets, for previews and refined frames. Thread: the one that owns the GL context. */
 #ifndef RENDER_GL_SURFACE_PASS_H
 #define RENDER_GL_SURFACE_PASS_H
 #include "render/gl/draw_batches.h"
 #include "render/gl/occlusion.h"
 #include "render/frame_context.h"
 
-/* Features with which a shader program is compiled, or'ed. Each draw call uses the program with the fewest features, since a software GL
+/* Features compiled into a shader program, or'ed. Each draw call uses the program with the fewest features, since a software GL
    runs every branch. RICH: isolines and non-linear scales; RICH without FIELD: the surface is grey. */
 enum surface_variant {
     SURFACE_FIELD = 1,
@@ -37,7 +37,7 @@ struct surface_pass {
     int least_hiding;
     bool one_by_one; /* true: each asset is drawn with its own GL calls instead of in batches; for comparison in tests */
     struct draw_batches opaque, blended;
-    /* number of triangles submitted to GL so far, without culled ones; the caller sets it to 0 for each frame */
+    /* number of triangles submitted to GL so far, excluding culled ones; the caller sets it to 0 for each frame */
     int triangles;
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cache of free render targets (framebuffers), so that the next frame of the same size allocates no GPU memory. Thread: the one of the GL
-   context. */
+/* A cache of free render targets (framebuffers), so that the next frame of the same size allocates no GPU memory. Thread: the
+   one that owns the GL context. */
 #ifndef RENDER_GL_TARGETS_H
 #define RENDER_GL_TARGETS_H
 #include "gpu/target.h"

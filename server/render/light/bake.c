@@ -15,7 +15,7 @@
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 /* constant openness (visible part of the sky, 0..255) in a rough light set, which is baked fast because openness is not computed */
 static const uint8_t ROUGH_OPENNESS = 190;
-/* edge length from which a triangle counts as large, in texels of the sky's depth maps */
+/* length of an edge, in texels of the sky's depth maps, from which the triangle counts as large */
 static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width: a filtered lookup also reads the texels around a point */
 static const double SUN_MARGIN = 0.002;

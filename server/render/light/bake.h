@@ -2,7 +2,7 @@
 /* Bakes one light set in small steps, so that frames can be drawn in between. The set has a shadow map of the sun, and the
    light that reaches each vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps in 32
    directions. Openness depends on neither sun nor environment, so it is copied from another set, or read from a file. Openness
-   is always that of the whole plant; hiding assets only raises its lower bound. Thread: the one of the GL context. */
+   is always that of the whole plant; hiding assets only raises its lower bound. Thread: the one that owns the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
@@ -40,8 +40,8 @@ bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Returns the lower bound of openness (0..1) for a light set in which only the assets in `shown` are visible. The bound keeps surfaces next
-   to hidden assets from staying dark. */
+/* Returns the lower bound of openness (0..1) for a light set that shows only the assets in `shown`. The bound keeps surfaces
+   next to hidden assets from staying dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
 /* Begins to bake a light set for `key`. Openness is most of the work, so it is taken from elsewhere if possible. from: a light set whose
    openness is copied; read during the call only. `from` must not be rough, and bake_least_open() of its visibility must not exceed that of

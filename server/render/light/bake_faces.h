@@ -2,7 +2,7 @@
 /* Large triangles of one asset. Light is also sampled inside them, since otherwise one vertex in a dark corner would darken the
    whole triangle. A sample's light is distributed to the triangle's corners by barycentric weight. This is the right-hand side
    of Kavan, Bargteil and Sloan, "Least squares vertex baking" (2011), with a lumped matrix. Private to bake.c. Thread: the one
-   of the GL context. */
+   that owns the GL context. */
 #ifndef RENDER_BAKE_FACES_H
 #define RENDER_BAKE_FACES_H
 #include "render/gl/gpu_scene.h"

@@ -27,8 +27,8 @@ struct environment_source {
     int width, height;
     /* y_up: true: +y of the plant is up, false: +z; even: true: radiance depends on elevation only, as in the built-in sky */
     bool y_up, even;
-    /* factor: exposure and white balance, by colour channel; most: radiance at which the brightest channel is clipped before the factor is
-       applied */
+    /* factor: exposure and white balance, by colour channel; most: limit of the brightest channel's radiance before the factor
+       is applied */
     double factor[3], most;
     float (*pyramid[PYRAMID])[4];
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The environment maps of a plant on the GPU, by index. 0 is the built-in sky; 1 and up are those of the plant file, which
-   workers read and convolve in the background. Thread: the one of the GL context. */
+   workers read and convolve in the background. Thread: the one that owns the GL context. */
 #ifndef RENDER_ENVIRONMENTS_H
 #define RENDER_ENVIRONMENTS_H
 #include <stdint.h>

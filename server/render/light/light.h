@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A cache of baked light within a memory limit: shadow map, and light at each vertex and on the ground. Light is baked once per
-   direction of the sun, environment and visible assets (render/light/bake.h). Thread: the one of the GL context. */
+   direction of the sun, environment and visible assets (render/light/bake.h). Thread: the one that owns the GL context. */
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/light/bake.h"

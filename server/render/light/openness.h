@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Openness (ambient occlusion, 0..255) at each vertex of a plant, stored in the file `openness` in the folder of prepared
    assets. Baking it is most of the cost of a light set on a processor, and it depends on neither sun nor environment. A damaged
-   file, or one from another plant, program or GL driver, counts as missing. Thread: the one of the GL context. */
+   file, or one from another plant, program or GL driver, counts as missing. Thread: the one that owns the GL context. */
 #ifndef RENDER_OPENNESS_H
 #define RENDER_OPENNESS_H
 #include "base/files/cache_file.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that draws the background where no surface is: backdrop, and the shadow on the ground. Thread: the one of the GL context. */
+/* The pass that draws the background where no surface is: backdrop, and the shadow on the ground. Thread: the one that owns the GL
+   context. */
 #ifndef RENDER_SKY_H
 #define RENDER_SKY_H
 #include "render/frame_context.h"

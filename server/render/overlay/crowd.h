@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Omits sensor markers where many overlap, by the rule of protocol/LABELS.md. Pure; all lengths in pixels. */
+/* Omits sensor markers where many overlap, following the rule in protocol/LABELS.md. Pure; all lengths in pixels. */
 #ifndef RENDER_OVERLAY_CROWD_H
 #define RENDER_OVERLAY_CROWD_H
 #include <stdbool.h>

@@ -25,7 +25,8 @@ static void add_number(struct caption *caption, const struct pen *pen, enum over
     add_line(caption, pen, word, number);
 }
 
-/* Lists the field parameters of the view `own` that differ from those of `other`, in the words of the page's options. */
+/* Lists the field parameters that differ between the views `own` and `other`, with the values of `own`, in the words of the page's
+   options. */
 static void write_caption(struct caption *caption, const struct pen *pen, const struct view *own, const struct view *other)
 {
     const struct field_params *a = &own->field, *b = &other->field;

@@ -157,8 +157,8 @@ static void write_hot_spot(const struct pen *pen, struct legend *legend)
     add_note(legend, legend->since);
 }
 
-/* Writes the error bound of areas that the frame marks with dots: how far values interpolated over a triangle may deviate from the exact
-   field. */
+/* Writes the error bound for areas that the frame marks with dots: how far values interpolated over a triangle may deviate from
+   the exact field. */
 static void write_drawn_error(const struct pen *pen, struct legend *legend)
 {
     const char *unit = view_is_operator(&pen->view) ? "" : view_unit(pen->scene->plant, &pen->view);

@@ -57,7 +57,7 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word)
 {
     static const double colors[ALARM_PRIORITIES][3] = {
-        /* colours of alarm priorities, equal to those of the page (clients/web/core/alarms.js); no colour map has similar colours */
+        /* colours of alarm priorities, the same as on the page (clients/web/core/alarms.js); no colour map has similar colours */
         { 0xaf / 255.0, 0x0c / 255.0, 0x4a / 255.0 },
         { 0xff / 255.0, 0xff / 255.0, 0x96 / 255.0 },
         { 0xb6 / 255.0, 0x46 / 255.0, 0xaa / 255.0 },
@@ -436,7 +436,7 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 
 void overlay_markers(struct pen *pen)
 {
-    int cards = pen->taken_count; /* number of occupied boxes before any marker is drawn: those of cards (legend, header) and banners */
+    int cards = pen->taken_count; /* number of boxes occupied before any marker is drawn: cards (legend, header) and banners */
     struct marker_labels wanted = { .pen = pen };
     size_t *chosen, count = choose_markers(pen, cards, &chosen);
     wanted.items = mem_array(count, sizeof(*wanted.items));

@@ -70,7 +70,7 @@ void overlay_bar(struct pen *pen, const struct label_box *bar);
    left. */
 double overlay_bar_width(struct pen *pen);
 double overlay_bar_left(struct pen *pen);
-/* Returns the height in pixels of the machine-readable legend strip of a frame of that size; 0: the frame is too small for one. */
+/* Returns the height in pixels of the machine-readable legend strip in a frame of this size; 0: the frame is too small for one. */
 int overlay_strip_height(int width_px, int height_px);
 /* Writes the machine-readable legend strip over the lowest rows of the frame, if the frame is large enough. bgrx: the frame's pixels. */
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);

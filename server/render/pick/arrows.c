@@ -51,7 +51,7 @@ static void add_triangle(struct arrow_candidates *candidates, const uint32_t cor
         return;
     int cuts = (int)min_of(ceil(2 * longest_m / candidates->spacing_m), MAX_CUTS);
     for (int i = 0; i < cuts; i++)
-        /* the triangle is divided into `cuts` rows of small triangles, of which every second (odd j) points the other way */
+        /* the triangle is divided into `cuts` rows of small triangles; every second triangle of a row (odd j) points the other way */
         for (int j = 0; j < 2 * (cuts - i) - 1; j++) {
             double third = j % 2 ? 2.0 / 3 : 1.0 / 3, a = (i + third) / cuts, b = (j / 2 + third) / cuts;
             mem_grow(&candidates->at, &candidates->capacity, candidates->count + 1, sizeof(*candidates->at));
@@ -94,7 +94,7 @@ static void find_positions(struct arrow_set *set, const struct scene_asset *asse
 {
     struct arrow_candidates candidates = { .view = &asset->file->view };
     const struct asset_level *level = coarse_level(asset);
-    /* pass 0 measures the asset's area, from which the distance between arrows follows; pass 1 adds arrow positions at this distance */
+    /* pass 0 measures the asset's area, which determines the distance between arrows; pass 1 adds arrow positions at this distance */
     for (int pass = 0; pass < 2; pass++) {
         double area_m2 = 0;
         uint32_t triangle = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Positions of arrows, spread evenly over an asset whose field has directions. The visibility of arrows is tested together with that of
-   isoline labels (isolines.h); the overlay or the client draws the arrows. Thread: the one of the GL context. */
+/* Positions of arrows, spread evenly over an asset whose field has directions. The visibility of arrows is tested together with
+   isoline labels (isolines.h); the overlay or the client draws the arrows. Thread: the one that owns the GL context. */
 #ifndef RENDER_PICK_ARROWS_H
 #define RENDER_PICK_ARROWS_H
 #include "field/directions.h"
@@ -13,7 +13,7 @@ struct arrow_set {                  /* arrows of one asset; zero-initialise, fre
     double spacing_m; /* approximate distance in metres between neighbouring arrows if all are drawn */
     float error_m;    /* error in metres of the level of detail on whose triangles the positions lie */
     bool sought;      /* `places` has been computed */
-    uint64_t content; /* hash of the sensor directions from which the directions in `found` were computed */
+    uint64_t content; /* hash of the sensor directions used to compute the directions in `found` */
 };
 
 /* Returns how many of the asset's vertices, counted from the first, need current field values because arrows read them. Pure. */

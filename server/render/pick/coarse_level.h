@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The level of detail on which isoline points and arrow positions are found. Pure. */
+/* Chooses the level of detail used to find isoline points and arrow positions. Pure. */
 #ifndef RENDER_PICK_COARSE_LEVEL_H
 #define RENDER_PICK_COARSE_LEVEL_H
 #include "scene/scene.h"

@@ -15,7 +15,7 @@ enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 1
 /* The field along a triangle's edge need not be linear. MAX_PIECES: maximum number of pieces of an edge that are searched for
    crossings with isolines. MAX_BISECTIONS: number of bisection steps that locate a crossing within a piece. */
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
-/* minimum distance between the points of isolines at which labels may be placed, as a fraction of the asset's size */
+/* minimum distance between possible label positions on isolines, as a fraction of the asset's size */
 static const double SPACING = 0.1;
 /* minimum distance between labels of the same isoline in a frame, as a multiple of that between labels of different isolines */
 static const double SAME_LINE_FACTOR = 4;
@@ -42,7 +42,7 @@ void isolines_finish(struct isolines *isolines)
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
 
-/* State while one asset is searched for points on isolines, at which labels may be placed. */
+/* State of the search for points on isolines (possible label positions) in one asset. */
 struct isoline_search {
     const struct scene_asset *asset;
     const struct fields_entry *field;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds points on isolines where labels may be placed, spread over each asset, and tests which are visible in a frame. Does the same for
-   positions of arrows (arrows.h). The lines themselves are drawn with the field (shaders/field.glsl). Thread: the one of the GL context. */
+/* Finds points on isolines where labels may be placed, spread over each asset, and tests which are visible in a frame. Does the
+   same for positions of arrows (arrows.h). The lines themselves are drawn with the field (shaders/field.glsl). Thread: the one
+   that owns the GL context. */
 #ifndef RENDER_PICK_ISOLINES_H
 #define RENDER_PICK_ISOLINES_H
 #include "render/frame.h"
@@ -26,7 +27,7 @@ struct isoline_set { /* points of one asset */
 };
 
 struct isolines {
-    /* points on isolines, at which labels may be placed, by asset; `arrows` and `strokes` are indexed by asset, too */
+    /* by asset: points on isolines (possible label positions); `arrows` and `strokes` are indexed by asset, too */
     struct isoline_set *sets;
     struct arrow_set *arrows;
     struct stroke_set *strokes;
@@ -45,7 +46,7 @@ void isolines_finish(struct isolines *isolines);
 /* Returns how many of the asset's vertices, counted from the first, need current field values because isolines_collect() reads
    them. Pure. */
 size_t isolines_vertex_count(const struct scene_asset *asset);
-/* Collects the points of all visible assets at which a label or an arrow may be drawn; their visibility is tested later. context->fields
+/* Collects possible positions of labels and arrows on all visible assets; their visibility is tested later. context->fields
    must hold the fields shown. */
 void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out);
 /* isolines_start() begins the visibility test of isoline points and arrows on the GPU; call it after the multisampled frame is resolved. It

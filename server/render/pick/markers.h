@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects the sensors of the shown group into the frame and tests which sensors are hidden. Thread: the one of the GL context. */
+/* Projects the sensors of the shown group into the frame and tests which sensors are hidden. Thread: the one that owns the GL context. */
 #ifndef RENDER_PICK_MARKERS_H
 #define RENDER_PICK_MARKERS_H
 #include "render/frame.h"
@@ -21,7 +21,7 @@ bool marker_next(struct marker_iterator *iterator, struct marker_place *out);
    neither hidden nor cut away by a section plane at the sensor. */
 bool marker_is_shown(const struct scene *scene, const struct view *view, const struct marker_place *place);
 
-/* Returns the depth tolerance of an asset's markers: how far the drawn surface may lie in front of the position of a sensor on it. */
+/* Returns the depth tolerance of an asset's markers: how far in front of a sensor's position the drawn surface may lie. */
 double markers_slack_m(const struct scene_asset *asset);
 /* markers_start() begins the visibility test of the sensors' markers on the GPU; call it after the multisampled frame is resolved. It
    returns false when the GPU is out of memory, logged. markers_get() stores the result in the frame once the GPU is done. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects points of the plant into a frame and tests on the GPU, against the frame's depth, whether they are hidden. Thread: the one of
-   the GL context. */
+/* Projects points of the plant into a frame and tests on the GPU, against the frame's depth, whether they are hidden. Thread:
+   the one that owns the GL context. */
 #ifndef RENDER_PICK_POINT_VISIBILITY_H
 #define RENDER_PICK_POINT_VISIBILITY_H
 #include "render/frame_context.h"

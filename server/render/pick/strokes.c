@@ -22,7 +22,7 @@ static const double MIN_DOT = -0.5;
 
 struct triangle_side { /* one side of a triangle */
     float low[3], high[3];
-    uint32_t at; /* which side of which triangle this is: 3 * index of the triangle + number (0 to 2) of the corner where the side begins */
+    uint32_t at; /* the triangle and its side: 3 * index of the triangle + number (0 to 2) of the corner where the side begins */
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -74,7 +74,7 @@ static void find_neighbours(struct stroke_set *set, const struct asset_view *vie
 struct tracing {
     const struct asset_view *view;
     const struct stroke_set *set;
-    const uint32_t (*tris)[3]; /* vertex indices of the triangles of the level of detail on which strokes are traced */
+    const uint32_t (*tris)[3]; /* level of detail used for tracing: vertex indices of its triangles */
 };
 
 static void corners_of(const struct tracing *tracing, uint32_t tri, double out[3][3], double normal[3])
@@ -107,7 +107,7 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
 {
     double weights[3], v[3], at[3][3], normal[3], rates[3];
     uint32_t tri = place->triangle;
-    int from = -1; /* index of the edge through which the current triangle was entered; -1: none */
+    int from = -1; /* index of the edge crossed to enter the current triangle; -1: none */
     for (int c = 0; c < 3; c++) {
         weights[c] = (double)place->weights[c];
         v[c] = (double)along[c];
@@ -122,7 +122,7 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         if (!(vec_normalize(v) > 0) || !rates_of(at, normal, v, rates))
             return false;
         double most_m = step_m;
-        /* edge at which the step leaves the triangle: from corner `edge` to the next corner; the third corner's weight is 0 on it */
+        /* edge crossed to leave the triangle: from corner `edge` to the next corner; the third corner's weight is 0 on it */
         int edge = -1;
         for (int i = 0; i < 3; i++) {
             double room_m = rates[(i + 2) % 3] < 0 ? max_of(weights[(i + 2) % 3], 0) / -rates[(i + 2) % 3] : INFINITY;

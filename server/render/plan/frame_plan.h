@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A frame plan: what one frame shows, decided once: visible assets and their levels of detail, light, fields, and the hash of all that.
-   Immutable once complete. Everything that prepares, shares, draws or caches the frame uses its plan. Thread: the one of the GL context. */
+/* A frame plan: what one frame shows, decided once: visible assets and their levels of detail, light, fields, and the hash of
+   all that. Immutable once complete. Everything that prepares, shares, draws or caches the frame uses its plan. Thread: the one
+   that owns the GL context. */
 #ifndef RENDER_PLAN_FRAME_PLAN_H
 #define RENDER_PLAN_FRAME_PLAN_H
 #include "render/light/light.h"

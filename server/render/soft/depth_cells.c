@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the cells of a depth grid (depth_grid.h): nearest and farthest depth, and which pixels lie on which side of a depth step. */
+/* Computes the cells of a depth grid (depth_grid.h): nearest and farthest depth, and the pixels on the nearer side of a depth step. */
 #include "render/soft/depth_cells.h"
 
 #include <math.h>

@@ -12,7 +12,7 @@
 
 /* margin in pixels around the projected bounding boxes of triangles, because boxes and vertices round differently */
 #define SLACK_PX 0.02f
-/* factor minus 1 by which the nearest depth of a bounding box is enlarged (brought nearer), against rounding errors */
+/* relative margin that brings a bounding box's nearest depth nearer to absorb rounding errors */
 #define SLACK_DEPTH 1e-5f
 /* depth used for points in front of the near plane; larger than any real depth, so that they count as nearest */
 #define IN_FRONT_OF_NEAR 2.0f

@@ -25,7 +25,7 @@ struct node {
     /* polynomials that replace the far sensors: those whose weight is smooth in the square of pixels; its member `sensors` is not set */
     struct pixel_list far;
     float least;           /* lower bound of the sum of the weights of the far sensors, which polynomials replace */
-    float left;            /* remaining error budget: fraction of the sum of all weights by which the polynomials may still deviate */
+    float left;            /* error budget left for more polynomials, as a fraction of the sum of all weights */
 };
 
 struct building {
@@ -427,8 +427,8 @@ SOFT_INLINE void split(const struct building *building, const struct node *from,
     to->least = from->least * times + sum_of(sums.least);
 }
 
-/* Makes the list of near sensors of a square of pixels from that of the larger square around it. last true: the list may use all of the
-   remaining error budget; false: it leaves a part for the smaller squares inside. */
+/* Makes the list of near sensors in a square of pixels from the list of the larger square around it. last true: the list may
+   use all of the remaining error budget; false: it leaves a part for the smaller squares inside. */
 static void make_node(const struct building *building, const struct node *from, const struct box *box, bool last,
                                   struct node *to)
 {

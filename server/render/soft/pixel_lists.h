@@ -32,7 +32,7 @@ struct pixel_list {
        values: sum of weights times values; marked: sum of the weights of Uncertain sensors. Coefficients of 1, x, y, z, xx, xy,
        xz, yy, yz, zz, with x, y, z in metres from `centre`. */
     float top, unit, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
-    /* mesh and position of the square of pixels (cell) for which the list is made, copied from struct pixel_cell */
+    /* mesh and position of the list's square of pixels (cell), copied from struct pixel_cell */
     uint32_t mesh, column, row;
     uint32_t next;              /* index for the caller's own use, such as a linked list; the functions below ignore it */
 };

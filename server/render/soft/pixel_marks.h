@@ -103,8 +103,8 @@ SOFT_INLINE bool rule(float y, float pattern_px)
     return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
-/* Replaces the marks (colour codes) of those of eight pixels that show a pattern: no data, uncertain or no limits. Called for faces whose
-   corners have different flags, or a flag that shows a pattern. */
+/* Replaces the marks (colour codes) of those among eight pixels that show a pattern: no data, uncertain or no limits. Called for
+   faces whose corners have different flags, or a flag that shows a pattern. */
 SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
                                     float y, const struct mark_ink *ink)
 {

@@ -68,7 +68,7 @@ size_t ramp_rows_pack(uint32_t *muted, uint32_t *own, size_t count, size_t steps
         rows.bits--;
     size_t packed = 0;
     for (size_t i = 0; i < count; i++) {
-        if (first[i] != i) { /* this material's ramp equals that of an earlier material, whose row is already packed */
+        if (first[i] != i) { /* an earlier material has the same ramp, and its row is already packed */
             row_of_material[i] = row_of_material[first[i]];
             continue;
         }

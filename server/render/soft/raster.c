@@ -7,7 +7,7 @@
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
 
-/* Stores the triangle's id for those of eight pixels that show the triangle (mask `seen`), if ids are wanted. */
+/* Stores the triangle's id at the pixels that show it (mask `seen`), if ids are wanted. */
 SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face, size_t at,
                          lanes_int seen)
 {
@@ -145,7 +145,7 @@ SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *righ
     }
 }
 
-/* Returns the mask `seen` without those of eight pixels at which the face's texture has a hole. */
+/* Removes pixels from the mask `seen` where the face's texture has a hole. Returns the new mask. */
 SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x, float y, lanes_int seen)
 {
     for (uint32_t bits = lanes_bits(seen); bits; bits &= bits - 1) {

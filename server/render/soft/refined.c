@@ -15,8 +15,7 @@
 /* number of bands (groups of pixel rows) that one step of a refined frame processes per core, which takes a few milliseconds. SHADED_BANDS:
    when shading; BANDS: in other work */
 enum { SHADED_BANDS = 1, BANDS = 8 };
-/* distance, in texels of the shadow map, by which surface points are lifted along their normal; like sun_visibility() in
-   shaders/shadow.glsl */
+/* how far surface points are lifted along their normal, in texels of the shadow map; like sun_visibility() in shaders/shadow.glsl */
 static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD;
 
 /* --- life -------------------------------------------------------------------------------------------------------------------- */

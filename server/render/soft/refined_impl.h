@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of a refined frame (camera at rest, four samples per pixel) between the steps in which it is drawn. Private to soft/. */
+/* State of a refined frame (camera at rest, four samples per pixel) that is kept between its drawing steps. Private to soft/. */
 #ifndef RENDER_SOFT_REFINED_IMPL_H
 #define RENDER_SOFT_REFINED_IMPL_H
 #include "render/soft/soft_impl.h"
@@ -52,7 +52,7 @@ struct refined {
 
 struct refined_item { /* one surface within a pixel */
     struct soft_triangle triangle;
-    float x, y;     /* point of the frame, in pixels, at which the surface's light is computed */
+    float x, y;     /* point of the frame, in pixels, where the surface's light is computed */
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 

@@ -204,7 +204,7 @@ struct eight_shown {
     lanes w1, w2, carried;
     /* -1: field_colors() may colour the pixel; 0: the pixel, or a corner of its triangle, has a flag, so flagged_color() must */
     lanes_int known;
-    struct eight_places places; /* surface points of the eight pixels, at which fields are evaluated from their sensors */
+    struct eight_places places; /* surface points of the eight pixels; fields evaluated from sensors are evaluated there */
 };
 
 /* Computes the field values of eight pixels: colour map columns or, on a logarithmic scale, field values. Works like
@@ -246,7 +246,7 @@ SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
     return (lanes_log2(values) - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE);
 }
 
-/* Returns a mask of those of eight pixels that an isoline may touch, judged by the field's change per pixel. */
+/* Returns a mask of eight pixels: set where an isoline may touch the pixel, judging by the field's change per pixel. */
 SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
                                    const struct eight_shown *shown, lanes_int cells, int x, int y)
 {
@@ -310,8 +310,8 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
 /* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
 typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* Colours of the next surfaces of pixels that show several surfaces. They are computed in advance, eight at a time, in the order in which
-   color_mixed() uses them. */
+/* Colours of the next surfaces of pixels that show several surfaces. They are computed in advance, eight at a time, in the
+   order of their use in color_mixed(). */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
@@ -326,8 +326,8 @@ static inline uint64_t spread(uint32_t color)
     return (color & 0xff00ff) | (uint64_t)(color >> 8 & 0xff) << 32;
 }
 
-/* Computes the colours of up to PARTS_AHEAD next surfaces of pixels that show several surfaces, and stores them in *ahead. pixel: index in
-   band->mixed of the pixel to which the first of these surfaces belongs. */
+/* Computes the colours of the next surfaces, up to PARTS_AHEAD, of pixels that show several surfaces, and stores them in
+   *ahead. pixel: index in band->mixed of the first of these pixels. */
 SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visibility_band *band, size_t pixel, struct ahead *ahead)
 {
     size_t first = band->mixed[pixel].first_part, left = band->part_count - first, count = left < PARTS_AHEAD ? left : PARTS_AHEAD;
@@ -372,7 +372,7 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
     ahead->all_known = !lanes_any(~all_known) && !(coloring->paint.line_px > 0);
 }
 
-/* Converts the colour of a field to that of a glossy surface, using the light `gloss` that falls on the pixel. gloss NULL:
+/* Converts a field's colour to the colour of a glossy surface, using the light `gloss` that falls on the pixel. gloss NULL:
    returns the colour unchanged. */
 SOFT_INLINE uint32_t glossed(const struct coloring *coloring, uint32_t color, const struct visibility_gloss *gloss)
 {

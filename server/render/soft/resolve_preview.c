@@ -64,7 +64,7 @@ SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks
     return lanes_whole((float)GREY_BLUE * blue + (float)GREY_GREEN * green + (float)GREY_RED * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
 }
 
-/* Darkens the colours of those of eight pixels that an isoline covers, like field_color() in shaders/field.glsl. */
+/* Darkens the colours of those among eight pixels that an isoline covers, like field_color() in shaders/field.glsl. */
 static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
 {
     static const float grey_parts[3] = { (float)GREY_BLUE, (float)GREY_GREEN, (float)GREY_RED };
@@ -198,8 +198,7 @@ SOFT_INLINE void values_at(const struct pixel_row *row, lanes x, lanes y, lanes 
     pixel_lanes_at(&row->pixels->field, row->list, at, out);
 }
 
-/* Converts field values to colour map columns, from which marks (colour codes) are made; on a logarithmic scale the values stay
-   unchanged. */
+/* Converts field values to colour map columns, as needed for marks (colour codes); on a logarithmic scale the values stay unchanged. */
 SOFT_INLINE lanes carried_of(const struct pixel_row *row, lanes value)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), farthest = 1e6f, *scale = row->raster->block.scale;
@@ -215,8 +214,9 @@ static float depth_step(const float *at, ptrdiff_t step, bool before, bool after
     return fabsf(ahead) < fabsf(behind) ? ahead : behind;
 }
 
-/* Writes how much the values of eight pixels change from pixel to pixel, in x and y. Values are colour map columns or, on a logarithmic
-   scale, field values. rect: the thread's own pixels; depth outside is not read, because other threads may write there. */
+/* Writes the change of the values of eight pixels from pixel to pixel, in x and y. Values are colour map columns or, on a
+   logarithmic scale, field values. rect: the thread's own pixels; depth outside is not read, because other threads may write
+   there. */
 SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft_rect *rect, int column, int row, lanes carried,
                                lanes *by_x, lanes *by_y)
 {

@@ -124,8 +124,8 @@ struct lit { /* eight surfaces */
     vec v, l, glow; /* v, l: unit vectors towards the eye and the sun; glow: light that the surface emits */
 };
 
-/* Computes the surface points of eight surfaces, their material, and how much of the sun reaches them. alphas: receives their opacity,
-   0..1; NULL: not needed. */
+/* Computes the surface points of eight surfaces, their material, and the visible part of the sun. alphas: receives their
+   opacity, 0..1; NULL: not needed. */
 SOFT_INLINE void see(const struct refined *refined, const struct refined_item *items, size_t count, struct lit *lit, float *alphas)
 {
     struct eight_points *spot = &lit->spot;

@@ -211,7 +211,7 @@ SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_samp
 
 struct kinds {          /* classes of faces by size; bit l of a mask: face l is in the class */
     uint32_t one, four; /* one: at most 4 x 2 pixels; four: larger, but at most 4 x 4 */
-    /* two: larger faces for which two-row stamps (blocks of 4 x 2 pixels drawn as a unit) need fewer stamps than one-row stamps (8 x 1);
+    /* two: larger faces that need fewer stamps (blocks of pixels drawn as a unit) of two rows (4 x 2) than of one row (8 x 1).
        low: faces one pixel high that are in none of the other classes */
     uint32_t two, low;
 };

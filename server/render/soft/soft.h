@@ -2,8 +2,8 @@
 /* Software renderer for machines without a GPU. It rasterizes on all cores with SIMD, whereas a software GL would process
    triangles on one thread. Previews look like shaders/preview.*, refined frames like shaders/refined.frag, within rounding.
    Visible parts of models are drawn into tiles, nearest first. Pixels are coloured afterwards by the triangles they show, so
-   that hidden surfaces are never shaded. The result does not depend on the order of tiles and threads. Thread: the one of the
-   GL context; work is spread over `workers`. */
+   that hidden surfaces are never shaded. The result does not depend on the order of tiles and threads. Thread: the one that
+   owns the GL context; work is spread over `workers`. */
 #ifndef RENDER_SOFT_H
 #define RENDER_SOFT_H
 #include "base/workers.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of the software renderer, and of one frame between the steps in which it is drawn. Private to soft/. */
+/* State of the software renderer, and of one frame between its drawing steps. Private to soft/. */
 #ifndef RENDER_SOFT_SOFT_IMPL_H
 #define RENDER_SOFT_SOFT_IMPL_H
 #include "render/soft/flags.h"
@@ -16,8 +16,8 @@
 
 enum { BAND_ROWS = 32, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, SOFT_STRETCH_LEAST = 8 };
 
-/* A mark is a 32-bit code, one per pixel, from which the pixel's colour is later looked up. 0: no surface. Otherwise it holds an entry of
-   the colour map, or a material and its light; the top bits tell which. */
+/* A mark is a 32-bit code, one per pixel, which is converted to the pixel's colour later. 0: no surface. Otherwise it holds an
+   entry of the colour map, or a material and its light; the top bits tell which. */
 /* mark of a pixel that shows the field: MARK_FIELD | row * COLORMAP_COLUMNS + column of the colour map (bits of MARK_PLACE) | coverage by
    an isoline, 0..255 << MARK_LINE */
 #define MARK_FIELD 0x40000000u
@@ -161,9 +161,9 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
-    /* section planes as coefficients of (x w, y w, z, w), with x and y in pixels. The dot product is a point's signed distance from the
-       plane, up to a factor; points with a negative distance are cut off. The first `entry_count` of the `cut_count` planes are those
-       through which view rays enter the space that is kept */
+    /* section planes as coefficients of (x w, y w, z, w), with x and y in pixels. The dot product is a point's signed distance
+       from the plane, up to a factor; points with a negative distance are cut off. View rays enter the space that is kept
+       through the first `entry_count` of the `cut_count` planes */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
     float shift_px[2];  /* offset, from the pixel centres, of the samples being drawn, in pixels; 0 in previews */
@@ -198,7 +198,7 @@ struct soft { /* shared by all frames */
     lanes *shading;            /* by material: attributes of shading, at the indices BASE, METALLIC, ROUGHNESS, EMISSIVE (refined_impl.h) */
     const uint32_t *backdrops; /* from struct sky */
     struct soft_tones *tones;
-    /* glossy colour map; its rows are brightness steps. glossy_version: version of the colour map from which it was made */
+    /* glossy colour map; its rows are brightness steps. glossy_version: version of the plain colour map used to make it */
     uint32_t *glossy;
     uint64_t glossy_version;
     struct soft_light lights[SOFT_LIGHTS];
@@ -217,13 +217,13 @@ struct soft { /* shared by all frames */
 /* Returns the copy, in main memory, of a light set (baked light); reads it from the GPU if needed. NULL: out of memory, logged. */
 const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
 void soft_free_light(const struct soft *soft, struct soft_light *light);
-/* Returns the table from which pixels that show a field get their colours: colormap->texels or, if `glossy` is true, soft->glossy. */
+/* Returns the table of colours for pixels that show a field: colormap->texels or, if `glossy` is true, soft->glossy. */
 const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
 void raster_finish(struct raster *raster); /* frees the raster's memory; the raster can be used again */
 size_t raster_bytes(const struct raster *raster);
 void refined_destroy(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 size_t refined_bytes(const struct refined *refined);
-/* Steps of drawing a frame, declared in the order in which they are called. */
+/* Steps of drawing a frame, declared in calling order. */
 void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
 /* Prepares for the depth grid (coarse depth for clients, render/depth_grid.h), if the frame gets one; call it after raster_aim(). Without
    memory for the cells, the frame has no grid. */
@@ -265,8 +265,8 @@ enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
 /* finds the pixels that the outline of the selected asset covers; returns an enum soft_rim per pixel, rows pitch_px apart; overwrites
    raster->depth */
 const uint8_t *raster_rim(const struct raster *raster);
-/* Returns a visibility buffer from which the frame can be recoloured. Call it while raster->ids is valid, and before edges, rims and
-   markers are drawn. NULL: out of memory. */
+/* Returns a visibility buffer for recolouring the frame. Call it while raster->ids is valid, and before edges, rims and markers
+   are drawn. NULL: out of memory. */
 struct visibility_buffer *raster_keep(struct raster *raster);
 /* adds the outline of the selected asset to buffer->ink (lines drawn over pixels); overwrites raster->depth */
 void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer);

@@ -10,7 +10,7 @@ enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
 enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + NEAR_CORNERS * PART_TRIANGLES };
 
-/* largest ratio between the depths of a face's nearest and farthest corner at which the face is drawn without perspective correction */
+/* faces whose farthest and nearest corner have depths of at most this ratio are drawn without perspective correction */
 #define SOFT_LITTLE 1.02f
 
 struct soft_corners { /* vertices of a part with the members of struct soft_vertex, followed by the vertices that clipping added */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility buffer: for each pixel the triangle it shows, the position on the triangle and the light there. While the camera stands still,
-   a frame with new readings is made from the buffer by looking up colours again. Thread: the one of the GL context, except functions marked
-   as running on a worker. */
+/* Visibility buffer: for each pixel the triangle it shows, the position on the triangle and the light there. While the camera
+   stands still, a frame with new readings is made from the buffer by looking up colours again. Thread: the one that owns the GL
+   context, except functions marked as running on a worker. */
 #ifndef RENDER_SOFT_VISIBILITY_BUFFER_H
 #define RENDER_SOFT_VISIBILITY_BUFFER_H
 #include "base/workers.h"
@@ -91,7 +91,7 @@ struct visibility_buffer {
     uint32_t *surfaces;             /* per pixel, as described above */
     uint32_t *weights;              /* by pixel: weights of two corners of its triangle, 16 bits each: second corner | third corner << 16 */
     uint8_t *rows;                  /* by pixel: row of the shaded colour map, that is, the brightness of the surface */
-    /* by pixel: light that the pixel reflects in the glossy look; NULL: another look, in which `rows` holds the brightness */
+    /* by pixel: light that the pixel reflects in the glossy look; NULL: another look; `rows` then holds the brightness */
     struct visibility_gloss *gloss;
     const struct soft_tones *tones; /* set with gloss; not owned */
     /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil (coverage by ghost
@@ -108,7 +108,7 @@ struct visibility_buffer {
     /* true: resolve_read() must find the cells (squares of pixels with fields of many sensors) again, because the set of such
        meshes has changed */
     bool finds_cells;
-    /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) with which the values in `carried` were computed */
+    /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) used to compute the values in `carried` */
     float scale[4];
     uint32_t *vertices; /* vertices that some pixel shows, mesh by mesh: index of each in the asset's file */
     /* value at each visible vertex, interpolated over triangles: column of the colour map or, on a logarithmic scale, the

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Store of visibility buffers of frames from still cameras, keyed by content_hash_shape(), so that a frame with new values only needs new
-   colours. The store does not know what a buffer contains. If the buffers exceed the memory limit, the least recently used ones are
-   evicted. Thread: the one of the GL context. */
+/* Store of visibility buffers of frames from still cameras, keyed by content_hash_shape(), so that a frame with new values only
+   needs new colours. The store does not know what a buffer contains. If the buffers exceed the memory limit, the least recently
+   used ones are evicted. Thread: the one that owns the GL context. */
 #ifndef RENDER_SOFT_VISIBILITY_STORE_H
 #define RENDER_SOFT_VISIBILITY_STORE_H
 #include <stdbool.h>
@@ -24,8 +24,8 @@ struct visibility_store { /* zero-initialise, then set bound_bytes */
     uint64_t uses;
 };
 
-/* Returns the visibility buffer of frames with that hash, valid until the next visibility_store_give() or visibility_store_drop(). NULL:
-   none. */
+/* Returns the visibility buffer of frames with this hash, valid until the next visibility_store_give() or
+   visibility_store_drop(). NULL: none. */
 void *visibility_store_find(struct visibility_store *store, uint64_t shape);
 /* Takes ownership of a visibility buffer and replaces any buffer with the same hash. Destroys the buffer immediately if it exceeds the
    memory limit and keeps_newest is false. */

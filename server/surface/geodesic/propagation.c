@@ -14,8 +14,8 @@
 #define STEPS_PER_EDGE 512.0
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
-/* The triangles around a point are lined up in rows, in which each triangle is adjacent to the next. This is the maximum number of
-   triangles tested to find the next one of a row; if none is adjacent, the row ends. */
+/* The triangles around a point are lined up in rows of triangles that are each adjacent to the next. This is the maximum number
+   of triangles tested to find the next one of a row; if none is adjacent, the row ends. */
 #define MAX_TRIED 64
 
 /* Returns the corners of triangle t: a triangle of the intrinsic triangulation, or, for indices after those, an interior (hidden) triangle.

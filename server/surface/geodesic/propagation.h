@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Geodesic distances by propagation from a source, triangle by triangle, nearest points first. Each triangle is unfolded into the plane, in
- * which distances are straight lines (Novotni and Klein 2002). Exact where the surface is flat or developable. */
+/* Geodesic distances by propagation from a source, triangle by triangle, nearest points first. Each triangle is unfolded into
+ * the plane, where shortest paths are straight lines (Novotni and Klein 2002). Exact where the surface is flat or developable.
+ * */
 #ifndef SURFACE_GEODESIC_PROPAGATION_H
 #define SURFACE_GEODESIC_PROPAGATION_H
 #include "surface/geodesic/intrinsic.h"
@@ -57,9 +58,9 @@ struct propagation_source {
     uint32_t tri;
     const double *weights; /* of the triangle's corners */
 };
-/* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST), each with the state in fronts[] of the
- * same index. Results do not depend on which sources are computed together. Returns false when out of memory. Thread: any, with its own
- * fronts. */
+/* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST). fronts[i] holds the state
+ * for source i. Results do not depend on which sources are computed together. Returns false when out of memory. Thread: any,
+ * with its own fronts. */
 bool propagation_run(const struct propagation *propagation, struct propagation_front *fronts, const struct propagation_source *sources,
                      size_t count);
 

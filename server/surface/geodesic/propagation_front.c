@@ -17,7 +17,7 @@
 /* Points whose distances differ by up to this many buckets of the priority queue may be processed in any order. Distances count as final up
    to the current bucket plus this many. */
 #define ANY_ORDER 2
-#define MAX_DEPTH 32     /* maximum number of triangles through which a straight line near the source is followed */
+#define MAX_DEPTH 32     /* maximum number of triangles along a straight line near the source */
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
@@ -120,7 +120,7 @@ SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
     mask seen = (sy2 >= zero) & (db <= *reached);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
     root(&sy);
-    /* cut / height: position on the edge, from p, at which the ray crosses it */
+    /* cut / height: position of the ray's crossing with the edge, measured from p */
     lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy;
     seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
     lanes straight = x * x + height * height;
@@ -310,8 +310,7 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
         uint32_t t = window->entered / 3, side = window->entered % 3;
         lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
         bool passes_l = cross(way, (const double[2]){ apex[0] - from[0], apex[1] - from[1] }) > 0;
-        /* position of the corner that two sides of the triangle share: the one through which the line entered and the one through which it
-           leaves */
+        /* position of the triangle's corner between the side where the line entered and the side where it leaves */
         const double *end = passes_l ? window->l : window->r;
         double along[2] = { apex[0] - end[0], apex[1] - end[1] }, beyond[2] = { to[0] - end[0], to[1] - end[1] };
         if (passes_l ? cross(along, beyond) >= 0 : cross(beyond, along) >= 0)

@@ -11,11 +11,10 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-/* margin by which bounding boxes are enlarged when they are converted from double to float, relative to the largest coordinate: four
-   rounding errors */
+/* margin added to bounding boxes when they are converted from double to float, relative to the largest coordinate: four rounding errors */
 #define BOX_MARGIN 2.4e-7
 #define MARGIN 1e-5 /* relative margin for comparing squared distances in floats; much larger than their rounding error */
-/* smallest squared area of a triangle, relative to the squares of its sides, at which barycentric weights are exact to eight digits */
+/* squared area of a triangle, relative to the squares of its sides, above which barycentric weights are exact to eight digits */
 #define EXACT_AREA 1e-8
 /* a computed barycentric weight above this is certainly positive despite rounding errors, if the triangle's area exceeds EXACT_AREA */
 #define SURELY_POSITIVE 1e-6

@@ -250,8 +250,8 @@ static void sort3(uint32_t v[3])
             }
 }
 
-/* Returns a number for a triangle's set of three points, counted from 0 in the order in which the sets first occur. Triangles
- * with the same three points, in any order, get the same number, which reveals duplicates. */
+/* Returns a number for a triangle's set of three points, counted from 0 in order of first occurrence. Triangles with the same
+ * three points, in any order, get the same number, which reveals duplicates. */
 static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
 {
     uint32_t v[3] = { tri[0], tri[1], tri[2] };

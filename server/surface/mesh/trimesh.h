@@ -12,7 +12,7 @@
 struct trimesh {
     double (*points)[3];
     uint32_t (*tris)[3];
-    uint32_t *tri_source; /* by triangle: index of the model triangle of which the triangle is a piece */
+    uint32_t *tri_source; /* by triangle: index of the model triangle that it is a piece of */
     uint32_t *tri_times;  /* by triangle: number of model triangles with these three points; NULL: not counted */
     size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity, times_capacity;
 };
@@ -41,8 +41,8 @@ uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
 /* Appends a triangle of three points that is a piece of the model's triangle `source`. */
 void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t source);
 
-/* Finds points to merge. Writes to target[point] the index of an earlier point within within_m of the point, or the point's own
- * index if there is none. A point that is another's target is its own target. Returns false if out of memory. */
+/* Finds points to merge. target[point] receives the index of an earlier point at most within_m away, or the point's own index
+ * if there is none. A point that is another's target is its own target. Returns false if out of memory. */
 bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target);
 /* Replaces each point i by point target[i]. Drops triangles that lost their area (adds their number to *degenerate) or became duplicates
    (adds to *repeated). */

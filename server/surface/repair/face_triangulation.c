@@ -42,8 +42,8 @@ static double twice_area(const struct face_triangulation *face, uint32_t a, uint
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* Returns the index of the triangle of the face's triangulation that contains a point: the one in which the point's smallest barycentric
- * weight is largest. */
+/* Returns the index of the triangle of the face's triangulation that contains a point: the one where the smallest of the
+ * point's barycentric weights is largest. */
 static size_t locate(const struct face_triangulation *face, uint32_t point, double weights[3])
 {
     size_t best = 0;

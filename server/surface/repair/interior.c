@@ -10,7 +10,7 @@
 #include "surface/mesh/bvh.h"
 
 #define RAYS 5
-#define RAYS_INSIDE 4 /* a point counts as inside a part if at least this many of its RAYS test rays say so */
+#define RAYS_INSIDE 4 /* minimum number of the RAYS test rays that must indicate that a point is inside a part for it to count as inside */
 /* A region is a set of points that are connected without passing another part. Only one in VOTE_EVERY triangles of a region is tested for
    being inside; if the results agree, they hold for the whole region. */
 #define VOTE_EVERY 16
@@ -191,7 +191,7 @@ static bool is_inside(const struct solid *solid, const double place[3], double s
     return inside >= RAYS_INSIDE;
 }
 
-/* triangle being tested: its centre and normal, and the solid of the part to which it belongs; `own` NULL: that part is not closed */
+/* triangle being tested: its centre and normal, and the solid of its part; `own` NULL: the part is not closed */
 struct interior_face {
     double middle[3], normal[3];
     double height_m; /* height over its longest edge */
@@ -280,7 +280,7 @@ static void search_some(void *arg, size_t begin, size_t end)
 
 /* --- regions ------------------------------------------------------------------------------------------------------------------ */
 
-/* Sets mixed[point] to 1 for points at which triangles of several parts meet. Only at such a point can a part pass from the outside of
+/* Sets mixed[point] to 1 for points where triangles of several parts meet. Only there can a part pass from the outside of
  * another part to its inside. */
 static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mixed)
 {
@@ -331,8 +331,8 @@ static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
     return region;
 }
 
-/* Returns the region of a triangle: that of a corner that is not marked in `mixed`. (A region is a set of points that are connected without
-   passing a marked point.) TRIMESH_NONE: all corners are marked. */
+/* Returns the region of a triangle, which is the region of a corner not marked in `mixed`. (A region is a set of points that
+   are connected without passing a marked point.) TRIMESH_NONE: all corners are marked. */
 static uint32_t region_of(const struct trimesh *mesh, size_t t, const char *mixed, const uint32_t *region)
 {
     for (int i = 0; i < 3; i++)
@@ -386,7 +386,7 @@ struct region_vote { /* results of the tests in one region: number of its triang
     char most;
 };
 
-/* Returns whether any closed part may hide triangles: those of other parts, or its own if it intersects itself. */
+/* Returns whether any closed part may hide triangles of other parts, or its own if it intersects itself. */
 static bool may_hide(const struct body_parts *parts)
 {
     for (size_t p = 0; p < parts->count; p++)

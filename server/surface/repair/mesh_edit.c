@@ -80,7 +80,7 @@ struct crossing_lists {
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
     uint32_t *target; /* by point: index of the point that replaces it */
-    /* lists of the points to which each point (after replacement) gets an edge; NULL: no edges are requested */
+    /* lists of the points to connect each point to (after replacement) by an edge; NULL: no edges are requested */
     uint32_t *partner_first, *partners;
     /* by point after replacement: 1 + its index in the triangulation of the current face; 0: the triangulation does not have it */
     uint32_t *slot;
@@ -302,7 +302,7 @@ static void cut(struct cutter *cutter, const struct crossing_lists *lists, struc
     uint32_t corners[3], source = mesh->tri_source[t];
     memcpy(corners, mesh->tris[t], sizeof(corners));
     lay_out(face, mesh, corners);
-    uint32_t a = 0; /* index (0 to 2) of the corner at which the side with most inserted points begins */
+    uint32_t a = 0; /* index (0 to 2) of the corner that begins the side with most inserted points */
     for (uint32_t i = 1; i < 3; i++)
         if (side_count(lists, corners, i) > side_count(lists, corners, a))
             a = i;

@@ -24,8 +24,8 @@ struct body_parts {
     char *thin;
     double *reach_m;    /* by part: distance up to which another surface counts as touching it */
     double tolerance_m; /* largest reach of a part */
-    /* length in metres of the diagonal of the surface's main part (base/math/gap_split.h); 0: that of `solid` is used. May be set after
-       parts_init() */
+    /* length in metres of the diagonal of the surface's main part (base/math/gap_split.h); 0: the diagonal of `solid` is used.
+       May be set after parts_init() */
     double size_m;
     size_t count, source_count; /* count: parts; source_count: model triangles */
 };

@@ -108,8 +108,8 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-/* Sums over a set of patches (triangles connected by edges with two faces), which tell whether the set is closed. The patches
- * are connected at edges through which no patch continues. Stored at the index of the set's lowest triangle */
+/* Sums over a set of patches (triangles connected by edges with two faces), which tell whether the set is closed. No patch
+ * continues through the edges that connect the set. Stored at the index of the set's lowest triangle */
 struct core {
     double open_m, area_m2;
     bool stands;

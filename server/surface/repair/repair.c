@@ -97,7 +97,7 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
 }
 
-/* Returns the other end of a border edge of which p is an end. n: index in borders->at, whose element is the edge's index. */
+/* Returns the other end of a border edge that ends at p. n: index in borders->at, whose element is the edge's index. */
 static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
 {
     const uint32_t *edge = s->borders->edges[s->borders->at[n]];

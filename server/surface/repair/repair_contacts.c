@@ -24,7 +24,7 @@ struct contacts {
     /* while edges are tested for crossings: the part of the current edge; while points are tested for contact: the body of the current
        point */
     uint32_t own;
-    double reach_m; /* reach (distance up to which a part counts as touching) of the part of the point or rim being tested */
+    double reach_m; /* reach (distance up to which a part counts as touching) of the part whose point or rim is being tested */
     uint32_t edge[2];
     uint32_t *touched; /* by point: the body that it touches, or TRIMESH_NONE */
     struct contact_crossing {
@@ -187,8 +187,8 @@ static void find_touches(struct contacts *c)
 
 /* --- rims: edges where a face leaves the body that it lies on --- */
 
-/* Computes the points at which two edges are nearest to each other: t, fraction from a to b, and s, fraction from c to d. Returns false if
- * the edges are parallel, or such a point is not inside its edge. */
+/* Computes where two edges are nearest to each other: t, fraction from a to b, and s, fraction from c to d. Returns false if
+ * the edges are parallel, or if one of these positions is not inside its edge. */
 static bool edges_meet(const double a[3], const double b[3], const double c[3], const double d[3], double *t, double *s)
 {
     double ab[3], cd[3], ac[3];
@@ -275,7 +275,7 @@ static void set_crossings(struct contacts *c, struct repair_report *report)
 
 /* --- the lines along which triangles intersect --------------------------------------------------------------------------------- */
 
-struct meeting {             /* a point at which two triangles intersect: there, an edge of one passes through the other */
+struct meeting {             /* a point where two triangles intersect: an edge of one passes through the other there */
     uint32_t tris[2], point; /* tris: the lower one first */
 };
 
@@ -293,8 +293,8 @@ static int compare_meetings(const void *a, const void *b)
     return (x->point > y->point) - (x->point < y->point);
 }
 
-/* Lists the points at which triangles intersect: where an edge passes through a triangle, each triangle at the edge intersects that
- * triangle. */
+/* Lists the points where triangles intersect. Where an edge passes through a triangle, each triangle at the edge intersects
+ * that triangle. */
 static void find_meetings(const struct contacts *c, struct meetings *meetings)
 {
     struct edge_table edges;

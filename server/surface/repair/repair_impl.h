@@ -14,9 +14,9 @@ bool repair_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);
  * `crossings` points of the mesh are those at which an edge passes through a face. Each is inserted into both, but counts as one bridge. */
 void repair_apply(struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
                   struct repair_report *report);
-/* Inserts the points of straight borders into edges that run along the border within within_m and share one end with it. At such an edge
- * several bodies meet, of which one has a slit. A point is inserted into all such edges, because the others would stay open if only the
- * nearest edge got the point. borders: borders of the mesh; updated. */
+/* Inserts the points of straight borders into edges that run along the border, at most within_m away, and share one end with
+ * it. Several bodies meet at such an edge, and one has a slit. A point is inserted into all such edges, because the others
+ * would stay open if only the nearest edge got the point. borders: borders of the mesh; updated. */
 void repair_hanging(struct trimesh *mesh, struct borders *borders, double within_m, uint32_t *target, size_t target_count,
                     struct repair_report *report);
 

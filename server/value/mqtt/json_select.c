@@ -29,8 +29,7 @@ static bool names_its_object(const char *key)
     return false;
 }
 
-/* Returns true if the name that an array item states is the tag's name, or ends in the tag's name after a separator, such as
-   `A.T1` for the tag T1. */
+/* Returns true if the name stated in an array item is the tag's name, or ends in it after a separator, such as `A.T1` for the tag T1. */
 static bool is_name_of(const json_t *name, const char *tag)
 {
     const char *text = json_string_value(name);
@@ -49,8 +48,8 @@ static bool is_selected(const char *key, const char *rest)
     return *rest && json_path_next(&rest, &step, why) && step.kind == JSON_PATH_NAME && !strcmp(step.name, key);
 }
 
-/* Returns a name that an array item states for itself, if none of its names matches the tag; NULL if one matches or the item
-   states none. rest: path below the item. */
+/* Returns a name stated in an array item if no such name matches the tag; NULL if one matches or the item states none. rest:
+   path below the item. */
 static const json_t *foreign_name(const json_t *item, const char *tag, const char *rest)
 {
     const char *key;

@@ -9,14 +9,14 @@ struct json_selected {
     size_t count;         /* number of values that the path selects */
     const json_t *value;  /* last selected value; NULL: none */
     const json_t *holder; /* object or array that contains `value`; NULL: `value` is the root */
-    /* If the path addresses an array item by position: a name that the item states for itself and that does not match the tag;
-       NULL: there is no such name. */
+    /* If the path addresses an array item by position: a name stated in the item that does not match the tag; NULL: there is no
+       such name. */
     const json_t *foreign;
 };
 
-/* Follows the path from `root`. tag: name of the tag whose value is read. An array item that the path addresses by position may state a
-   name (a text or number called `id`, `name`, `tag` and the like). It is selected only if this name is the tag's, or ends in the tag's
-   name after a separator, because a publisher that sends only changed items changes their positions. */
+/* Follows the path from `root`. tag: name of the tag whose value is read. An array item that the path addresses by position may
+   state a name (a text or number called `id`, `name`, `tag` and the like). It is then selected only if this is the tag's name,
+   or ends in it after a separator. The reason: items of a publisher that sends only changed ones have changing positions. */
 struct json_selected json_select(const json_t *root, const char *path, const char *tag);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source: connects to a broker, subscribes, and marks all its readings as lost when the connection is lost. It can publish only
-   two messages, if the plant file allows them: the request for a Sparkplug birth certificate, and a last will on a topic below
-   plantcast/. */
+/* An MQTT source: connects to a broker, subscribes, and marks all its readings as lost when the connection is lost. It can
+   publish only two messages, if the plant file allows them. These are the request for a Sparkplug birth certificate, and a last
+   will on a topic below plantcast/. */
 #include <errno.h>
 #include <string.h>
 #include <sys/random.h>
@@ -152,8 +152,8 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     mqtt->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
 }
 
-/* Returns the MQTT client id from the plant file, or a random one, because the broker disconnects a client if another one connects with
-   the same id. The caller frees it. */
+/* Returns the MQTT client id from the plant file, or a random one; the caller frees it. Ids must be unique, because the broker
+   disconnects a client if another one connects with the same id. */
 static char *make_client_id(const struct plant_source *config)
 {
     unsigned random = 0;

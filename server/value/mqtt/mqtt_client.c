@@ -21,7 +21,7 @@
 #include "value/mqtt/sparkplug_payload.h"
 
 enum { TOPICS_AT_ONCE = 8 };         /* maximum number of topics in one subscribe request; some brokers refuse more */
-enum { SESSION_KEPT_S = 7 * 86400 }; /* seconds for which the broker keeps a persistent session after a disconnection */
+enum { SESSION_KEPT_S = 7 * 86400 }; /* time in seconds for which the broker keeps a persistent session after a disconnection */
 static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
 static const int64_t CHORES_NS = 500 * NS_PER_MS; /* interval at which libmosquitto is called to check its keep-alive timer */
 
@@ -38,7 +38,7 @@ struct mqtt_client {
     int errno_then;
     char said[160]; /* text of the last error that libmosquitto logged */
     /* --- below: used only by the thread that calls mqtt_client_serve() */
-    int refusal; /* reason code with which the broker refused the connection; 0: none */
+    int refusal; /* reason code of the broker's refusal of the connection; 0: none */
     char *const *topics;
     size_t topic_count, acknowledged;
     /* message ids of the subscribe requests, each for up to TOPICS_AT_ONCE topics; 0: the broker has acknowledged the request */

@@ -47,9 +47,9 @@ int mqtt_client_serve(struct mqtt_client *client, int stop_fd, int64_t deadline_
  * mqtt_client_serve() then reports the reason. */
 bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size_t count);
 
-/* Publishes a text with the retained flag, only to topics that begin with plantcast/, to which no device subscribes. Returns 0;
-   -ENOTCONN if the connection has ended (mqtt_client_serve() reports the reason); another negative code if libmosquitto refuses the
-   message, for example because the text is too long for the broker. */
+/* Publishes a text with the retained flag, only to topics that begin with plantcast/, to which no device subscribes. Returns 0,
+   or -ENOTCONN if the connection has ended (mqtt_client_serve() reports the reason). Another negative code means that
+   libmosquitto refuses the message, for example because the text is too long for the broker. */
 int mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text);
 /* Returns true if all published messages have been passed to the operating system. */
 bool mqtt_client_has_sent(const struct mqtt_client *client);

@@ -69,8 +69,8 @@ static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic
     return true;
 }
 
-/* Handles a JSON message that lacks a tag's value. If no message so far has contained a value of the tag, the tag's path is probably
-   wrong, so the tag becomes Bad_NoMatch. */
+/* Handles a JSON message that lacks a tag's value. If no message has contained a value of the tag yet, the tag's path is
+   probably wrong, so the tag becomes Bad_NoMatch. */
 static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_reader *reader, int tag)
 {
     char name[64], more[LOG_PACE_BYTES];

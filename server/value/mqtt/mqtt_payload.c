@@ -88,8 +88,8 @@ static bool read_time(const json_t *json, int64_t *utc_ns)
     return !json_is_boolean(json) && read_number(json, &number) && read_epoch(number, utc_ns);
 }
 
-/* Returns the quality that a member of a JSON message states: an OPC UA status code, or a word that begins with a severity such as
-   "good". Anything else gives Uncertain. */
+/* Returns the quality in a member of a JSON message: an OPC UA status code, or a word that begins with a severity such as
+   "good". Uncertain for anything else. */
 static uint32_t read_quality(const json_t *json)
 {
     static const struct {

@@ -40,7 +40,7 @@ struct sparkplug {
     struct sparkplug_params params;
     struct sparkplug_node *nodes;
     size_t node_count;
-    size_t *node_of; /* by topic: index of the node to which the topic belongs */
+    size_t *node_of; /* by topic: index of the node that the topic belongs to */
     /* by topic: true while the node or device is alive (its birth certificate has arrived, and no death certificate since) */
     bool *is_born;
     uint32_t *types; /* by tag: data type of its metric, as the birth certificate states it; 0: no birth certificate contains the metric */
@@ -114,8 +114,8 @@ void sparkplug_destroy(struct sparkplug **sparkplug)
     mem_free(gone);
 }
 
-/* Returns topic filters for all messages of each node and its devices, including devices without tags, because a node and its devices
-   share one sequence number. */
+/* Returns topic filters for all messages of each node and its devices. Devices without tags are included, because a node and
+   its devices share one sequence number. */
 char **sparkplug_subscriptions(const struct sparkplug *sparkplug, size_t *count)
 {
     char **names = mem_array(sparkplug->node_count, sizeof(*names));

@@ -24,7 +24,7 @@ struct sparkplug_params {
     void *arg;
 };
 
-/* Creates a decoder. Everything to which `params` points must outlive the decoder. */
+/* Creates a decoder. Everything that `params` points to must outlive the decoder. */
 struct sparkplug *sparkplug_create(const struct sparkplug_params *params);
 void sparkplug_destroy(struct sparkplug **sparkplug); /* Frees the decoder and sets *sparkplug to NULL. *sparkplug may be NULL. */
 /* Returns the topic filters to which the client must subscribe; *count receives their number. The caller frees each filter and the array

@@ -20,7 +20,7 @@ struct sparkplug_metric {
     const char *name; /* name of the metric; NULL: the alias identifies it */
     bool has_alias, is_historical, is_null;
     uint64_t alias;
-    int64_t utc_ns;   /* UTC time that the metric states, or else the time of its payload; 0: neither states a time */
+    int64_t utc_ns;   /* UTC time stated by the metric or, if it states none, by its payload; 0: neither states a time */
     uint32_t type;    /* data type of the metric (Sparkplug's number); 0: the message does not state it */
     uint32_t quality; /* quality from the metric's property Quality; Good if it has none */
     enum sparkplug_form form;
@@ -40,8 +40,8 @@ struct sparkplug_payload {
 /* Decodes a payload. Returns false with the reason in `why`, and nothing to free, if the bytes are not a valid payload. */
 bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_payload *out, char why[200]);
 void sparkplug_payload_finish(struct sparkplug_payload *payload);
-/* Reads a metric's value as a number. type: the type that the metric states, or else the one in its birth certificate. Returns false if
-   the value is not a number. */
+/* Reads a metric's value as a number. type: the type that the metric states or, if it states none, the type in its birth
+   certificate. Returns false if the value is not a number. */
 bool sparkplug_number(const struct sparkplug_metric *metric, uint32_t type, double *out);
 /* Returns the name of a Sparkplug data type, such as "Int32"; "an unknown type" for a number that is not a type. */
 const char *sparkplug_type_name(uint32_t type);

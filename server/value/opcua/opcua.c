@@ -14,7 +14,7 @@
 
 /* time limit for opening a session, and for subscribing to all nodes */
 static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
-/* SERVE_NS: longest wait for new values at a time; RETRY_NS: interval at which nodes that the server refused are requested again */
+/* SERVE_NS: maximum duration of one wait for new values; RETRY_NS: interval between repeated requests for nodes that the server refused */
 static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;
 /* minimum time between two reads of all nodes after notifications from the server were lost */
 static const int64_t READ_NS = 10 * NS_PER_S;

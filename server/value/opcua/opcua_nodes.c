@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "value/source_tags.h"
 
-/* Returns the deadband of a tag: the one in the tag list, or else that of its source. */
+/* Returns the deadband of a tag: from the tag list or, if that has none, from its source. */
 static struct opcua_deadband deadband_of(const struct plant_opcua *source, const struct plant_tag *tag)
 {
     if (!isnan(tag->signal.opcua_deadband.value))

@@ -12,7 +12,7 @@ struct opcua_node {
     const int *tags;             /* indices in plant->tags of the tags that take their values from the node */
     size_t tag_count;
     int sampling_ms; /* sampling interval in milliseconds: the shortest one that any of the node's tags requests */
-    /* the smallest deadband of the node's tags, or that of the source; none if one tag states percent and another does not */
+    /* the smallest deadband of the node's tags, or the source's deadband; none if one tag states percent and another does not */
     struct opcua_deadband deadband;
     bool own_deadband; /* true: the tag list states the deadband; false: the source does */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks certificates of OPC UA servers with OpenSSL, because open62541's own check ignores the host name, and accepts a server whose
+/* Checks certificates of OPC UA servers with OpenSSL. The check in open62541 ignores the host name, and accepts a server whose
    first response contains no certificate. */
 #include "value/opcua/opcua_security.h"
 
@@ -298,7 +298,7 @@ static UA_StatusCode verify(const UA_CertificateVerification *verification, cons
     return opcua_security_check(security, &chain, why);
 }
 
-/* Accepts any application URI: open62541 calls this function only for our own certificate, from which our URI was read. */
+/* Accepts any application URI. open62541 calls this function only for our own certificate, which our URI was read from. */
 static UA_StatusCode verify_uri(const UA_CertificateVerification *verification, const UA_ByteString *certificate, const UA_String *uri)
 {
     (void)verification, (void)certificate, (void)uri;

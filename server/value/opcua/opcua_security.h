@@ -19,8 +19,9 @@ struct opcua_security {
    one cannot be used. Call opcua_security_finish() in both cases. `config` and `host` must outlive the struct. */
 bool opcua_security_init(struct opcua_security *security, const struct plant_opcua *config, const char *host, char why[200]);
 void opcua_security_finish(struct opcua_security *security);
-/* Checks a server's certificate: it must be valid now and issued for the host, have a key that is long enough, and be trusted itself or
- * through its issuers. Removes the issuers' certificates from *chain. Returns a status code; if it is Bad, `why` has the reason. */
+/* Checks a server's certificate. It must be valid now and issued for the host, have a key that is long enough, and be trusted
+ * itself or through its issuers. Removes the issuers' certificates from *chain. Returns a status code; if it is Bad, `why` has
+ * the reason. */
 UA_StatusCode opcua_security_check(const struct opcua_security *security, UA_ByteString *chain, char why[200]);
 /* Sets security in the configuration of an open62541 client: our certificate in all policies, and the user from the file `login` (NULL:
    anonymous). Returns false with the reason in `why`. The logger in `config` must be set before the call. */

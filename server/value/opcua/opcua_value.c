@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts values of all numeric types of OPC UA to doubles. An array of several dimensions is indexed like a one-dimensional array, in
-   the order in which its elements are sent. */
+/* Converts values of all numeric types of OPC UA to doubles. An array of several dimensions is indexed like a one-dimensional
+   array, in the order of its elements in the message. */
 #include "value/opcua/opcua_value.h"
 
 #include <open62541/types_generated.h>
