@@ -7,6 +7,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_shortest_path.h>
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <vector>
@@ -85,7 +86,17 @@ bool unite(const oracle_mesh *a, const oracle_mesh *b, oracle_mesh *result)
 
 } // namespace
 
-extern "C" bool oracle_distances(const struct oracle_mesh *mesh, size_t triangle, const double weights[3], double *distances)
+extern "C" long oracle_vertex_at(const oracle_mesh *mesh, const float p[3])
+{
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const float *q = mesh->positions[v];
+        if (std::fabs(p[0] - q[0]) < 1e-5f && std::fabs(p[1] - q[1]) < 1e-5f && std::fabs(p[2] - q[2]) < 1e-5f)
+            return static_cast<long>(v);
+    }
+    return -1;
+}
+
+bool oracle_distances(const struct oracle_mesh *mesh, size_t triangle, const double weights[3], double *distances)
 {
     try {
         return measure(mesh, triangle, weights, distances);

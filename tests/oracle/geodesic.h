@@ -16,6 +16,9 @@ struct oracle_mesh { /* a manifold mesh; triangles: 3 indices each */
     size_t vertex_count, triangle_count;
 };
 
+/* Returns the vertex at position p, within 1e-5, or -1. */
+long oracle_vertex_at(const struct oracle_mesh *mesh, const float p[3]);
+
 /* Computes distances from the point with these weights on a triangle to every vertex (Xin & Wang 2009). Returns false if the mesh is not
    a manifold or CGAL failed. */
 bool oracle_distances(const struct oracle_mesh *mesh, size_t triangle, const double weights[3], double *distances);

@@ -185,6 +185,20 @@ void cad_bent_pipe(struct cad *cad, struct cad_random *random, int along, int ar
                   .across = along, .up = around, .round_v = true, .jitter = jitter, .size = { pipe_radius }, .surface = on_bent_pipe });
 }
 
+void cad_append(struct cad *cad, const struct cad *other, const double move[3])
+{
+    uint32_t first = (uint32_t)cad->vertex_count;
+    mem_grow(&cad->positions, &cad->position_capacity, cad->vertex_count + other->vertex_count, sizeof(*cad->positions));
+    mem_grow(&cad->triangles, &cad->index_capacity, 3 * (cad->triangle_count + other->triangle_count), sizeof(*cad->triangles));
+    for (size_t v = 0; v < other->vertex_count; v++)
+        for (int axis = 0; axis < 3; axis++)
+            cad->positions[cad->vertex_count + v][axis] = (float)((double)other->positions[v][axis] + move[axis]);
+    for (size_t i = 0; i < 3 * other->triangle_count; i++)
+        cad->triangles[3 * cad->triangle_count + i] = first + other->triangles[i];
+    cad->vertex_count += other->vertex_count;
+    cad->triangle_count += other->triangle_count;
+}
+
 /* --- blocks: surfaces of sets of cubic cells ------------------------------------------------------------------------------------- */
 
 struct block {
@@ -266,20 +280,22 @@ void cad_sphere(struct cad *cad, struct cad_random *random, int cells)
     }
 }
 
-void cad_thin_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell)
+static void make_scaled_block(struct cad *cad, struct cad_random *random, const struct block *block, double cell)
 {
-    make_block(cad, random, &(struct block){ { x, y, z }, in_thin_box });
+    make_block(cad, random, block);
     for (size_t v = 0; v < cad->vertex_count; v++)
         for (int axis = 0; axis < 3; axis++)
             cad->positions[v][axis] = (float)(cell * (double)cad->positions[v][axis]);
 }
 
+void cad_thin_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell)
+{
+    make_scaled_block(cad, random, &(struct block){ { x, y, z }, in_thin_box }, cell);
+}
+
 void cad_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell)
 {
-    make_block(cad, random, &(struct block){ { x, y, z }, in_cube });
-    for (size_t v = 0; v < cad->vertex_count; v++)
-        for (int axis = 0; axis < 3; axis++)
-            cad->positions[v][axis] = (float)(cell * (double)cad->positions[v][axis]);
+    make_scaled_block(cad, random, &(struct block){ { x, y, z }, in_cube }, cell);
 }
 
 /* --- pipes ---------------------------------------------------------------------------------------------------------------------- */
@@ -559,14 +575,21 @@ void cad_random_place(struct cad_place *place, struct cad_random *random)
         place->move[axis] = 3 * place->scale * (cad_random(random) - 0.5);
 }
 
+void cad_put_point(const struct cad_place *place, const double p[3], double out[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const double *row = place->rotation + 3 * axis;
+        out[axis] = place->scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place->move[axis];
+    }
+}
+
 void cad_put(struct cad *cad, const struct cad_place *place)
 {
     for (size_t v = 0; v < cad->vertex_count; v++) {
         float *p = cad->positions[v];
-        const double q[3] = { (double)p[0], (double)p[1], (double)p[2] };
-        for (int axis = 0; axis < 3; axis++) {
-            const double *row = place->rotation + 3 * axis;
-            p[axis] = (float)(place->scale * (row[0] * q[0] + row[1] * q[1] + row[2] * q[2]) + place->move[axis]);
-        }
+        double put[3];
+        cad_put_point(place, (double[3]){ (double)p[0], (double)p[1], (double)p[2] }, put);
+        for (int axis = 0; axis < 3; axis++)
+            p[axis] = (float)put[axis];
     }
 }

@@ -43,6 +43,8 @@ void cad_eight(struct cad *cad, struct cad_random *random, int along, int around
 void cad_closed_pipe(struct cad *cad, struct cad_random *random, double radius, double length, int around, int along, int rings,
                      double turn_rad, const double centre[3]);
 
+void cad_append(struct cad *cad, const struct cad *other, const double move[3]); /* appends a moved copy */
+
 enum cad_fault { CAD_CLEAN, CAD_SOUP, CAD_GAPS, CAD_REPEATED, CAD_HANGING, CAD_FINS, CAD_FAULTS };
 extern const char *const cad_fault_names[CAD_FAULTS];
 /* Copies the clean shape and adds the fault. vertex_of[clean vertex]: a vertex of the copy at the same position (or within the gap).
@@ -57,5 +59,6 @@ struct cad_place {
 };
 void cad_random_place(struct cad_place *place, struct cad_random *random);
 void cad_put(struct cad *cad, const struct cad_place *place);
+void cad_put_point(const struct cad_place *place, const double p[3], double out[3]);
 
 #endif

@@ -4,6 +4,9 @@
 #define TESTS_SURFACE_CASE_H
 #include "base/log/log.h"
 #include "base/workers.h"
+#include "field/influence_fill.h"
+#include "preprocess/influence/influence.h"
+#include "surface/surface.h"
 #include "tests/support/cad.h"
 
 extern struct log *the_log;
@@ -12,6 +15,14 @@ extern struct cad_random chance;
 
 /* Returns a random number between low and high. */
 double between(double low, double high);
+
+/* Returns the surface of the shape, made with the default parameters. Fails the test if there is none. */
+struct surface *surface_of(const struct cad *cad);
+
+/* Returns the value at a vertex that these readings of all sensors give. */
+double influence_value(const struct influence *influence, const double *readings, size_t vertex);
+/* Adds a triangle at x = 5, apart from a shape of size 1. */
+void add_triangle_apart(struct cad *cad);
 
 /* Set-up and tear-down of a cmocka group. */
 int surface_case_set_up(void **state);

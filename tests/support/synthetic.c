@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "protocol/asset_distance.h"
+#include "tests/support/no_textures.h"
 #include "value/quality.h"
 
 uint64_t synthetic_random(uint64_t *state) /* the splitmix64 generator */
@@ -36,11 +37,7 @@ static void build_file(struct synthetic *synthetic, const struct synthetic_param
     static const struct asset_primitive primitive = { .index_count = 3 };
     static const struct asset_material material = {
         .roughness = 1,
-        .base_color_texture = ASSET_NO_TEXTURE,
-        .metallic_roughness_texture = ASSET_NO_TEXTURE,
-        .normal_texture = ASSET_NO_TEXTURE,
-        .occlusion_texture = ASSET_NO_TEXTURE,
-        .emissive_texture = ASSET_NO_TEXTURE,
+        NO_TEXTURES,
     };
     uint64_t random = params->seed;
     float(*positions)[3] = mem_array(params->vertices, sizeof(*positions));

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "tests/support/no_textures.h"
 #include "value/quality.h"
 
 enum { MAX_ASSETS = 512, MAX_TAGS = 1024 };
@@ -101,9 +102,9 @@ static void place_sensor(const struct test_shape *shape, const double place[3], 
 static struct asset *make_file(const char *id, const struct test_shape *shape, const double (*sensors)[3], size_t sensor_count)
 {
     static const struct asset_material materials[TOY_MATERIALS] = {
-        [TOY_STEEL] = { .base_color = { 0.62f, 0.64f, 0.66f, 1 }, .metallic = 0.9f, .roughness = 0.35f },
-        [TOY_BLUE] = { .base_color = { 0.05f, 0.16f, 0.45f, 1 }, .roughness = 0.5f },
-        [TOY_CONCRETE] = { .base_color = { 0.50f, 0.48f, 0.45f, 1 }, .roughness = 0.9f },
+        [TOY_STEEL] = { .base_color = { 0.62f, 0.64f, 0.66f, 1 }, .metallic = 0.9f, .roughness = 0.35f, NO_TEXTURES },
+        [TOY_BLUE] = { .base_color = { 0.05f, 0.16f, 0.45f, 1 }, .roughness = 0.5f, NO_TEXTURES },
+        [TOY_CONCRETE] = { .base_color = { 0.50f, 0.48f, 0.45f, 1 }, .roughness = 0.9f, NO_TEXTURES },
     };
     struct asset_material own[TOY_MATERIALS];
     struct asset_sensor places[MAX_TAGS] = { 0 };
@@ -113,8 +114,6 @@ static struct asset *make_file(const char *id, const struct test_shape *shape, c
     for (int i = 0; i < TOY_MATERIALS; i++) {
         own[i] = materials[i];
         own[i].normal_scale = own[i].occlusion_strength = 1;
-        own[i].base_color_texture = own[i].metallic_roughness_texture = own[i].normal_texture = own[i].occlusion_texture =
-            own[i].emissive_texture = ASSET_NO_TEXTURE;
     }
     struct asset_parts parts = { .positions_m = (void *)shape->positions,
                                  .normals = (void *)shape->normals,

@@ -12,7 +12,6 @@
 #define MEAN_MAX 0.006 /* of the largest distance */
 #define WORST_MAX 0.03
 #define SOURCES 2
-#define SAME_PLACE 1e-5
 
 /* --- the truth ---------------------------------------------------------------------------------------------------------------- */
 
@@ -26,17 +25,6 @@ static struct oracle_mesh mesh_of(const struct cad *cad, size_t first_vertex, si
 {
     return (struct oracle_mesh){ (const float(*)[3])cad->positions + first_vertex, cad->triangles + 3 * first_triangle, vertex_count,
                                  triangle_count };
-}
-
-/* Returns the vertex of the outer surface at position p of a clean vertex, or -1. */
-static long same_place(const struct oracle_mesh *outer, const float p[3])
-{
-    for (size_t v = 0; v < outer->vertex_count; v++) {
-        const float *q = outer->positions[v];
-        if (fabsf(p[0] - q[0]) < (float)SAME_PLACE && fabsf(p[1] - q[1]) < (float)SAME_PLACE && fabsf(p[2] - q[2]) < (float)SAME_PLACE)
-            return (long)v;
-    }
-    return -1;
 }
 
 /* Source 0 is a vertex, source 1 lies inside a triangle. With PLANTCAST_LONG=1 both are tried, by default one of them, alternating by
@@ -59,7 +47,7 @@ static void find_truth(struct distance_truth *truth, int row, const struct cad *
     long *outer_of = mem_array(clean->vertex_count, sizeof(*outer_of));
     bool is_itself = (const float(*)[3])clean->positions == outer->positions;
     for (size_t v = 0; v < clean->vertex_count; v++)
-        outer_of[v] = is_itself ? (long)v : same_place(outer, clean->positions[v]);
+        outer_of[v] = is_itself ? (long)v : oracle_vertex_at(outer, clean->positions[v]);
     for (int s = 0; s < SOURCES; s++) {
         size_t t = (size_t)(cad_random(&chance) * (double)outer->triangle_count);
         double w[3] = { 1, 0, 0 };
@@ -106,14 +94,6 @@ static void score(const char *name, int fault, int source, const struct distance
     assert_true(worst <= WORST_MAX);
 }
 
-static void put_point(const struct cad_place *place, const double p[3], double out[3])
-{
-    for (int axis = 0; axis < 3; axis++) {
-        const double *row = place->rotation + 3 * axis;
-        out[axis] = place->scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place->move[axis];
-    }
-}
-
 /* Tests the clean shape and each fault. The default run takes one fault per shape, a different one for each shape. */
 static void test_faults(const char *name, int row, const struct cad *clean, const struct oracle_mesh *outer)
 {
@@ -125,17 +105,15 @@ static void test_faults(const char *name, int row, const struct cad *clean, cons
     find_truth(&truth, row, clean, outer);
     cad_random_place(&place, &chance);
     for (int s = 0; s < SOURCES; s++)
-        put_point(&place, truth.sources[s], sources[s]);
+        cad_put_point(&place, truth.sources[s], sources[s]);
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
         if (fault != CAD_CLEAN && !sweep_takes(row, fault, 5))
             continue;
         struct cad broken;
         cad_break(&broken, clean, (enum cad_fault)fault, &chance, vertex_of);
         cad_put(&broken, &place);
-        struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count,
-                                                 broken.triangles, broken.triangle_count, &(struct surface_params){ 0 });
+        struct surface *surface = surface_of(&broken);
         float *distances = mem_array(SOURCES * broken.vertex_count, sizeof(*distances));
-        assert_non_null(surface);
         assert_true(surface_distances(surface, (const double(*)[3])sources, SOURCES, distances));
         for (int s = 0; s < SOURCES; s++)
             if (is_source_tried(row, s))

@@ -5,6 +5,7 @@
 
 #include "tests/support/test.h"
 
+#include "tests/support/no_textures.h"
 #include "tests/support/replay.h"
 
 #define SEEDS "tests/fuzz/asset"
@@ -18,11 +19,7 @@ static const struct asset_primitive primitives[2] = { { .index_count = 6, .name 
 static const struct asset_level levels[2] = { { .primitive_count = 1, .vertex_count = 4 },
                                               { .first_primitive = 1, .primitive_count = 1, .vertex_count = 3, .error_m = 0.5f } };
 static const struct asset_material plain = { .roughness = 1,
-                                             .base_color_texture = ASSET_NO_TEXTURE,
-                                             .metallic_roughness_texture = ASSET_NO_TEXTURE,
-                                             .normal_texture = ASSET_NO_TEXTURE,
-                                             .occlusion_texture = ASSET_NO_TEXTURE,
-                                             .emissive_texture = ASSET_NO_TEXTURE };
+                                             NO_TEXTURES };
 static const struct asset_texture textures[1] = { { .width_px = 2, .height_px = 1, .srgb = 1 } };
 static const uint8_t texels[8] = { 1, 2, 3, 4, 5, 6, 7, 8 };
 static const struct asset_sensor sensors[2] = { { .position_m = { 0, 0, 0.1f }, .surface_distance_m = 0.1f }, { .nearest_vertex = 3 } };

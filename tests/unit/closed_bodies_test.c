@@ -4,6 +4,7 @@
 
 #include "tests/support/test.h"
 
+#include "tests/support/no_textures.h"
 #include "tests/support/shape.h"
 #include "tests/support/toy.h"
 
@@ -84,11 +85,7 @@ TEST(test_glass_bounds_nothing)
 {
     const struct asset_material glass = { .base_color = { 1, 1, 1, 0.3f },
                                           .alpha = ASSET_ALPHA_BLEND,
-                                          .base_color_texture = ASSET_NO_TEXTURE,
-                                          .metallic_roughness_texture = ASSET_NO_TEXTURE,
-                                          .normal_texture = ASSET_NO_TEXTURE,
-                                          .occlusion_texture = ASSET_NO_TEXTURE,
-                                          .emissive_texture = ASSET_NO_TEXTURE };
+                                          NO_TEXTURES };
     struct test_shape shape = { .materials = &glass, .material_count = 1 };
     shape_box(&shape, 0, low, high);
     assert_int_equal(closed_triangles(&shape), 0);

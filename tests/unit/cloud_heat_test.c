@@ -16,9 +16,7 @@ struct made {
 static void make(struct made *made, const double source_m[3])
 {
     struct cad *cad = &made->cad;
-    made->surface = surface_create(the_log, workers, (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles,
-                                   cad->triangle_count, &(struct surface_params){ 0 });
-    assert_non_null(made->surface);
+    made->surface = surface_of(cad);
     made->cloud = cloud_heat_create(the_log, made->surface);
     assert_non_null(made->cloud);
     made->along_m = mem_array(cad->vertex_count, sizeof(*made->along_m));

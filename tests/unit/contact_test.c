@@ -10,19 +10,6 @@
 
 #define MEAN_MAX 0.006 /* of the largest distance */
 #define WORST_MAX 0.03
-#define SAME_PLACE 1e-5f
-
-static void append(struct cad *cad, const struct cad *other)
-{
-    uint32_t first = (uint32_t)cad->vertex_count;
-    mem_grow(&cad->positions, &cad->position_capacity, cad->vertex_count + other->vertex_count, sizeof(*cad->positions));
-    mem_grow(&cad->triangles, &cad->index_capacity, 3 * (cad->triangle_count + other->triangle_count), sizeof(*cad->triangles));
-    memcpy(cad->positions + cad->vertex_count, other->positions, other->vertex_count * sizeof(*cad->positions));
-    for (size_t i = 0; i < 3 * other->triangle_count; i++)
-        cad->triangles[3 * cad->triangle_count + i] = first + other->triangles[i];
-    cad->vertex_count += other->vertex_count;
-    cad->triangle_count += other->triangle_count;
-}
 
 static void move(struct cad *cad, double turn_rad, double x, double y, double z)
 {
@@ -43,16 +30,6 @@ struct outer { /* the union's surface */
     long *of_vertex; /* by vertex of the tested shape: the outer surface's vertex at its position; -1: covered */
 };
 
-static long same_place(const struct oracle_mesh *mesh, const float p[3])
-{
-    for (size_t v = 0; v < mesh->vertex_count; v++) {
-        const float *q = mesh->positions[v];
-        if (fabsf(p[0] - q[0]) < SAME_PLACE && fabsf(p[1] - q[1]) < SAME_PLACE && fabsf(p[2] - q[2]) < SAME_PLACE)
-            return (long)v;
-    }
-    return -1;
-}
-
 static void outer_init(struct outer *outer, const struct cad *a, const struct cad *b, const struct cad *tested)
 {
     const struct oracle_mesh first = { (const float(*)[3])a->positions, a->triangles, a->vertex_count, a->triangle_count },
@@ -68,7 +45,7 @@ static void outer_init(struct outer *outer, const struct cad *a, const struct ca
     assert_true(oracle_distances(&outer->mesh, t, w, outer->distances));
     outer->of_vertex = mem_array(tested->vertex_count, sizeof(*outer->of_vertex));
     for (size_t v = 0; v < tested->vertex_count; v++)
-        outer->of_vertex[v] = same_place(&outer->mesh, tested->positions[v]);
+        outer->of_vertex[v] = oracle_vertex_at(&outer->mesh, tested->positions[v]);
 }
 
 static void outer_finish(struct outer *outer)
@@ -87,16 +64,11 @@ static size_t score(const char *name, const struct cad *shape, const struct oute
     uint32_t *vertex_of = mem_array(shape->vertex_count, sizeof(*vertex_of));
     double source[1][3], mean = 0, worst = 0, largest = 0, count = 0;
     cad_random_place(&place, &chance);
-    for (int axis = 0; axis < 3; axis++) {
-        const double *row = place.rotation + 3 * axis, *p = outer->source;
-        source[0][axis] = place.scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place.move[axis];
-    }
+    cad_put_point(&place, outer->source, source[0]);
     cad_break(&broken, shape, fault, &chance, vertex_of);
     cad_put(&broken, &place);
-    struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count, broken.triangles,
-                                             broken.triangle_count, &(struct surface_params){ 0 });
+    struct surface *surface = surface_of(&broken);
     float *found = mem_array(broken.vertex_count, sizeof(*found));
-    assert_non_null(surface);
     assert_true(surface_distances(surface, (const double(*)[3])source, 1, found));
     for (size_t v = 0; v < shape->vertex_count; v++) {
         if (outer->of_vertex[v] < 0)
@@ -150,8 +122,8 @@ static void test_pair(const char *name, int row, const struct cad *below, const 
 {
     struct cad both = { 0 };
     struct outer outer;
-    append(&both, below);
-    append(&both, above);
+    cad_append(&both, below, (double[3]){ 0 });
+    cad_append(&both, above, (double[3]){ 0 });
     outer_init(&outer, below, above, &both);
     for (size_t v = below->vertex_count; v < both.vertex_count; v++)
         both.positions[v][2] += (float)gap;
@@ -225,8 +197,8 @@ TEST(gaps_of_a_flange_and_its_plate_run_over_each_other)
             continue;
         chance.state = drawn[i].shape;
         make_flange(&plate, &pipe);
-        append(&both, &plate);
-        append(&both, &pipe);
+        cad_append(&both, &plate, (double[3]){ 0 });
+        cad_append(&both, &pipe, (double[3]){ 0 });
         outer_init(&outer, &plate, &pipe, &both);
         chance.state = drawn[i].gaps;
         assert_true(score("flange, gaps over gaps", &both, &outer, CAD_GAPS) >= covered(&outer, &both));
@@ -284,8 +256,8 @@ static void score_drawn(const char *name, int row, const struct contact_case *dr
             continue;
         chance.state = drawn[i].shape;
         make_boxes(&below, &above, drawn[i].stacked);
-        append(&both, &below);
-        append(&both, &above);
+        cad_append(&both, &below, (double[3]){ 0 });
+        cad_append(&both, &above, (double[3]){ 0 });
         outer_init(&outer, &below, &above, &both);
         chance.state = drawn[i].faults;
         score(name, &both, &outer, fault);
@@ -337,8 +309,8 @@ TEST(nothing_stays_open_where_vertices_hang)
             chance.state = found[i].shape;
         bool stacked = i < FOUND ? found[i].stacked : i % 2;
         make_boxes(&below, &above, stacked);
-        append(&both, &below);
-        append(&both, &above);
+        cad_append(&both, &below, (double[3]){ 0 });
+        cad_append(&both, &above, (double[3]){ 0 });
         if (i < FOUND)
             chance.state = found[i].faults;
         uint32_t *vertex_of = mem_array(both.vertex_count, sizeof(*vertex_of));
@@ -346,9 +318,7 @@ TEST(nothing_stays_open_where_vertices_hang)
         cad_random_place(&place, &chance);
         cad_break(&broken, &both, CAD_HANGING, &chance, vertex_of);
         cad_put(&broken, &place);
-        struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count,
-                                                 broken.triangles, broken.triangle_count, &(struct surface_params){ 0 });
-        assert_non_null(surface);
+        struct surface *surface = surface_of(&broken);
         assert_int_equal(surface_report(surface)->border_edges_after, 0);
         surface_destroy(&surface);
         cad_finish(&below);

@@ -13,18 +13,11 @@ static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
 static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
 {
     struct cad cad = { 0 };
-    struct model_maker maker;
     size_t size;
     cad_cylinder(&cad, random, AROUND, ALONG, LENGTH_M, 0.5);
-    maker_init(&maker);
-    int positions = maker_numbers(&maker, cad.positions, cad.vertex_count * 12, FLOAT, cad.vertex_count, "VEC3");
-    int indices = maker_numbers(&maker, cad.triangles, cad.triangle_count * 12, UINT, 3 * cad.triangle_count, "SCALAR");
-    maker_node(&maker, "cylinder",
-               maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)), NULL);
-    char *glb = maker_glb(&maker, &size);
+    char *glb = maker_glb_of(&cad, "cylinder", &size);
     temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
-    maker_finish(&maker);
     size_t vertices = cad.vertex_count;
     cad_finish(&cad);
     return vertices;

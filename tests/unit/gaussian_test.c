@@ -21,9 +21,7 @@ struct gaussian_case {
 static void prepare(struct gaussian_case *s, const double (*places_m)[3], size_t count, double disc_m, double edge_m)
 {
     const size_t vertices = s->shape.vertex_count;
-    s->surface = surface_create(the_log, workers, (const float(*)[3])s->shape.positions, vertices, s->shape.triangles,
-                                s->shape.triangle_count, &(struct surface_params){ 0 });
-    assert_non_null(s->surface);
+    s->surface = surface_of(&s->shape);
     struct vertex_embedding *embedding = vertex_embedding_create(s->surface, (const float(*)[3])s->shape.positions, NULL, vertices,
                                                                  s->shape.triangles, s->shape.triangle_count);
     s->anchors = mem_array(vertices, sizeof(*s->anchors));
@@ -75,14 +73,6 @@ static void finish(struct gaussian_case *s)
     mem_free(s->anchors);
     surface_destroy(&s->surface);
     cad_finish(&s->shape);
-}
-
-static double value_at(const struct gaussian_case *s, const double *readings, size_t vertex)
-{
-    double sum = 0;
-    for (size_t i = 0; i < s->influence.count; i++)
-        sum += readings[i] * (double)s->influence.shares[i * s->influence.vertex_count + vertex];
-    return sum;
 }
 
 static size_t nearest_vertex(const struct gaussian_case *s, const double place[3])
@@ -271,7 +261,7 @@ TEST(test_agrees_with_a_dense_one)
                 wanted += readings[i] * weights[i];
             influence_fill_values(fill, readings);
             influence_fill_variances(fill, s.influence.shares + v, s.shape.vertex_count, 1, &more);
-            assert_true(fabs(value_at(&s, readings, v) - wanted) < 1e-3);
+            assert_true(fabs(influence_value(&s.influence, readings, v) - wanted) < 1e-3);
             assert_true(fabs(variance + more - less) < 1e-3 * less);
             mem_free(place);
         }
@@ -338,7 +328,7 @@ TEST(test_readings_are_met_within_noise)
     for (size_t i = 0; i < MANY; i++) {
         size_t v = nearest_vertex(&s, places[i]);
         double there = 50 + 20 * (double)s.shape.positions[v][2] + 10 * (double)s.shape.positions[v][0];
-        assert_true(fabs(value_at(&s, readings, v) - there) < 0.5);
+        assert_true(fabs(influence_value(&s.influence, readings, v) - there) < 0.5);
         /* `untold`: share of the variance that the sensor leaves unknown at this vertex, because the sensor is a disc and the vertex is not
            its centre. The correlation is x K_1(x), here for small x */
         double away = 0, x;
@@ -349,7 +339,7 @@ TEST(test_readings_are_met_within_noise)
         assert_true((double)s.influence.deviations[v] < 1.3 * 15 * sqrt(untold));
     }
     for (size_t v = 0; v < s.shape.vertex_count; v++)
-        assert_true(fabs(value_at(&s, ones, v) - 1) < 1e-5);
+        assert_true(fabs(influence_value(&s.influence, ones, v) - 1) < 1e-5);
     finish(&s);
 }
 
@@ -359,9 +349,9 @@ TEST(test_two_sensors_at_one_place_that_disagree)
     for (int i = 0; i < 2; i++) {
         struct gaussian_case s = { 0 };
         sphere_of(&s, places, 3, (struct gaussian_params){ 2, i ? 0.5 : 0, 10 }); /* also without noise */
-        const double met = value_at(&s, readings, nearest_vertex(&s, places[0]));
+        const double met = influence_value(&s.influence, readings, nearest_vertex(&s, places[0]));
         assert_true(fabs(met - 30) < 0.2);
-        assert_true(fabs(value_at(&s, readings, nearest_vertex(&s, places[2])) - 60) < 0.2);
+        assert_true(fabs(influence_value(&s.influence, readings, nearest_vertex(&s, places[2])) - 60) < 0.2);
         finish(&s);
     }
 }
@@ -372,21 +362,12 @@ TEST(test_one_sensor_and_bodies_apart)
     struct gaussian_case s = { 0 };
     const double places[1][3] = { { 0, 0, 1 } }, reading[1] = { 50 };
     cad_sphere(&s.shape, &chance, 16);
-    const size_t own = s.shape.vertex_count, triangles = s.shape.triangle_count;
-    mem_grow(&s.shape.positions, &s.shape.position_capacity, own + 3, sizeof(*s.shape.positions));
-    mem_grow(&s.shape.triangles, &s.shape.index_capacity, 3 * triangles + 3, sizeof(*s.shape.triangles));
-    for (uint32_t i = 0; i < 3; i++) {
-        s.shape.positions[own + i][0] = 5 + (float)(i == 1);
-        s.shape.positions[own + i][1] = (float)(i == 2);
-        s.shape.positions[own + i][2] = 0;
-        s.shape.triangles[3 * triangles + i] = (uint32_t)own + i;
-    }
-    s.shape.vertex_count += 3;
-    s.shape.triangle_count++;
+    const size_t own = s.shape.vertex_count;
+    add_triangle_apart(&s.shape);
     prepare(&s, places, 1, 0.08, 0.2);
     solve(&s, (struct gaussian_params){ 1, 0.5, 10 });
     for (size_t v = 0; v < s.shape.vertex_count; v++)
-        assert_true(fabs(value_at(&s, reading, v) - (v < own ? 50 : 0)) < 0.01);
+        assert_true(fabs(influence_value(&s.influence, reading, v) - (v < own ? 50 : 0)) < 0.01);
     const double near = (double)s.influence.deviations[nearest_vertex(&s, places[0])];
     const double far = (double)s.influence.deviations[nearest_vertex(&s, (const double[3]){ 0, 0, -1 })];
     print_message("one sensor: deviation %.2f at it, %.2f at the other pole\n", near, far);
@@ -409,9 +390,9 @@ TEST(test_all_in_a_line_and_a_kernel_longer_than_all)
     prepare(&s, (const double(*)[3])places, 6, 0.05, (double)INFINITY);
     solve(&s, (struct gaussian_params){ 20, 0.05, 10 });
     for (size_t v = 0; v < s.shape.vertex_count; v++)
-        assert_true(value_at(&s, readings, v) > 5 && value_at(&s, readings, v) < 40);
+        assert_true(influence_value(&s.influence, readings, v) > 5 && influence_value(&s.influence, readings, v) < 40);
     for (size_t i = 0; i < 6; i++)
-        assert_true(fabs(value_at(&s, readings, nearest_vertex(&s, places[i])) - readings[i]) < 1);
+        assert_true(fabs(influence_value(&s.influence, readings, nearest_vertex(&s, places[i])) - readings[i]) < 1);
     finish(&s);
 }
 

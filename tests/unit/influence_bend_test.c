@@ -179,8 +179,7 @@ static void holds(const struct case_of *of)
     of->make(&drawn.shape);
     draw(&drawn);
     const size_t vertices = drawn.shape.vertex_count, triangles = drawn.shape.triangle_count;
-    struct surface *surface = surface_create(the_log, workers, (const float(*)[3])drawn.shape.positions, vertices, drawn.shape.triangles,
-                                             triangles, &(struct surface_params){ 0 });
+    struct surface *surface = surface_of(&drawn.shape);
     assert_true(surface && influence_mesh_init(&mesh, surface, (const double(*)[3])places_m, of->sensors, DISC_M, 0.16));
     struct vertex_embedding *embedding =
         vertex_embedding_create(surface, (const float(*)[3])drawn.positions, (const float(*)[3])drawn.facing, vertices + PLACES,
@@ -275,8 +274,7 @@ TEST(test_what_is_not_on_the_surface_is_unknown)
     struct influence_mesh mesh;
     struct influence_bend bend;
     cad_sphere(&shape, &chance, 5);
-    struct surface *surface = surface_create(the_log, workers, (const float(*)[3])shape.positions, shape.vertex_count, shape.triangles,
-                                             shape.triangle_count, &(struct surface_params){ 0 });
+    struct surface *surface = surface_of(&shape);
     assert_true(surface && influence_mesh_init(&mesh, surface, places_m, 1, DISC_M, (double)INFINITY));
     for (int axis = 0; axis < 3; axis++)
         shape.positions[shape.triangles[0]][axis] *= 1.2f;

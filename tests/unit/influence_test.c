@@ -18,9 +18,7 @@ static void solve(struct influence_case *s, const double (*places_m)[3], size_t 
     struct influence_mesh mesh;
     const size_t vertices = s->shape.vertex_count;
     if (!s->surface)
-        s->surface = surface_create(the_log, workers, (const float(*)[3])s->shape.positions, vertices, s->shape.triangles,
-                                    s->shape.triangle_count, &(struct surface_params){ 0 });
-    assert_non_null(s->surface);
+        s->surface = surface_of(&s->shape);
     struct vertex_embedding *embedding = vertex_embedding_create(s->surface, (const float(*)[3])s->shape.positions, NULL, vertices,
                                                                  s->shape.triangles, s->shape.triangle_count);
     struct influence_anchor *anchors = mem_array(vertices, sizeof(*anchors));
@@ -51,14 +49,6 @@ static void finish(struct influence_case *s)
     cad_finish(&s->shape);
 }
 
-static double value_at(const struct influence_case *s, const double *readings, size_t vertex)
-{
-    double sum = 0;
-    for (size_t i = 0; i < s->influence.count; i++)
-        sum += readings[i] * (double)s->influence.shares[i * s->influence.vertex_count + vertex];
-    return sum;
-}
-
 /* A strip 10 m long and 0.1 m wide acts as a rod: its sensors cover the whole width. */
 #define STRIP_M 10.0
 #define WIDTH_M 0.1
@@ -86,8 +76,8 @@ TEST(test_rod_is_straight_between_sensors)
             expected = readings[0];
         else if (x < 9)
             expected = readings[x >= 5] + fmin(fmax(t, 0), 1) * (readings[1 + (x >= 5)] - readings[x >= 5]);
-        if (fabs(value_at(&s, readings, v) - expected) > 0.6)
-            fail_msg("at %g m: %g, expected %g", x, value_at(&s, readings, v), expected);
+        if (fabs(influence_value(&s.influence, readings, v) - expected) > 0.6)
+            fail_msg("at %g m: %g, expected %g", x, influence_value(&s.influence, readings, v), expected);
     }
     finish(&s);
 }
@@ -108,8 +98,8 @@ TEST(test_fin_falls_by_its_decay_length)
             expected = 80 * cosh((STRIP_M - x) / decay_m) / cosh((1 - covered_m) / decay_m);
         else if (x > 1 && from > 0 && from < gap)
             expected = 80 * (sinh(from / decay_m) + sinh((gap - from) / decay_m)) / sinh(gap / decay_m);
-        if (fabs(value_at(&s, readings, v) - expected) > 0.8)
-            fail_msg("at %g m: %g, expected %g", x, value_at(&s, readings, v), expected);
+        if (fabs(influence_value(&s.influence, readings, v) - expected) > 0.8)
+            fail_msg("at %g m: %g, expected %g", x, influence_value(&s.influence, readings, v), expected);
     }
     finish(&s);
 }
@@ -127,7 +117,7 @@ TEST(test_sphere_between_caps)
         if (theta < 2 * cap || theta > M_PI - 2 * cap)
             continue;
         double expected = 0.5 + log(tan(theta / 2)) / (2 * log(tan(cap / 2)));
-        worst = fmax(worst, fabs(value_at(&s, readings, v) - expected));
+        worst = fmax(worst, fabs(influence_value(&s.influence, readings, v) - expected));
     }
     print_message("sphere: worst difference %.4f of what the caps differ by\n", worst);
     assert_true(worst < 0.003);
@@ -154,7 +144,7 @@ static void tally_places(const struct influence_case *s, const double *readings,
         for (int k = 0; k < 3; k++) {
             for (int c = 0; c < 3; c++)
                 at[c] += w[k] * (double)s->shape.positions[corners[k]][c];
-            drawn += w[k] * value_at(s, readings, corners[k]);
+            drawn += w[k] * influence_value(&s->influence, readings, corners[k]);
             error = fmax(error, (double)s->errors[corners[k]]);
         }
         double truth = exact(at);
@@ -189,7 +179,7 @@ static double value_near(const struct influence_case *s, const double *readings,
     for (size_t v = 1; v < s->shape.vertex_count; v++)
         if (fabs((double)s->shape.positions[v][0] - x) < fabs((double)s->shape.positions[best][0] - x))
             best = v;
-    return value_at(s, readings, best);
+    return influence_value(&s->influence, readings, best);
 }
 
 /* A fin on triangles shorter than its decay length is right and not marked. On triangles 2 m long it is wrong and marked, also where
@@ -246,7 +236,7 @@ TEST(test_coarse_spheres_are_marked)
             double theta = acos(fmin(fmax((double)s.shape.positions[v][2], -1), 1)), along = log(tan(theta / 2));
             if (theta < 0.5 || theta > M_PI - 0.5)
                 continue;
-            up += along * (value_at(&s, readings, v) - 0.5);
+            up += along * (influence_value(&s.influence, readings, v) - 0.5);
             down += along * along;
         }
         log_slope = up / down;
@@ -269,7 +259,7 @@ TEST(test_shares_are_those_of_an_average)
         const double ones[4] = { 1, 1, 1, 1 };
         for (size_t i = 0; i < 4; i++)
             assert_in_range((int)(1e4f * s.influence.shares[i * s.shape.vertex_count + v]), 0, 10001);
-        assert_true(fabs(value_at(&s, ones, v) - 1) < 1e-4);
+        assert_true(fabs(influence_value(&s.influence, ones, v) - 1) < 1e-4);
     }
     finish(&s);
 }
@@ -283,7 +273,7 @@ TEST(test_readings_are_met)
     solve(&s, places, 2, 0.1, (double)INFINITY);
     for (size_t v = 0; v < s.shape.vertex_count; v++)
         if ((double)s.shape.positions[v][0] > 0.9999)
-            best = fmin(best, fabs(value_at(&s, readings, v) - 100));
+            best = fmin(best, fabs(influence_value(&s.influence, readings, v) - 100));
     assert_true(best < 0.01);
     finish(&s);
 }
@@ -303,7 +293,8 @@ TEST(test_lost_sensor_leaves_the_field_of_the_others)
     influence_fill_values(fill, readings);
     assert_true(fabs(readings[1] - 40) < 0.1);
     for (size_t v = 0; v < all.shape.vertex_count; v++)
-        assert_true(fabs(value_at(&all, readings, v) - value_at(&others, (const double[2]){ 20, 60 }, v)) < 1.1);
+        assert_true(fabs(influence_value(&all.influence, readings, v) -
+                    influence_value(&others.influence, (const double[2]){ 20, 60 }, v)) < 1.1);
     influence_fill_destroy(&fill);
     finish(&all);
     finish(&others);
@@ -317,10 +308,10 @@ TEST(test_two_sensors_at_one_place_share_it)
     const uint8_t one_left[3] = { 1, 0, 1 };
     make_strip(&s);
     solve(&s, places, 3, DISC_M, (double)INFINITY);
-    assert_true(fabs(value_at(&s, readings, 0) - 30) < 0.01); /* a corner beyond both */
+    assert_true(fabs(influence_value(&s.influence, readings, 0) - 30) < 0.01); /* a corner beyond both */
     struct influence_fill *fill = influence_fill_create(s.influence.precision, 3, one_left);
     influence_fill_values(fill, readings);
-    assert_true(fabs(readings[1] - 20) < 0.01 && fabs(value_at(&s, readings, 0) - 20) < 0.01);
+    assert_true(fabs(readings[1] - 20) < 0.01 && fabs(influence_value(&s.influence, readings, 0) - 20) < 0.01);
     influence_fill_destroy(&fill);
     finish(&s);
 }
@@ -330,20 +321,11 @@ TEST(test_one_sensor_and_bodies_apart)
     struct influence_case s = { 0 };
     const double places[1][3] = { { 0, 0, 1 } }, reading[1] = { 50 };
     cad_sphere(&s.shape, &chance, 10);
-    const size_t own = s.shape.vertex_count, triangles = s.shape.triangle_count;
-    mem_grow(&s.shape.positions, &s.shape.position_capacity, own + 3, sizeof(*s.shape.positions));
-    mem_grow(&s.shape.triangles, &s.shape.index_capacity, 3 * triangles + 3, sizeof(*s.shape.triangles));
-    for (uint32_t i = 0; i < 3; i++) { /* another body, without a sensor */
-        s.shape.positions[own + i][0] = 5 + (float)(i == 1);
-        s.shape.positions[own + i][1] = (float)(i == 2);
-        s.shape.positions[own + i][2] = 0;
-        s.shape.triangles[3 * triangles + i] = (uint32_t)own + i;
-    }
-    s.shape.vertex_count += 3;
-    s.shape.triangle_count++;
+    const size_t own = s.shape.vertex_count;
+    add_triangle_apart(&s.shape);
     solve(&s, places, 1, 0.05, (double)INFINITY);
     for (size_t v = 0; v < s.shape.vertex_count; v++)
-        assert_true(fabs(value_at(&s, reading, v) - (v < own ? 50 : 0)) < 0.01);
+        assert_true(fabs(influence_value(&s.influence, reading, v) - (v < own ? 50 : 0)) < 0.01);
     finish(&s);
 }
 
@@ -372,7 +354,7 @@ TEST(test_many_sensors_are_solved_in_blocks)
     mem_free(threads);
     solve(&s, (const double(*)[3])places, MANY, 0.05, (double)INFINITY);
     for (size_t v = 0; v < s.shape.vertex_count; v++)
-        assert_true(fabs(value_at(&s, ones, v) - 1) < 1e-4);
+        assert_true(fabs(influence_value(&s.influence, ones, v) - 1) < 1e-4);
     finish(&s);
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/math/vec.h"
 #include "preprocess/levels/levels_bounded.h"
+#include "tests/support/geometry_case.h"
 
 #define ROUND 96u /* corners of a circle */
 
@@ -42,15 +43,8 @@ static void begin_primitive(struct bounded_shape *s)
 static void shape_begin(struct bounded_shape *s)
 {
     const size_t most = 64 * (size_t)ROUND;
-    *s = (struct bounded_shape){ .g = { .material_count = 1 } };
-    s->g.positions_m = mem_array(most, sizeof(*s->g.positions_m));
-    s->g.normals = mem_array(most, sizeof(*s->g.normals));
-    s->g.indices = mem_array(6 * most, sizeof(*s->g.indices));
-    s->g.primitives = mem_array(2, sizeof(*s->g.primitives));
-    s->g.materials = mem_array(1, sizeof(*s->g.materials));
-    s->g.materials[0].base_color_texture = s->g.materials[0].metallic_roughness_texture = s->g.materials[0].normal_texture =
-        s->g.materials[0].occlusion_texture = s->g.materials[0].emissive_texture = ASSET_NO_TEXTURE;
-    begin_primitive(s);
+    *s = (struct bounded_shape){ 0 };
+    geometry_begin(&s->g, most, 2 * most);
 }
 
 static void shape_end(struct bounded_shape *s)

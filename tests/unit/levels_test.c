@@ -6,6 +6,7 @@
 #include "preprocess/levels/vertex_order.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/bvh.h"
+#include "tests/support/geometry_case.h"
 
 #define AROUND 120u /* AROUND: number of squares around the torus; TUBE: around its tube */
 #define TUBE 48u
@@ -55,15 +56,9 @@ static void begin(struct set_of *s)
 {
     struct geometry *g = &s->g;
     size_t most = 2 * (AROUND + 2) * (TUBE + 1);
-    g->positions_m = mem_array(most, sizeof(*g->positions_m));
-    g->normals = mem_array(most, sizeof(*g->normals));
-    g->indices = mem_array((size_t)AROUND * TUBE * 6, sizeof(*g->indices));
-    g->primitives = mem_array(2, sizeof(*g->primitives));
-    g->materials = mem_array(2, sizeof(*g->materials));
+    geometry_begin(g, most, 2 * (size_t)AROUND * TUBE);
+    g->primitive_count = 0;
     g->material_count = 2;
-    for (int m = 0; m < 2; m++)
-        g->materials[m].base_color_texture = g->materials[m].metallic_roughness_texture = g->materials[m].normal_texture =
-            g->materials[m].occlusion_texture = g->materials[m].emissive_texture = ASSET_NO_TEXTURE;
     add_part(g, 0, AROUND / 3, 0);
     add_part(g, AROUND / 3, AROUND, 1);
     assert_true(levels_make(&s->levels, g, NULL));
@@ -280,18 +275,6 @@ TEST_WITH(a_level_is_a_prefix, set_up, tear_down)
 
 /* --- parts ---------------------------------------------------------------------------------------------------------------- */
 
-static void begin_boxes(struct geometry *g, size_t boxes)
-{
-    *g = (struct geometry){ .primitive_count = 1, .material_count = 1 };
-    g->positions_m = mem_array(24 * boxes, sizeof(*g->positions_m));
-    g->normals = mem_array(24 * boxes, sizeof(*g->normals));
-    g->indices = mem_array(36 * boxes, sizeof(*g->indices));
-    g->primitives = mem_array(1, sizeof(*g->primitives));
-    g->materials = mem_array(1, sizeof(*g->materials));
-    g->materials[0].base_color_texture = g->materials[0].metallic_roughness_texture = g->materials[0].normal_texture =
-        g->materials[0].occlusion_texture = g->materials[0].emissive_texture = ASSET_NO_TEXTURE;
-}
-
 static void add_box(struct geometry *g, double x, double y, double z, double size_x, double size_y, double size_z)
 {
     const double low[3] = { x, y, z }, size[3] = { size_x, size_y, size_z };
@@ -338,7 +321,7 @@ TEST(bolts_go_where_they_hardly_stand_out)
 {
     struct geometry g;
     struct levels levels;
-    begin_boxes(&g, 101);
+    geometry_begin(&g, 24 * 101, 12 * 101);
     add_box(&g, 0, 0, 0, 10, 10, 0.5);
     for (int i = 0; i < 100; i++)
         add_box(&g, 0.5 + i % 10, 0.5 + i / 10, 0.45, 0.05, 0.05, 0.07);
@@ -359,7 +342,7 @@ TEST(nuts_go_once_they_stand_out_by_less)
     struct geometry g;
     struct levels levels;
     size_t with = 0, without = 0;
-    begin_boxes(&g, 101 + AROUND * TUBE / 4);
+    geometry_begin(&g, 24 * (101 + AROUND * TUBE / 4), 12 * (101 + AROUND * TUBE / 4));
     g.primitive_count = 0;
     add_part(&g, 0, AROUND, 0);
     add_box(&g, -5, -5, -1.5, 10, 10, 0.5);
@@ -384,7 +367,7 @@ TEST(what_is_alone_and_small_goes_but_no_crowd)
 {
     struct geometry g;
     struct levels levels;
-    begin_boxes(&g, 402);
+    geometry_begin(&g, 24 * 402, 12 * 402);
     add_box(&g, 0, 0, 0, 10, 2, 2);
     add_box(&g, 30, 0, 0, 0.05, 0.05, 0.05);
     assert_true(levels_make(&levels, &g, NULL));
@@ -438,7 +421,7 @@ TEST(thin_plates_keep_their_sides)
     struct set_of s = { 0 };
     uint32_t seed = 11;
     size_t thinner = 0;
-    begin_boxes(&s.g, 60);
+    geometry_begin(&s.g, 24 * 60, 12 * 60);
     for (int i = 0; i < 60; i++)
         add_box(&s.g, 1.02 * (i % 10), 1.02 * (i / 10), 0.001 * i, 1, 1, 0.02 + 0.001 * (i % 7));
     assert_true(levels_make(&s.levels, &s.g, NULL));

@@ -41,14 +41,7 @@ static void make_pair(struct sheet_and_rod *pair, double thick, double rod, cons
     struct cad bar = { 0 };
     cad_box(&bar, &chance, ALONG, 1, 1, CELL);
     stretch(&bar, 0, 1, rod / CELL, rod / CELL, low);
-    struct cad *both = &pair->cad;
-    mem_grow(&both->positions, &both->position_capacity, both->vertex_count + bar.vertex_count, sizeof(*both->positions));
-    mem_grow(&both->triangles, &both->index_capacity, 3 * (both->triangle_count + bar.triangle_count), sizeof(*both->triangles));
-    memcpy(both->positions + both->vertex_count, bar.positions, bar.vertex_count * sizeof(*bar.positions));
-    for (size_t i = 0; i < 3 * bar.triangle_count; i++)
-        both->triangles[3 * both->triangle_count + i] = (uint32_t)both->vertex_count + bar.triangles[i];
-    both->vertex_count += bar.vertex_count;
-    both->triangle_count += bar.triangle_count;
+    cad_append(&pair->cad, &bar, (double[3]){ 0 });
     memcpy(pair->source, source, sizeof(pair->source));
     cad_finish(&bar);
 }
@@ -77,16 +70,11 @@ static void test_pair(const char *name, const struct sheet_and_rod *pair, bool b
         uint32_t *vertex_of = mem_array(pair->cad.vertex_count, sizeof(*vertex_of));
         double source[1][3], worst[2] = { 0, 0 };
         cad_random_place(&place, &chance);
-        for (int axis = 0; axis < 3; axis++) {
-            const double *row = place.rotation + 3 * axis, *p = pair->source;
-            source[0][axis] = place.scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place.move[axis];
-        }
+        cad_put_point(&place, pair->source, source[0]);
         cad_break(&broken, &pair->cad, faults[i], &chance, vertex_of);
         cad_put(&broken, &place);
-        struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count,
-                                                 broken.triangles, broken.triangle_count, &(struct surface_params){ 0 });
+        struct surface *surface = surface_of(&broken);
         float *found = mem_array(broken.vertex_count, sizeof(*found));
-        assert_non_null(surface);
         assert_true(surface_distances(surface, (const double(*)[3])source, 1, found));
         double tolerance = surface_report(surface)->tolerance_m / place.scale;
         assert_true(tolerance > TOLERANCE && tolerance < TOLERANCE_MOST);

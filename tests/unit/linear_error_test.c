@@ -72,9 +72,7 @@ static void check_shape(const char *name, struct cad *clean, int faults)
         cad_random_place(&place, &chance);
         cad_break(&broken, clean, (enum cad_fault)fault, &chance, vertex_of);
         cad_put(&broken, &place);
-        struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count,
-                                                 broken.triangles, broken.triangle_count, &(struct surface_params){ 0 });
-        assert_non_null(surface);
+        struct surface *surface = surface_of(&broken);
         for (int s = 0; s < SOURCES; s++) {
             const uint32_t *tri = broken.triangles + 3 * draw(broken.triangle_count);
             for (int axis = 0; axis < 3; axis++)

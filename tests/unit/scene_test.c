@@ -10,6 +10,7 @@
 #include "base/text/text.h"
 #include "plant/recipe.h"
 #include "plant/sensors.h"
+#include "tests/support/no_textures.h"
 
 static const char plant_text[] =
     "plant: { name: Test%s }\n"
@@ -43,12 +44,7 @@ static void write_asset(const struct scene_fixture *f, const char *name, double 
     const float positions[3][3] = { { -1, 0, 0 }, { 3, 0, 0 }, { 0, 1, 2 } }, normals[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
     const uint32_t indices[3] = { 0, 1, 2 };
     const struct asset_primitive primitive = { .index_count = 3 };
-    const uint32_t none = ASSET_NO_TEXTURE;
-    const struct asset_material plain = { .base_color_texture = none,
-                                          .metallic_roughness_texture = none,
-                                          .normal_texture = none,
-                                          .occlusion_texture = none,
-                                          .emissive_texture = none };
+    const struct asset_material plain = { NO_TEXTURES };
     const struct asset_sensor sensors[2] = {
         { .position_m = { (float)(sensor_x_m - 1), 1, 2 }, .surface_m = { 0, 1, 1.5f }, .surface_distance_m = 0.5f },
         { .position_m = { 3, 1, -1 }, .surface_m = { 3, 0, 0 }, .node_hash = XXH3_64bits(node, strlen(node)) },

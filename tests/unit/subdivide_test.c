@@ -9,6 +9,7 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 #include "surface/mesh/trimesh.h"
+#include "tests/support/geometry_case.h"
 
 #define PI 3.14159265358979323846
 #define SENSORS 6
@@ -53,18 +54,6 @@ static void add_triangle(struct geometry *g, uint32_t a, uint32_t b, uint32_t c)
     g->primitives[0].index_count = g->index_count;
 }
 
-static void begin(struct geometry *g, size_t vertices, size_t triangles)
-{
-    *g = (struct geometry){ .primitive_count = 1, .material_count = 1 };
-    g->positions_m = mem_array(vertices, sizeof(*g->positions_m));
-    g->normals = mem_array(vertices, sizeof(*g->normals));
-    g->indices = mem_array(3 * triangles, sizeof(*g->indices));
-    g->primitives = mem_array(1, sizeof(*g->primitives));
-    g->materials = mem_array(1, sizeof(*g->materials));
-    g->materials[0].base_color_texture = g->materials[0].metallic_roughness_texture = g->materials[0].normal_texture =
-        g->materials[0].occlusion_texture = g->materials[0].emissive_texture = ASSET_NO_TEXTURE;
-}
-
 static double along_plate(const double a[3], const double b[3])
 {
     return vec_distance(a, b);
@@ -82,7 +71,7 @@ static void make_plate(struct prepared_body *body)
 {
     static const double rim[7][2] = { { 0, 0 }, { 6, 0 }, { 6, 2 }, { 6, 4 }, { 3.5, 4 }, { 0, 4 }, { 0, 2.5 } };
     struct geometry *g = &body->g;
-    begin(g, 10000, 10000);
+    geometry_begin(g, 10000, 10000);
     uint32_t middle = add_vertex(g, 2.7, 1.8, 0, 0, 0, 1), first = middle + 1;
     for (int i = 0; i < 7; i++)
         add_vertex(g, rim[i][0], rim[i][1], 0, 0, 0, 1);
@@ -100,7 +89,7 @@ static void make_plate(struct prepared_body *body)
 static void make_cylinder(struct prepared_body *body, uint32_t around, uint32_t rings)
 {
     struct geometry *g = &body->g;
-    begin(g, (size_t)(around + 1) * (rings + 1), 2 * (size_t)around * rings);
+    geometry_begin(g, (size_t)(around + 1) * (rings + 1), 2 * (size_t)around * rings);
     for (uint32_t i = 0; i <= around; i++)
         for (uint32_t j = 0; j <= rings; j++) {
             double a = 2 * PI * (i % around) / around, x = cos(a), y = sin(a);
@@ -636,7 +625,7 @@ static void make_plate_through_box(struct prepared_body *body)
     static const double rim[4][2] = { { -1.6, -1.3 }, { 1.6, -1.3 }, { 1.6, 1.3 }, { -1.6, 1.3 } };
     static const uint32_t sides[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
     struct geometry *g = &body->g;
-    begin(g, 12, 14);
+    geometry_begin(g, 12, 14);
     for (int i = 0; i < 8; i++) {
         double x = i & 1 ? 1 : -1, y = i & 2 ? 1 : -1, z = i & 4 ? 1 : -1;
         add_vertex(g, x, y, z, x / sqrt(3), y / sqrt(3), z / sqrt(3));
@@ -714,7 +703,7 @@ static void make_plate_through_ball(struct prepared_body *body)
     enum { AROUND = 64, HIGH = 32 };
     static const double rim[4][2] = { { -1.6, -1.3 }, { 1.6, -1.3 }, { 1.6, 1.3 }, { -1.6, 1.3 } };
     struct geometry *g = &body->g;
-    begin(g, (AROUND + 1) * (HIGH + 1) + 4, 2 * AROUND * HIGH + 2);
+    geometry_begin(g, (AROUND + 1) * (HIGH + 1) + 4, 2 * AROUND * HIGH + 2);
     for (uint32_t i = 0; i <= AROUND; i++)
         for (uint32_t j = 0; j <= HIGH; j++) {
             double flat = j % HIGH == 0 ? 0 : sin(PI * j / HIGH), turn = 2 * PI * (i % AROUND) / AROUND;
@@ -767,7 +756,7 @@ TEST(straight_edges_are_not_cut)
     struct prepared_body body = { 0 };
     struct geometry *g = &body.g;
     const uint32_t n = 120;
-    begin(g, 2 * (size_t)(n + 1) * (n + 1), 2 * (size_t)n * n);
+    geometry_begin(g, 2 * (size_t)(n + 1) * (n + 1), 2 * (size_t)n * n);
     for (uint32_t y = 0; y <= n; y++)
         for (uint32_t x = 0; x <= n; x++)
             add_vertex(g, 6.0 * x / n, 4.0 * y / n, 0, 0, 0, 1);
@@ -797,7 +786,7 @@ static void make_random_plate(struct prepared_body *body, double points[SENSORS]
     struct geometry *g = &body->g;
     double width_m = 2 + 7 * random_unit(seed), height_m = 1 + 5 * random_unit(seed);
     uint32_t across = 1 + (uint32_t)(12 * random_unit(seed)), up = 1 + (uint32_t)(12 * random_unit(seed));
-    begin(g, 200, 400);
+    geometry_begin(g, 200, 400);
     for (uint32_t y = 0; y <= up; y++)
         for (uint32_t x = 0; x <= across; x++) {
             double dx = x % across ? 0.6 * (random_unit(seed) - 0.5) : 0, dy = y % up ? 0.6 * (random_unit(seed) - 0.5) : 0;
@@ -862,7 +851,7 @@ static void make_random_ring(struct prepared_body *body, double points[SENSORS][
     uint32_t around = 60 + (uint32_t)(60 * random_unit(seed)), tube = 24 + (uint32_t)(24 * random_unit(seed));
     double major_m = 0.5 + 3 * random_unit(seed), minor_m = major_m * (0.15 + 0.25 * random_unit(seed)), turn = 2 * PI * random_unit(seed);
     int waves = 2 + (int)(4 * random_unit(seed));
-    begin(g, (size_t)around * tube, 2 * (size_t)around * tube);
+    geometry_begin(g, (size_t)around * tube, 2 * (size_t)around * tube);
     for (uint32_t i = 0; i < around; i++)
         for (uint32_t j = 0; j < tube; j++) {
             double a = 2 * PI * i / around, b = 2 * PI * j / tube, r = minor_m * (1 + 0.3 * sin(waves * a));

@@ -12,14 +12,6 @@
 #define WORST_MAX 0.01
 #define METHODS_MAX 0.02
 
-static struct surface *surface_of(const struct cad *cad)
-{
-    struct surface *surface = surface_create(the_log, workers, (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles,
-                                             cad->triangle_count, &(struct surface_params){ 0 });
-    assert_non_null(surface);
-    return surface;
-}
-
 /* --- accuracy: shapes with a formula --------------------------------------------------------------------------------------- */
 
 struct surface_shape {
@@ -148,14 +140,6 @@ static void choose_source(const struct cad *cad, bool inside, double out[3])
     }
 }
 
-static void put_point(const struct cad_place *place, const double p[3], double out[3])
-{
-    for (int axis = 0; axis < 3; axis++) {
-        const double *row = place->rotation + 3 * axis;
-        out[axis] = place->scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place->move[axis];
-    }
-}
-
 struct score {
     double mean, worst;
 };
@@ -187,7 +171,7 @@ static void test_shape(const struct surface_shape *shape)
     uint32_t *vertex_of = mem_array(clean.vertex_count, sizeof(*vertex_of));
     for (int s = 0; s < 2; s++) {
         choose_source(&clean, s == 1, sources[s]);
-        put_point(&place, sources[s], put[s]);
+        cad_put_point(&place, sources[s], put[s]);
     }
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
         struct cad broken;
@@ -229,23 +213,6 @@ TEST(shapes_with_every_fault_are_exact_enough)
 
 /* --- which parts are joined and which are kept apart -------------------------------------------------------------------------- */
 
-/* Appends a moved copy of a shape. */
-static void append(struct cad *cad, const struct cad *other, double dx, double dy, double dz)
-{
-    uint32_t first = (uint32_t)cad->vertex_count;
-    mem_grow(&cad->positions, &cad->position_capacity, cad->vertex_count + other->vertex_count, sizeof(*cad->positions));
-    mem_grow(&cad->triangles, &cad->index_capacity, 3 * (cad->triangle_count + other->triangle_count), sizeof(*cad->triangles));
-    for (size_t v = 0; v < other->vertex_count; v++) {
-        const double move[3] = { dx, dy, dz };
-        for (int axis = 0; axis < 3; axis++)
-            cad->positions[cad->vertex_count + v][axis] = (float)((double)other->positions[v][axis] + move[axis]);
-    }
-    for (size_t i = 0; i < 3 * other->triangle_count; i++)
-        cad->triangles[3 * cad->triangle_count + i] = first + other->triangles[i];
-    cad->vertex_count += other->vertex_count;
-    cad->triangle_count += other->triangle_count;
-}
-
 static float *distances_from(struct surface *surface, const struct cad *cad, double x, double y, double z)
 {
     const double source[1][3] = { { x, y, z } };
@@ -259,8 +226,8 @@ static bool second_plate_reached(double dx, double dz)
 {
     struct cad plate = { 0 }, both = { 0 };
     cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
-    append(&both, &plate, 0, 0, 0);
-    append(&both, &plate, dx, 0.01, dz);
+    cad_append(&both, &plate, (double[3]){ 0, 0, 0 });
+    cad_append(&both, &plate, (double[3]){ dx, 0.01, dz });
     struct surface *surface = surface_of(&both);
     float *distances = distances_from(surface, &both, 0.1, 0.1, 0);
     bool reached = isfinite(distances[plate.vertex_count]);
@@ -304,8 +271,8 @@ TEST(bridges_lie_in_the_gap)
 {
     struct cad plate = { 0 }, both = { 0 };
     cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
-    append(&both, &plate, 0, 0, 0);
-    append(&both, &plate, 1.0003, 0, 0);
+    cad_append(&both, &plate, (double[3]){ 0, 0, 0 });
+    cad_append(&both, &plate, (double[3]){ 1.0003, 0, 0 });
     struct surface *surface = surface_of(&both);
     assert_int_equal(surface_report(surface)->components, 2);
     assert_int_equal(surface_report(surface)->components_after, 1);
@@ -328,7 +295,7 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
         pipe.positions[v][2] += 0.5f;
     }
     size_t sphere_count = both.vertex_count;
-    append(&both, &pipe, 0, 0, 0);
+    cad_append(&both, &pipe, (double[3]){ 0, 0, 0 });
     struct surface *surface = surface_of(&both);
     float *distances = distances_from(surface, &both, 0, 0, -1);
     const struct surface_report *report = surface_report(surface);
@@ -381,7 +348,7 @@ static void add_box(struct cad *all, const double low[3], const double high[3])
     for (size_t v = 0; v < box.vertex_count; v++)
         for (int axis = 0; axis < 3; axis++)
             box.positions[v][axis] = (float)(low[axis] + (double)box.positions[v][axis] * (high[axis] - low[axis]));
-    append(all, &box, 0, 0, 0);
+    cad_append(all, &box, (double[3]){ 0, 0, 0 });
     cad_finish(&box);
 }
 
@@ -622,8 +589,8 @@ TEST(many_sources_at_once_are_as_one_by_one)
     double sources[SOURCES][3];
     cad_torus(&torus, &chance, 60, 24, 0.3, 0.5);
     cad_plate(&plate, &chance, 16, 16, 1, 1, 0);
-    append(&both, &torus, 0, 0, 0);
-    append(&both, &plate, 5, 0, 0);
+    cad_append(&both, &torus, (double[3]){ 0, 0, 0 });
+    cad_append(&both, &plate, (double[3]){ 5, 0, 0 });
     for (int s = 0; s < SOURCES; s++)
         choose_source(&both, true, sources[s]);
     struct surface *surface = surface_of(&both);
@@ -646,7 +613,7 @@ TEST(vertices_of_flat_triangles_take_their_neighbours_distance)
     struct cad plate = { 0 };
     cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
     struct cad with = { 0 };
-    append(&with, &plate, 0, 0, 0);
+    cad_append(&with, &plate, (double[3]){ 0, 0, 0 });
     const float lone[3] = { 0.55f, 0.5f, 0 };
     mem_grow(&with.positions, &with.position_capacity, with.vertex_count + 1, sizeof(*with.positions));
     memcpy(with.positions[with.vertex_count++], lone, sizeof(lone));

@@ -18,11 +18,9 @@ static void carry(struct carried *c, size_t vertex)
     const size_t count = c->shape.vertex_count;
     const float *at = c->shape.positions[vertex];
     const double place_m[1][3] = { { (double)at[0], (double)at[1], (double)at[2] } };
-    struct surface *surface = surface_create(the_log, workers, (const float(*)[3])c->shape.positions, count, c->shape.triangles,
-                                             c->shape.triangle_count, &(struct surface_params){ 0 });
+    struct surface *surface = surface_of(&c->shape);
     struct influence_anchor *anchors = mem_array(count, sizeof(*anchors));
     struct influence_mesh mesh;
-    assert_non_null(surface);
     struct vertex_embedding *embedding =
         vertex_embedding_create(surface, (const float(*)[3])c->shape.positions, (const float(*)[3])c->normals, count, c->shape.triangles,
                                 c->shape.triangle_count);

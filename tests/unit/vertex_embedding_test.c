@@ -47,18 +47,10 @@ static void make_bent_plate(struct cad *plate, struct cad_random *random)
 
 static void write_model(const struct prep_case *c, const struct cad *cad)
 {
-    struct model_maker maker;
     size_t size;
-    maker_init(&maker);
-    int positions = maker_numbers(&maker, cad->positions, cad->vertex_count * sizeof(*cad->positions), FLOAT, cad->vertex_count, "VEC3");
-    int indices =
-        maker_numbers(&maker, cad->triangles, cad->triangle_count * 3 * sizeof(*cad->triangles), UINT, cad->triangle_count * 3, "SCALAR");
-    maker_node(&maker, "plate", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)),
-               NULL);
-    char *glb = maker_glb(&maker, &size);
+    char *glb = maker_glb_of(cad, "plate", &size);
     temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
-    maker_finish(&maker);
 }
 
 static struct surface *kept_surface(const struct prep_case *c)
