@@ -48,7 +48,7 @@ static void answer(struct agent *agent)
     }
     pthread_mutex_lock(&agent->thread.lock);
     struct agent_state state = agent->state;
-    if (clock_mono_ns() - agent->told_ns > STATE_TIMEOUT_NS) /* the event loop has stopped responding */
+    if (clock_mono_ns() - agent->told_ns > STATE_TIMEOUT_NS) /* the event loop is stuck, so its state is stale */
         state.has_core = false;
     pthread_mutex_unlock(&agent->thread.lock);
     int count = print_line(&state, line, sizeof(line));

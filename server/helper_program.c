@@ -134,8 +134,8 @@ static int attend(struct helper *helper)
     helper->until_ns = clock_mono_ns() + helper->params->timeout_s * NS_PER_S;
     for (bool ended = false; !ended;) {
         struct pollfd polled[PIPES] = { { helper->ends[STDOUT][0], POLLIN, 0 }, { helper->ends[STDERR][0], POLLIN, 0 } };
-        ended = waitpid(helper->child, &status, WNOHANG) != 0; /* true once the program has ended; its last output is still read after
-                                                                   that */
+        ended = waitpid(helper->child, &status, WNOHANG) != 0; /* true once the program has ended; the rest of its output is still
+                                                                   read afterwards */
         int ready = poll(polled, PIPES, ended ? 0 : POLL_MS);
         for (int i = 0; i < PIPES && ready > 0; i++)
             if (polled[i].revents)

@@ -169,7 +169,7 @@ static void add_limit(struct arguments *list, const char *option, int64_t limit)
     add_own(list, mem_printf("%" PRId64, limit));
 }
 
-/* Adds options that limit each process that reads a file; run() limits all these processes together. */
+/* Adds options that limit each file-reading process; run() limits all processes together. */
 static void add_limits(struct arguments *list, const struct import_job *job)
 {
     add_limit(list, "--timeout", job->params.quotas->at[QUOTA_IMPORT_S]);

@@ -15,7 +15,7 @@
 #include "value/source.h"
 #include "views/other_plants.h"
 
-struct plant_runtime_context { /* objects that a reload keeps */
+struct plant_runtime_context { /* objects that a reload does not replace */
     const struct server_params *params;
     struct log *log;
     struct counters *counters;
@@ -34,7 +34,7 @@ struct plant_runtime {
     struct plant *plant;
     struct plant_services services; /* services of the plant; on a daemon that follows a core, core_link takes the place of `sources` */
     struct publisher *publisher;    /* publishes readings over MQTT; NULL: nothing is published */
-    struct source **sources;        /* sources by index in plant->sources */
+    struct source **sources;        /* by index in plant->sources: the sources */
     struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */
     /* time spans whose points were not yet read from PostgreSQL when a reload replaces the plant; the next runtime's historian
        reads them */
@@ -54,7 +54,7 @@ void plant_runtime_open_lists(struct plant_runtime *runtime);
    runtime, from which history, alarms and readings continue; NULL: none. plant_runtime_hand_over() must have been called for
    it, and the caller still destroys it. Returns false on failure, already logged. */
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before);
-/* Starts the sources that poll field devices, and derived tags. Returns false on failure, already logged. */
+/* Starts the sources that poll field devices, and the source of derived tags. Returns false on failure, already logged. */
 bool plant_runtime_start_sources(struct plant_runtime *runtime);
 /* Ends the link to the core that this daemon followed. Afterwards call net_lead() in the event loop, which drops the pointer to
    the link, and then plant_runtime_lead(). */

@@ -20,7 +20,7 @@
 #include "plant/plant_folder.h"
 #include "helper_program.h"
 
-enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
+enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views drawn with the new plant before the switch */
 /* time limit for writing a user's action to disk; when it expires, the user is told that the action is not kept */
 static const int64_t SETTLE_NS = NS_PER_S;
 /* FOLLOW_NS: how long to wait for the core to switch to its new plant; LOOK_NS: interval of the checks for this */
@@ -293,7 +293,7 @@ static bool wait_for_core(struct reload *reload)
     return !must_wait(reload);
 }
 
-/* Reloads the plant. Returns false if an error left everything unchanged; the error was reported. */
+/* Reloads the plant. Returns false if an error, already reported, left everything unchanged. */
 static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };
@@ -436,7 +436,7 @@ static void record_import(const struct reload *reload, const struct import_order
                                                              .why = why });
 }
 
-/* Runs an import; this daemon has locked the plant's folder for all programs of the import. */
+/* Runs an import. This daemon has locked the plant's folder on behalf of the import's programs. */
 static void import_locked(struct reload *reload, struct import_order *order, int lock)
 {
     const struct plant_runtime_context *context = reload->context;
@@ -451,7 +451,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
-    if (order->anew) /* an import that makes a new plant file keeps the present plant's data source */
+    if (order->anew) /* an import that creates a new plant file keeps the present plant's data source */
         order->source = import_source_of_plant((*reload->runtime)->plant);
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {

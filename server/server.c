@@ -37,7 +37,7 @@
 #include "version.h"
 
 enum { TOKEN_FILE_BYTES = 1 << 24 };
-enum { SETTLE_MS = 3000 }; /* time in milliseconds to wait for an import that is replacing files */
+enum { SETTLE_MS = 3000 }; /* how long to wait for an import that is replacing files, in milliseconds */
 
 struct server {
     struct server_params params;
@@ -51,7 +51,7 @@ struct server {
     struct node_id node_id;      /* unique identity of this core, even among cores of the same name (corelink/node_id.h) */
     struct lease_keeper *keeper; /* keeps the lease that decides which of two cores leads; NULL: this core is alone */
     bool follows, lost;          /* follows: another core polls the devices; lost: this core had the leadership lease and lost it */
-    bool divided;                /* true: child processes that read files run in cgroups (resource limits) of their own */
+    bool divided;                /* true: each child process that reads files gets a cgroup (resource limits) of its own */
     struct supervision *supervision;
     struct agent *agent;             /* answers load balancers; NULL: off */
     struct signing_key *signing_key; /* key that signs pictures; NULL: pictures are not signed */
@@ -568,7 +568,7 @@ static void print_wrong_view(void *arg, const struct named_view *view, const cha
     printf("%s:%d: warning: view %s: %s\n", (const char *)arg, view->line, view->id, wrong);
 }
 
-/* Prints which textures and extensions of the plant's models are not drawn, as plantcast-prep found. */
+/* Prints which textures and extensions of the plant's models plantcast-prep found that are not drawn. */
 static void print_left_out(struct log *log, const struct plant *plant, const char *folder)
 {
     enum { SHOWN = 20 };
@@ -640,7 +640,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     struct scene *scene = plant_runtime_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     for (size_t i = 0; scene && i < scene->asset_count; i++)
-        /* an asset that is missing is an error; its reason was logged when the scene was opened */
+        /* a missing asset is an error; the reason was logged when the scene was opened */
         status |= scene->assets[i].missing != NULL;
     if (scene) {
         size_t count;

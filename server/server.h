@@ -4,7 +4,7 @@
 #define SERVER_SERVER_H
 #include "server_params.h"
 
-/* Each function returns the exit code: 0 for success, 1 for any error, which is printed on stderr. */
+/* Each function returns the exit code: 0 for success, 1 for any error (printed on stderr). */
 int server_run(const struct server_params *params);       /* runs the daemon until SIGINT or SIGTERM */
 int server_check(const struct server_params *params);     /* checks the plant: reads all files without starting anything */
 int server_dump_plan(const struct server_params *params); /* prints the requests that the daemon would send to field devices, and ends */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters that the daemon's command line sets. */
+/* Parameters of the daemon, from its command line. */
 #ifndef SERVER_SERVER_PARAMS_H
 #define SERVER_SERVER_PARAMS_H
 #include <stdbool.h>
@@ -33,16 +33,16 @@ struct server_params {
     struct access_params access;
     const char *signing_key;   /* PEM file of the key that signs pictures; NULL: pictures are not signed */
     struct audit_params audit; /* settings of the audit trail; its path NULL: nothing is recorded */
-    /* imports: engineers may import plants; imports_now: the exports folder is imported when the daemon starts */
+    /* imports: true: engineers may import plants; imports_now: true: imports the exports folder at the daemon's start */
     bool imports, imports_now;
     enum server_role role;
-    const char *cores[CORE_URLS]; /* for SERVER_RENDER: URLs of one core or of a pair; the renderer uses one at a time */
+    const char *cores[CORE_URLS]; /* for SERVER_RENDER: URLs of a core, or of both cores of a pair; the renderer uses one at a time */
     int core_count;
     /* core_token: file of the token required by the core, NULL: none; core_ca: file of trusted certificates, NULL: the system's */
     const char *core_token, *core_ca;
     int agent_port;    /* port for the agent checks of load balancers; 0: none */
     const char *node;  /* name of this daemon among several; the host name unless --node is given */
-    bool per_fragment; /* true: compute the field at each fragment, for comparison with the field at vertices */
+    bool per_fragment; /* true: computes the field at each fragment, for comparison with the field at vertices */
 };
 
 #endif

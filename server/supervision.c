@@ -33,7 +33,7 @@ struct supervision {
     int64_t looked_ns;
     bool ready, stuck, said_refused;
     size_t said_sessions;
-    const char *said_core; /* role of this core that was last reported (static text), as in struct net_status */
+    const char *said_core; /* last reported role of this core (static text), as in struct net_status */
 };
 
 struct supervision *supervision_create(struct log *log, struct counters *counters)

@@ -7,13 +7,13 @@
 
 struct connection {               /* identity of one connection; lives as long as the connection */
     struct address_usage *usage;  /* quota usage of the address that opened the connection (a reference) */
-    struct address_usage *client; /* usage of the client's address: behind a proxy, the address that the last request names; a reference */
+    struct address_usage *client; /* usage of the client's address: behind a proxy, the one named by the last request; a reference */
     char address[64];             /* the client's address as text, for the log */
     enum role role;               /* the user's role, according to the last request's headers */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* access token of the last request on this connection; "": none */
     bool from_proxy;                 /* true: a trusted proxy sent the last request */
-    bool forwarded;                  /* true: the trusted proxy passed on a client's request; false also for the proxy's own checks */
+    bool forwarded;                  /* true: the trusted proxy forwarded a client's request; false also for the proxy's own checks */
     bool answered;                   /* true: all requests of this connection have been answered */
     /* bytes that the connection had received when it began to wait for its next request; UINT64_MAX: not waiting (http/stuck_head.h) */
     uint64_t received_before_head;

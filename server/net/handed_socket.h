@@ -11,7 +11,7 @@ bool handed_socket_find(int fd, char address[HANDED_ADDRESS_BYTES], int *port);
 /* Makes the event loop accept connections from server.params.socket_fd. Returns false if it cannot; logged. Thread: the event loop's,
    before it runs. */
 bool handed_socket_listen(struct net *net);
-/* libwebsockets callback for events of the listening socket that systemd passed. */
+/* libwebsockets callback for events of the systemd listening socket */
 int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 
 #endif

@@ -34,7 +34,7 @@ static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* how long shutdown waits for close frames and answers to be sent */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about throttled addresses */
 static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;  /* interval between checks of the token and certificate files */
-enum { SPARE_FILES = 256 }; /* file descriptors reserved for uses other than connections: for example models, data sources, the database */
+enum { SPARE_FILES = 256 }; /* file descriptors reserved for other uses than connections: models, data sources, the database and so on */
 
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
@@ -46,7 +46,7 @@ static const struct lws_protocols protocols[] = {
 
 static const lws_retry_bo_t idle_policy = { .secs_since_valid_ping = 20, .secs_since_valid_hangup = 40 };
 
-/* libwebsockets has one log function per process, and a process has one event loop. */
+/* One variable suffices: libwebsockets has one log function per process, and a process has one event loop. */
 static struct log *_Atomic lws_log_to;
 
 static void lws_log_line(int level, const char *line)

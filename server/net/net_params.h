@@ -34,7 +34,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
 
 struct net_params {
     struct log *log;
-    struct plant_services plant; /* services of the loaded plant; net_limit_services() sets services that this daemon cannot use to NULL */
+    struct plant_services plant; /* services of the loaded plant; net_limit_services() sets those to NULL that this daemon cannot use */
     struct counters *counters;
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* thread that writes users' changes to disk; the event loop collects its results */
@@ -44,7 +44,7 @@ struct net_params {
     int64_t begun_ns;    /* monotonic time when the daemon began to start */
     struct access_params access;
     const struct signing_key *signing_key; /* key that signs pictures; NULL: pictures are not signed */
-    unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec) */
+    unsigned codecs;                       /* bit mask of the codecs available on this machine (1 << enum wire_codec) */
     const char *web_folder;                /* folder of the web client's files; NULL: no page is served */
     const char *version;
     const char *node;            /* this daemon's name behind a load balancer; NULL: it runs alone */

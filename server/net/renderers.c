@@ -30,7 +30,7 @@ struct lists_seen {
 
 struct deed {
     struct session *session; /* session that carries out the action (session_proxy.h) */
-    json_t *id;              /* JSON id of the renderer's message, which the answer repeats */
+    json_t *id;              /* JSON id of the renderer's message, repeated in the answer */
     struct deed *next;
 };
 
@@ -57,7 +57,7 @@ struct renderer_peer {
     /* standby: when this core ends, it asks the standby a last time, after all other messages, to promise not to take the lead.
        Number of this question; 0: not sent */
     uint64_t last_question;
-    bool is_complete;             /* true: the standby has answered last_question, and so has received all messages before */
+    bool is_complete;             /* true: the standby has answered last_question, so it has received all messages before */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
     uint64_t told;                /* standby: sequence number of the newest state of alarm notifications that was sent to it */
     uint64_t rows;                /* standby: sequence number of the last row of the alarm journal that was sent to it */
@@ -407,7 +407,7 @@ static bool send_answer(struct renderer_peer *renderer)
 }
 
 /* Sends a message with samples to a standby. After a message with all waiting samples, the next message has readings even if
-   new samples have arrived, because on a slow network there would always be new samples. Returns false if the standby must be
+   new samples have arrived: on a slow network there would always be new ones. Returns false if the standby must be
    disconnected. */
 static bool send_samples(const struct server_context *server, struct renderer_peer *renderer)
 {

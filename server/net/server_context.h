@@ -55,7 +55,7 @@ struct server_context {
     struct net_params params;
     struct session_context session_context; /* state that all sessions read */
     struct lws_context *lws;
-    struct { /* newest snapshot of the readings, and connections to their sources (readings.c) */
+    struct { /* newest snapshot of the readings, and state of the connections to their sources (readings.c) */
         struct snapshot *snapshot;
         uint32_t *changes;      /* by tag: the change counter (reading.changes) of the reading in the last snapshot */
         int64_t data_ns;        /* monotonic arrival time of the oldest reading that changed in the last snapshot */
@@ -87,7 +87,7 @@ struct server_context {
         bool listed;       /* renderers only: true: since the plant was loaded, the core has sent its lists (views, notes and so on) */
         /* configuration named in the core's last refusal of this daemon, which then loaded its files again to match it */
         char followed[64];
-        bool reloads; /* standbys only: true: the leader announced a reload, and has not accepted or refused this core since */
+        bool reloads; /* standbys only: true: the leader announced a reload and has neither accepted nor refused this core since */
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
         uint64_t told_number;                   /* sequence number of the newest state of alarm notifications that was sent to a standby */
     } core;
@@ -95,7 +95,7 @@ struct server_context {
         struct http_exchange *waiting; /* list of HTTP requests that wait for a frame, a pick or a reload */
         int pictures, questions;       /* HTTP requests in progress: for pictures, and for history */
         int64_t answer_bytes;          /* total bytes of HTTP answers that clients have not read yet */
-        int64_t upload_bytes;          /* total size of all files that are being uploaded, counted at their full size from the start */
+        int64_t upload_bytes;          /* total size of the files being uploaded, each counted at its full size from the start */
         int uploads;                   /* number of uploads in progress */
         struct web_site *site;         /* the web client's files */
         char *content_policy;          /* header Content-Security-Policy of every answer */
@@ -143,7 +143,7 @@ struct server_context {
     struct kept_answers kept_answers;
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* buffer for writes: libwebsockets writes its framing into the LWS_PRE bytes before the data */
     struct {
-        struct log_pace pace; /* rate limit of log lines about stream requests that came without the header Upgrade */
+        struct log_pace pace; /* rate limit of log lines about stream requests without the header Upgrade */
         struct upgrade_refusal {
             char address[64]; /* address of the client whose handshake was refused */
             int64_t at_ns;    /* monotonic time when the handshake was refused */

@@ -51,7 +51,7 @@ static uint64_t new_number(const struct server_context *server)
     uint64_t number = 0;
     while (number == 0 || stream_called(server, number)) {
         if (RAND_bytes((unsigned char *)&number, sizeof(number)) != 1)
-            return 0; /* without random numbers the session gets number 0 and cannot be followed */
+            return 0; /* without random numbers, the session gets number 0, so it cannot be followed */
         number >>= 16;
     }
     return number;

@@ -21,7 +21,7 @@ struct transfer {
     char why[CURL_ERROR_SIZE];
     struct log *log;
     const char *name;  /* id of the recipient in the plant file, for the log */
-    char mailbox[256]; /* mailbox in the last RCPT command of the SMTP dialogue; empty: the last command was another one */
+    char mailbox[256]; /* mailbox named by the last RCPT command of the SMTP dialogue; empty: the last command was another one */
 };
 
 struct delivery {

@@ -143,7 +143,7 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
-    if (episode->began_us > now_us + OUTBOX_REPEAT_US) /* the wall clock was set back, so the start of the episode would be in the future */
+    if (episode->began_us > now_us + OUTBOX_REPEAT_US) /* the wall clock was set back: the start of the episode would be in the future */
         episode->began_us = now_us;
     for (size_t i = 0; i < notify->rule_count; i++) {
         const struct notify_rule *rule = &notify->rules[i];

@@ -16,7 +16,7 @@ struct episode { /* an episode: the time during which an alarm needs attention; 
     int64_t ended_us;            /* UTC microseconds at which the alarm no longer needed attention; 0: it still needs attention */
     int64_t cleared_us;          /* UTC microseconds at which operators stopped seeing the alarm as active; 0: they still do */
     int64_t told_us;             /* UTC microseconds of the newest notification; 0: no notification since the alarm was last acknowledged */
-    uint32_t rules;              /* bit mask of the plant's notification rules that applied when the episode began */
+    uint32_t rules;              /* bit mask of the notification rules that applied to the alarm when the episode began */
     uint32_t told;               /* bit mask of the recipients that were notified of the alarm */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps carried out */
     bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is notified */

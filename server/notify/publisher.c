@@ -28,7 +28,7 @@ struct topic {
     int64_t received_utc_ns; /* UTC time of the reading of this tag that was published last */
     double value;            /* value that was published last; a sample with the same time may still replace this value */
     uint32_t quality;
-    bool is_published; /* true: the tag's reading has been published on the present connection */
+    bool is_published; /* true: the tag's reading was published on the present connection */
 };
 
 struct publisher {
@@ -44,7 +44,7 @@ struct publisher {
     struct topic *topics; /* by tag: its MQTT topic */
     uint64_t alarm_number;
     bool connected, alarms_published;
-    char said[200]; /* text of the last problem that was logged; empty: no problem */
+    char said[200]; /* last problem that was logged; empty: no problem */
 };
 
 /* --- published messages ------------------------------------------------------------------------------------------------------- */

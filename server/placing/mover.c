@@ -31,7 +31,7 @@ struct relocation *mover_create(struct log *log, struct workers *workers, const 
     const struct manifest_entry *entry = read ? manifest_find(&manifest, of->plant->id) : NULL;
     if (entry && entry->surface) {
         shape.surface_path = path = mem_printf("%s/%s", folder, entry->surface);
-        /* the file of the prepared surface is named KEY.surface, with the key in hexadecimal digits */
+        /* the prepared surface is in the file KEY.surface, with the key in hexadecimal digits */
         shape.surface_key = strtoull(entry->surface, NULL, 16);
     }
     struct relocation *relocation = relocation_create(log, workers, &shape);

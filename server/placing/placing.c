@@ -50,7 +50,7 @@ struct placing {
     struct placing_params params;
     char *folder;
     struct trials *trials;
-    struct warm *warm; /* by index of the asset: its relocation, if that is in memory */
+    struct warm *warm; /* by asset: its relocation object, if in memory */
     struct place_set *sets;
     uint64_t uses, asked;
     pthread_mutex_t lock;
@@ -182,7 +182,7 @@ static void on_distances(void *arg, struct relocation_result *result)
 static void to_file(const struct scene_asset *asset, const double plant_m[3], double out[3])
 {
     double file_from_plant[16];
-    if (!transform_invert(asset->placement, file_from_plant)) /* plant_load() refuses a plant with such a placement */
+    if (!transform_invert(asset->placement, file_from_plant)) /* the inverse exists: plant_load() refuses other placements */
         memcpy(file_from_plant, transform_identity, sizeof(file_from_plant));
     transform_point(file_from_plant, plant_m, out);
 }

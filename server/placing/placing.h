@@ -43,7 +43,7 @@ enum placed_state {
 struct placed {
     struct place_move move;
     double surface_m[3]; /* nearest point on the asset's surface, in plant coordinates */
-    /* metres from surface_m to the requested position; if distance_m is above limit_m, the page warns the user */
+    /* metres from surface_m to the requested position; the page warns the user if distance_m is above limit_m */
     double distance_m, limit_m;
     enum placed_state state;
 };

@@ -14,7 +14,7 @@ struct sensor_coverage_query {
     /* metres; a point at least this far from all sensors counts as far. 0: half of reach_m or, without a limit, a fifth of the asset's
        size */
     double far_m;
-    const uint8_t *good; /* by index of the tag: 1 if the sensor's reading is usable now */
+    const uint8_t *good; /* by tag: 1: the sensor's reading is usable now */
 };
 
 struct sensor_coverage {
@@ -26,7 +26,7 @@ struct sensor_coverage {
     double farthest_at_m[3]; /* position of the farthest surface point, in plant coordinates */
     double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */
     double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
-    double next_m;           /* largest distance in metres from a sensor to its nearest other sensor; 0: there is only one sensor */
+    double next_m;           /* largest distance in metres between a sensor and its nearest other sensor; 0: there is only one sensor */
     int next_tags[2];        /* indices of the tags of the two sensors that are next_m apart; -1: none */
 };
 

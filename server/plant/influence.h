@@ -5,7 +5,7 @@
 #define PLANT_INFLUENCE_H
 #include "plant/plant.h"
 
-#define PLANT_DISC_M 0.05       /* default radius in metres of the part of the surface that a clamped or welded sensor touches */
+#define PLANT_DISC_M 0.05       /* default radius in metres of the patch of surface that a clamped or welded sensor touches */
 /* default heat conductivity of an asset's wall, W/(m K): carbon steel, EN 1993-1-2, 3.4.1.3: 54 - 0.0333 T, at about 100 deg C */
 #define PLANT_CONDUCTIVITY 50.0
 /* default heat transfer coefficient from an asset's wall to its surroundings, W/(m2 K): still air with radiation, EN 1991-1-2, 3.1(6) */
@@ -16,9 +16,9 @@
 /* correlation length of `gp` as a fraction of the asset's size, used if there are no readings to determine it from */
 #define PLANT_GP_RANGE 0.25
 #define PLANT_GP_FITTED 3       /* minimum number of sensors on an asset to determine the parameters of `gp` from readings */
-#define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, for `gp`, as a fraction of the group's range */
+#define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise for `gp`, as a fraction of the group's range */
 
-#define PLANT_SEEN_PART 0.05 /* smallest difference of values that users can see in the colours, as a fraction of the group's range */
+#define PLANT_SEEN_PART 0.05 /* smallest difference of values visible as a difference of colours, as a fraction of the group's range */
 /* size in metres of the hot spots for which blind spots (places where no sensor would notice a hot spot) are computed */
 #define PLANT_HOT_SPOT_M 0.5
 

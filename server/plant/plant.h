@@ -49,7 +49,7 @@ enum data_type {
 /* Order in which the bytes of a value A B C D (A most significant) arrive from a Modbus device. For 64 bits: CDAB reverses the order of the
    registers, BADC swaps the bytes within each register, DCBA does both. NONE: not stated. */
 enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
-/* Modbus tables in the order of their standard numbering; to read them, function codes 1, 2, 4 and 3 are used */
+/* Modbus tables in the order of their standard numbering; they are read with function codes 1, 2, 4 and 3 */
 enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING };
 enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
 enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
@@ -90,7 +90,7 @@ struct plant_asset {
     double heat_transfer;              /* heat transfer coefficient from the asset's wall to its surroundings, W/(m2 K) */
     /* true: the columns X, Y, Z of the asset's tags are in the asset's coordinate frame; false: in the plant's */
     bool sensors_in_asset_frame;
-    struct plant_property *properties; /* properties that the plant file defines for the asset, in the order of the file */
+    struct plant_property *properties; /* properties of the asset in the plant file, in the order of the file */
     size_t property_count;
     int line;
 };
@@ -127,7 +127,7 @@ struct plant_group {
     enum interpolation interpolation;
     enum distance_mode distance;
     double strength, decay, power;
-    double radius_m;   /* radius R of Algorithm 1 of Kim & Suh (field/field.h), metres; 0: the largest distance on the asset */
+    double radius_m;   /* radius R in Algorithm 1 of Kim & Suh (field/field.h), metres; 0: the largest distance on the asset */
     double reach_m;    /* distance in metres beyond which a sensor has no influence; INFINITY: no limit */
     unsigned prepared; /* bit mask of the interpolations that plantcast-prep computes (plant/influence.h), including the group's own */
     double disc_m;     /* radius in metres of the disc that represents a sensor in the interpolations harmonic, fin and gp */
@@ -185,7 +185,7 @@ struct plant_opcua {                   /* OPC UA settings of a source; omitted t
     char *user_certificate, *user_key;
     char *path;                        /* path of the endpoint URL */
     char *name_space;                  /* namespace URI of nodes whose address states none */
-    int queue;                         /* number of values per node that the OPC UA server keeps between two messages to the daemon */
+    int queue;                         /* number of values per node that the OPC UA server queues between two messages to the daemon */
     /* smallest change of a value that the OPC UA server reports: absolute, or in percent of the node's range (EURange); 0: every change */
     double deadband, deadband_percent;
 };
@@ -204,7 +204,7 @@ struct plant_source {
     int connect_delay_ms;              /* pause in milliseconds between connecting to the device and the first request */
     bool close_between_polls;          /* one request per connection */
     int max_registers, max_bits;       /* maximum number of registers, or of bits, in one Modbus request */
-    int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */
+    int max_gap; /* maximum number of unneeded registers or bits between two tags for one request to read both */
     enum byte_order byte_order;
     int address_base; /* number of a device's first register in addresses such as 40001: 0 or 1; base_stated: true: set in the plant file */
     bool base_stated;
@@ -224,7 +224,7 @@ struct plant_source {
 
 /* The broker to which readings and alarms are published. */
 struct plant_publish {
-    struct plant_source broker; /* connection settings; only the broker's address and the daemon's identity are used */
+    struct plant_source broker; /* connection settings; of these, only the broker's address and the daemon's identity are used */
     char *prefix;               /* prefix of all topics; begins with plantcast/ */
     double every_s;
 };
@@ -232,9 +232,9 @@ struct plant_publish {
 /* A PostgreSQL database that receives a copy of the history. */
 struct plant_postgres {
     char *url;   /* libpq URL without a password; NULL: no database */
-    char *login; /* path of a file with user and password, a line each; NULL: libpq finds them itself */
+    char *login; /* path of a file with user and password, on a line each; NULL: libpq looks for them itself */
     char *schema;
-    double spool_points; /* maximum number of points that wait for the database on this machine's disk */
+    double spool_points; /* maximum number of points on this machine's disk that wait for the database */
 };
 
 struct plant_history {

@@ -17,7 +17,7 @@
 
 struct plant_folder_params {
     const char *folder;
-    const char *own; /* path of this program's own work folder in the plant's folder, which is not removed; NULL: none */
+    const char *own; /* path of this program's own work folder in the plant's folder, which must be kept; NULL: none */
     int lent;        /* open descriptor of the folder, inherited from the parent process, which holds the lock; 0: none */
     int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
     /* receives what this program finished on behalf of a killed one: "an import", "the undoing of an import"; NULL: not wanted */

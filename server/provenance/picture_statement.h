@@ -13,7 +13,7 @@ enum {
     /* Current version of the signed statement. Version 1 lacks two members: `overlay` (always `full` or `bare` then) and `tier`
        (always `refined` then). */
     PICTURE_STATEMENT_VERSION = 2,
-    PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* maximum length of a statement in bytes, enough for three sets of readings of 100,000 tags */
+    PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* maximum length of a statement in bytes; enough for three sets of readings of 100,000 tags */
     PICTURE_SIGNATURE_BYTES = 128,
     PICTURE_HASH_BYTES = 65
 };

@@ -87,7 +87,7 @@ static bool has_keyword(const uint8_t *data, size_t length, const char *keyword)
     return length > n + 2 && memcmp(data, keyword, n + 1) == 0 && data[n + 1] == 0;
 }
 
-/* one chunk of a PNG file: its type, and where its data are */
+/* one chunk of a PNG file: its type and the position of its data */
 struct png_chunk {
     const uint8_t *type, *data;
     size_t length;

@@ -10,12 +10,12 @@
 #include "render/frame_record.h"
 #include "scene/scene.h"
 
-struct picture_origin { /* facts for a picture's signed statement that the picture itself does not contain */
+struct picture_origin { /* facts for a picture's signed statement that are not in the picture itself */
     const struct scene *scene;
-    const char *const *args; /* arguments of the HTTP query that the picture answers, as name=value */
+    const char *const *args; /* arguments, as name=value, of the HTTP query answered with the picture */
     size_t arg_count;
     bool bare;           /* true: the user may not see readings, so the statement omits them */
-    const char *overlay; /* overlay that is drawn over the model: `full`, `bare` (no sensors and alarms) or `none` */
+    const char *overlay; /* overlay drawn over the model: `full`, `bare` (without sensors and alarms) or `none` */
     const char *version;
 };
 

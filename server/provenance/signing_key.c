@@ -13,7 +13,7 @@
 #include "base/text/hex.h"
 
 struct signing_key {
-    EVP_PKEY *pair; /* OpenSSL's key: private and public key, or the public key alone */
+    EVP_PKEY *pair; /* OpenSSL's key: a private and public key, or only a public key */
     char id[SIGNING_KEY_ID_BYTES];
 };
 

@@ -19,12 +19,12 @@ struct strip_found {
     int mended;                              /* number of bytes of the strip's code that error correction repaired */
     /* CIELAB values of the legend's colours as they appear in this picture: below range, MIN to MAX, above range */
     double ramp[STRIP_SHADES][STRIP_INNER][3];
-    double noise; /* CIELAB deviation of pixels that should have one colour, due to compression */
+    double noise; /* CIELAB deviation, caused by compression, among pixels that should have the same colour */
 };
 
 enum strip_state { STRIP_VALUE, STRIP_BELOW, STRIP_ABOVE, STRIP_NO_COLOR };
 struct strip_value {
-    /* STRIP_NO_COLOR: the pixel's colour is not in the legend, for example the background, a label, or no data */
+    /* STRIP_NO_COLOR: the colour is not in the legend, as for the background, a label, or no data */
     enum strip_state state;
     /* Only for STRIP_VALUE. value: the pixel's value; low, high: range of values whose colours cannot be distinguished from the
        pixel's colour. */

@@ -110,7 +110,7 @@ static double side_shift(const struct clip_side *side, double back_m)
     return (side->high - side->low - back_m * (side->to + side->from)) / 2;
 }
 
-/* Places an orthographic camera, from the extent of the box around its centre along the picture's axes. */
+/* Places an orthographic camera so that it shows the box, whose extent around its centre is given along the picture's axes. */
 static void place_parallel(struct camera *camera, const struct basis *basis, const double half_m[3], const double center_m[3],
                            double aspect, const struct camera_window *window)
 {
@@ -233,7 +233,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         *far_m = farthest + margin_m;
         return;
     }
-    /* a box entirely behind the camera is not visible, so any valid range of depths will do */
+    /* a box entirely behind the camera is invisible, so any valid depth range will do */
     *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M);
     *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
     if (*near_m >= *far_m) /* the box has no depth */

@@ -91,7 +91,7 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* true: the cell for this k equals the cell for a smaller k, which was searched already */
+        bool again = false; /* true: this cell equals that of a smaller k, which was already searched */
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];

@@ -12,7 +12,7 @@ struct closed_run {
 };
 
 struct closed_bodies {
-    struct closed_run *runs; /* runs of the index array, ascending by first_index */
+    struct closed_run *runs; /* runs of indices in the index array, ascending by first_index */
     size_t run_count, run_capacity;
 };
 

@@ -10,7 +10,7 @@ enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, S
 
 struct framing {
     int asset, tag;              /* indices of the asset or tag to show; -1: none; both -1: the whole plant */
-    enum side side;              /* SIDE_NOW: keeps the camera's direction, but a sensor is viewed from outside its asset */
+    enum side side;              /* SIDE_NOW: keeps the camera's direction; for a sensor, the direction from outside its asset is used */
     struct camera_window window; /* rectangle of the picture for the subject to fill */
 };
 

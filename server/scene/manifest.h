@@ -11,7 +11,7 @@
 struct manifest {
     char *path;
     struct manifest_entry {
-        char *id, *file;          /* file: name of the asset's prepared file, which is in the manifest's folder */
+        char *id, *file;          /* file: name of the asset's prepared file in the manifest's folder */
         char *surface;            /* file name of the asset's stored surface (surface_store.h); NULL: none */
         char *missing;            /* reason why the asset could not be prepared and has no file; NULL: it was prepared */
         uint64_t recipe;          /* hash of all inputs of the asset except its sensors (plant/recipe.h) */

@@ -49,7 +49,7 @@ struct raycast_search { /* state of a search for the first hit in one asset */
     const struct asset_view *view;
     double origin[3], direction[3], low; /* the ray in coordinates of the asset file; low: smallest t of interest */
     bool cut;
-    double limit; /* largest value of the ray's parameter t that is of interest */
+    double limit; /* largest t of interest (the ray's parameter) */
     struct raycast_hit *hit;
     int asset;
 };

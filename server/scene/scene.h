@@ -46,7 +46,7 @@ struct scene {
         int assets;       /* number of assets that have triangles outside the main part */
         double away_m;    /* distance of the farthest triangle from the main part, metres */
     } outside;
-    double (*extremes_m)[3]; /* outermost points that a view of the whole plant has to contain (scene/extremes.h) */
+    double (*extremes_m)[3]; /* outermost points, which a view of the whole plant must contain (scene/extremes.h) */
     size_t extreme_count;    /* number of elements of extremes_m; 0: not known */
 };
 

@@ -84,7 +84,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
         size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
-        /* no sensors: plantcast-prep then writes no influence file, so none is required */
+        /* without sensors plantcast-prep writes no influence file, so none is required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
             log_err(log, "asset %s: no usable prepared file with %s for group %s", asset->plant->id, heat ? "heat distances" : "directions",
@@ -405,7 +405,7 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
     memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
     camera->fov_deg = view->fov_deg;
-    if (!camera_valid(camera)) /* a camera that looks straight down, along `up`, is invalid: `up` is then set to north, as on a map */
+    if (!camera_valid(camera)) /* the camera looks straight down, along `up`, which is invalid: sets `up` to north, as on a map */
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }
 

@@ -10,7 +10,7 @@
    marked as missing, and a warning is logged. `plant` must outlive the scene. Returns NULL on failure, all errors logged. */
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
 void scene_destroy(struct scene **scene); /* destroys the scene and sets *scene to NULL; accepts a pointer to NULL */
-/* Sets the initial camera: the view in the plant file, else one of the whole plant from a raised corner. */
+/* Sets the initial camera: the plant file's view, or else a view of the whole plant from above a corner. */
 void scene_home(const struct scene *scene, double aspect, struct camera *camera);
 
 #endif

@@ -37,7 +37,7 @@ struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
     struct frame *frame;        /* frame to encode; NULL: nothing needs encoding */
-    struct request_group group; /* requests with equal codec and quality, which are all answered with one encoded frame */
+    struct request_group group; /* requests with equal codec and quality, all answered with one encoded frame */
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
@@ -288,7 +288,7 @@ static void start(struct encode_queue *queue, struct encode_job *job)
         workers_submit(queue->params.workers, run_job, job);
 }
 
-/* Starts the next waiting job for an HTTP or signed frame, after one has ended. */
+/* Starts the next waiting job for an HTTP or signed frame, after another has ended. */
 static void start_heavy(struct encode_queue *queue)
 {
     pthread_mutex_lock(&queue->lock);

@@ -11,7 +11,7 @@ enum { ENCODE_STREAM_KEPT = 32 };
 struct encode_stream {
     struct encode_stream *next;
     void *work;                 /* the encode queue's data about this stream (struct stream_work); NULL in a new stream */
-    uint64_t planned;           /* sequence number of the newest frame planned, from 1; also counts frames that were then not encoded */
+    uint64_t planned;           /* sequence number of the newest planned frame, from 1; includes frames that were then not encoded */
     uint64_t oldest;            /* lowest sequence number among the frames whose packets are kept */
     uint64_t key;               /* sequence number of the newest key frame; 0: none */
     int64_t key_ns;             /* monotonic time when the newest key frame was planned */
@@ -30,7 +30,7 @@ struct encode_stream {
 struct encode_stream_member {
     uint64_t client;
     struct encode_stream *stream;
-    uint64_t position; /* sequence number of the newest packet that was passed on to the client */
+    uint64_t position; /* sequence number of the newest packet passed on to the client */
     /* joined_ns: when the client joined the stream; patience_ns: delay before a key frame is made to let the client join again,
        longer if it often falls behind; join_after_ns: end of that delay */
     int64_t joined_ns, join_after_ns, patience_ns;

@@ -10,7 +10,7 @@
 struct frame_request {
     struct view view;
     enum wire_codec codec;
-    struct encoder_params quality; /* quality of encoding; only the members quality and full_chroma are used, the others are zero */
+    struct encoder_params quality; /* quality of encoding; only the members quality and full_chroma are used, all others are zero */
     enum urgency urgency;
     /* id of the account that is charged for drawing. Each client address has an account; 0: the account of all requests without
        an address */

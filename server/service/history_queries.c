@@ -29,7 +29,7 @@ struct pending_query {
     /* CSV output: true: the last line written has the columns for means of time buckets; false: those for single values */
     bool buckets;
     bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
-    bool wanted;  /* true: the client asked for the next piece of its answer */
+    bool wanted;  /* true: the client requested the next piece of its answer */
     bool forgotten;
     uint64_t served; /* value of history_queries.served when the newest piece of this query's answer was begun; 0: no piece was begun */
     struct pending_query *next;
@@ -83,8 +83,8 @@ static void print_json(const struct pending_query *question, const struct plant_
         text_add(out, "]}\n");
 }
 
-/* Requests the history of the query's next tag from the core, and appends it to the answer (JSON or CSV) in the format that
-   this daemon uses for history of its own. Returns false if the core did not answer. */
+/* Requests the history of the query's next tag from the core, and appends it to the answer (JSON or CSV). The format is the
+   same as for history of this daemon's own. Returns false if the core did not answer. */
 static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;

@@ -36,7 +36,7 @@ struct history_queries *history_queries_create(struct log *log, const struct pla
                                                struct core_link *core_link, void (*notify)(void *arg), void *arg);
 /* Ends the threads and sets *queries to NULL; accepts a pointer to NULL. */
 void history_queries_destroy(struct history_queries **queries);
-/* Queues a copy of the query. Returns false if HISTORY_QUERIES_MOST queries are being answered. */
+/* Queues a copy of the query. Returns false if HISTORY_QUERIES_MOST queries are already in progress. */
 bool history_queries_ask(struct history_queries *queries, const struct history_query *query);
 /* Requests the next piece of the client's answer, after the previous one was sent. */
 void history_queries_continue(struct history_queries *queries, uint64_t client);

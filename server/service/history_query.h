@@ -25,7 +25,7 @@ struct history_query {
     /* index of the group or tag to judge, for drift queries: one of the two is set, the other is -1. In other queries both are -1 */
     int group, tag;
     bool gaps;      /* true: the query asks for the periods in which nothing was recorded, not for series of values */
-    bool journal;   /* true: instead of series of values, the query asks for rows of the alarm journal, filtered by `alarms` */
+    bool journal;   /* true: the query asks for rows of the alarm journal, filtered by `alarms`, not for series of values */
     struct alarm_query alarms;
 };
 

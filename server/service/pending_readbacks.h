@@ -13,7 +13,7 @@ enum { PENDING_READBACKS_MAX = 3 };
 struct pending_readbacks {
     struct pending_readback {
         struct split_view *split;
-        struct request_group group; /* frame requests that are answered with this frame */
+        struct request_group group; /* frame requests answered with this frame */
         /* reference to the readings of a past instant; NULL: the readings are in `snapshot` */
         const struct historical_snapshot *historical;
         struct snapshot *snapshot;
@@ -25,7 +25,7 @@ struct pending_readbacks {
 
 /* Allocates the snapshots of readings in the list of frames, each with tag_count readings. */
 void pending_readbacks_init(struct pending_readbacks *in_flight, size_t tag_count);
-/* Frees the memory of the list's snapshots; no frame may be in the list. */
+/* Frees the memory of the list's snapshots. The list must be empty. */
 void pending_readbacks_finish(struct pending_readbacks *in_flight);
 /* Adds a frame to the list, which must not be full. The list takes ownership of the frame's split view, its historical
  * snapshot, the requests in group and, if there is no historical snapshot, *snapshot. Afterwards *group is empty, and *snapshot

@@ -5,7 +5,7 @@
 #include "render/frame_record.h"
 #include "render/overlay/overlay.h"
 
-/* duration of one step of a long job (a frame drawn in steps); after each step other requests are served */
+/* duration of one step of a long job (a frame drawn in steps); other requests are served after each step */
 static const int64_t STEP_NS = 10 * NS_PER_MS;
 /* drawing time per frame for baking the light that a session chose, while the session's camera moves */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
@@ -145,8 +145,8 @@ static void finish_complete(struct render_thread *thread)
 
 /* --- long jobs: frames drawn in steps ------------------------------------------------------------------------------------- */
 
-/* The group's clients now wait for a new long job (a frame drawn in steps), so clears their flag `left`, which says that a
-   client withdrew from the last one. */
+/* Clears the flag `left` of the group's clients, because they now wait for a new long job (a frame drawn in steps). The flag
+   says that a client withdrew from the last one. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -158,7 +158,7 @@ static void stay(struct render_service *service, const struct request_group *gro
     pthread_mutex_unlock(&service->lock);
 }
 
-/* Exchanges the running long job (a frame drawn in steps) with the parked one, which was suspended before. */
+/* Exchanges the running long job (a frame drawn in steps) with the parked (suspended) one. */
 static void long_job_swap(struct render_thread *thread)
 {
     struct long_job parked = thread->parked;

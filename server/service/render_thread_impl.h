@@ -10,7 +10,7 @@
 
 struct thread_memory { /* memory limit of the renderer's caches, and when to release them (render_thread_memory.c) */
     counter *stores[RENDER_STORES], *fields, *frames, *bound;
-    size_t other;           /* peak, in bytes, of the memory that the process used besides models and caches; decays slowly */
+    size_t other;           /* peak, in bytes, of the process's memory other than models and caches; decays slowly */
     int64_t looked_ns;      /* monotonic time when the size of the caches was last measured */
     int64_t trimmed_ns;     /* monotonic time when free heap memory was last returned to the system */
     int64_t alone_since_ns; /* monotonic time since which the service has had no client; 0: there are clients */
@@ -26,7 +26,7 @@ struct long_job {                                 /* long job: a frame that is d
     int64_t asked_ns;
     int64_t px, spent_ns;     /* px: number of pixels of the frame; spent_ns: drawing time so far */
     uint64_t account;         /* id of the time account that is charged for drawing */
-    int64_t account_spent_ns; /* drawing time that had been charged to the address's account before the job began */
+    int64_t account_spent_ns; /* drawing time charged to the address's account before the job began */
     /* true: later frames of the same view reuse what the job has drawn so far, so the job continues even if readings change */
     bool keeps;
 };
@@ -38,7 +38,7 @@ struct render_thread {
     struct renderer *renderer;
     struct snapshot *snapshot; /* readings that the render thread took last */
     bool stale; /* true: `snapshot` went with a submitted frame, so a new snapshot must be taken before it is used again */
-    struct request_group same; /* scratch memory for a group of requests that are answered without drawing a frame */
+    struct request_group same; /* scratch memory for a group of requests answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;
     /* suspended long job (a frame drawn in steps) for a large frame; it continues once a smaller frame of another address,
@@ -61,8 +61,9 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
    answer without a frame; others get a cached frame, or one being drawn, with the same content hash. content: hash of what the
    planned frame shows. */
 void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t content, struct request_group *group);
-/* Answers the whole group with a cached frame of the same view, and empties the group, but only if the frame's readings are at
-   least as new as those that the group's clients know. Call it before the field (interpolated values) is updated. */
+/* Answers the whole group with a cached frame of the same view, and empties the group. The frame's readings must be at least as
+   new as those that the group's clients know; otherwise does nothing. Call it before the field (interpolated values) is
+   updated. */
 void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group);
 
 /* --- render_thread_memory.c: memory of the caches --------------------------------------------------------------------- */
@@ -71,7 +72,7 @@ void frame_sharing_answer_from_recent(struct render_thread *thread, struct reque
 void render_thread_memory_init(struct thread_memory *memory, struct render_service *service);
 /* Measures the renderer's caches, and shrinks them to the limit on memory. */
 void render_thread_bound_memory(struct render_thread *thread);
-/* Notes that the renderer's caches have content, which is kept until 10 s have passed without clients. */
+/* Records that the renderer's caches have content, which is kept until 10 s have passed without clients. */
 void render_thread_note_work(struct render_thread *thread);
 /* Shrinks the renderer's caches to their limit (at most once a second) and records that they have content. Call it after each
    frame or step. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Request groups: lists of frame requests that are answered with one frame. */
+/* Request groups: lists of frame requests answered with one frame. */
 #include "service/request_group.h"
 
 #include "base/mem.h"

@@ -12,7 +12,7 @@ enum urgency { URGENCY_INPUT, URGENCY_DATA, URGENCY_REFINE, URGENCY_SNAPSHOT, UR
 
 struct scheduler {             /* zero-initialise */
     int64_t input_ns, long_ns; /* monotonic times when the last frame for an input, and the last long-running frame, were finished */
-    /* data_next: the next frame is for changed readings; step_next: a step of a long-running frame is drawn next */
+    /* data_next: the next frame is for changed readings; step_next: the next turn is a step of a long-running frame */
     bool data_next, step_next;
 };
 

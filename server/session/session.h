@@ -29,8 +29,8 @@ void session_record_leave(const struct session *session, const char *why);
 /* Queues the answers to actions that have reached the disk (journal, files and audit trail) or could not be written. Returns
    whether it queued any. */
 bool session_settle(struct session *session);
-/* Destroys a session whose client has gone. Until it is known whether all its actions reached the disk, keeps the session in
-   the context's list `gone`, so that a failure is still recorded in the audit trail. */
+/* Destroys a session whose client has gone. First keeps it in the context's list `gone` until it is known whether all its
+   actions reached the disk. A failure is thus still recorded in the audit trail. */
 void session_retire(struct session **session);
 /* For the sessions in the context's list `gone`: records in the audit trail which actions failed to reach the disk, and
    destroys sessions without pending actions. */

@@ -23,7 +23,7 @@ static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS;
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
 /* the rest of a refined frame whose view has changed is not sent if that would take longer than this */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
-static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
+static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before repeating the request for a frame that failed for lack of memory */
 /* assumed size ratio of a refined frame to a preview, until a refined frame was sent */
 static const double STILL_OVER_MOVING = 3;
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
@@ -305,8 +305,8 @@ bool session_begun(const struct session *session, int64_t now_ns)
     return !starts && (!session->travel.first || session->following.leader);
 }
 
-/* Returns whether a frame may be requested. While a refined frame is being drawn, it does not use the network yet, so a frame
-   for new readings may be requested, however slow the client is. */
+/* Returns whether a frame may be requested. A refined frame that is still being drawn does not use the network yet. So a frame
+   for new readings may be requested meanwhile, however slow the client is. */
 static bool may_ask(const struct session *session, int64_t now_ns)
 {
     const struct pacer *pacer = &session->delivery.pacer;
@@ -344,7 +344,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 {
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
-    /* readings of a past instant never change, so read_ns is 0 then: no later change can require another request */
+    /* readings of a past instant never change, so read_ns is 0: no later change can require another request */
     request->read_ns = request->view.at_us ? 0 : session->context->changed_ns;
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;

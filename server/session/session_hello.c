@@ -182,7 +182,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     session_scope_begin(session);
     char secret[RESUME_CHARS + 1];
     bool back = !message->hello.tile.display && find_resumed(session, message->hello.resume, now_ns, now_utc_ns, secret, &resumed);
-    /* the view to resume; NULL: there is none, or the client asked for a new view */
+    /* the view to resume; NULL: there is none, or the client wants a new view */
     const struct resumed *before = back && !message->hello.anew ? &resumed : NULL;
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) ||

@@ -106,7 +106,7 @@ void session_on_shown(struct session *session);
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
 /* Makes the server sign the session's frames from now on, as the message asks. Returns false with *error if this server cannot sign. */
 bool session_choose_signed(struct session *session, enum signed_frames frames, struct message_error *error);
-/* Chooses the codec again by bandwidth and processor load, if the client leaves the choice to the server. */
+/* Chooses the codec again from bandwidth and processor load, if the client leaves the choice to the server. */
 void session_choose_again(struct session *session, int64_t now_ns);
 
 /* --- session_admission.c ---------------------------------------------------------------------------------------------- */
@@ -114,7 +114,7 @@ void session_choose_again(struct session *session, int64_t now_ns);
 /* Reserves a view of that size in the admission budget, replacing the session's last reservation. Returns false with *error if
    that exceeds a limit. */
 bool session_reserve_pixels(struct session *session, int width_px, int height_px, struct message_error *error);
-/* Returns the pixels that the session has reserved to the admission budget. */
+/* Gives the pixels reserved by the session back to the admission budget. */
 void session_release_pixels(struct session *session);
 /* Returns whether the session holds pixels for its view, so that frames may be drawn. */
 bool session_has_pixels(const struct session *session);
@@ -133,7 +133,7 @@ bool session_on_time(struct session *session, const struct time_request *request
 void session_time_begin(struct session *session, int64_t at_us, double speed);
 /* Releases the recorded readings of the past instant that the session shows. */
 void session_time_end(struct session *session);
-/* Returns to the present immediately, whatever instant is being loaded. */
+/* Returns to the present immediately, even while an instant is being loaded. */
 void session_time_leave(struct session *session);
 /* Copies the past instant and the playback of `session` to the session that takes over its lead. */
 void session_time_inherit(struct session *heir, const struct session *session);

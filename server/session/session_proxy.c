@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements sessions without a client: each exists for one message that another daemon forwarded. */
+/* Implements sessions without a client. Each exists for one message forwarded by another daemon. */
 #include "session/session_proxy.h"
 
 #include <stdio.h>

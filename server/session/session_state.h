@@ -30,7 +30,7 @@ struct session_identity {
     /* on a core (daemon that reads the devices): names of the renderer and of its token that forwarded the message; "": not forwarded */
     char through[192];
     char resume_secret[RESUME_CHARS + 1]; /* secret for resuming the view over another connection */
-    int64_t active_ns; /* monotonic time when the user was last active at the page; 0: the user was not active since the page connected */
+    int64_t active_ns; /* monotonic time of the user's last activity at the page; 0: none since the page connected */
     bool tokens;       /* true: the client wants its view as a signed view token after each change */
     struct view token_view; /* the view in the last view token that was sent */
     int64_t token_ns;       /* monotonic time when the last view token was sent */
@@ -57,9 +57,9 @@ struct session_close {
 
 /* The pixels that the session's view takes from the admission budget (session_admission.c). */
 struct session_room {
-    struct address_share *share; /* admission figures of the client's address; NULL: the session has no address */
-    int64_t pixels; /* pixels counted for this session in the admission totals; 0: none, for example while the page is hidden */
-    int64_t hidden_ns, shown_ns; /* monotonic: when the page was last hidden; when the page was last shown again, 0: never */
+    struct address_share *share; /* use of the server by the client's address; NULL: the session has no address */
+    int64_t pixels; /* the session's pixels in the admission totals; 0: none, for example while the page is hidden */
+    int64_t hidden_ns, shown_ns; /* monotonic times when the page was last hidden, and last shown again; 0: never */
 };
 
 /* The codec that encodes the session's frames. */
@@ -71,7 +71,7 @@ struct session_codec {
     bool unsigned_said; /* true: the client was told why its frames are unsigned; reset when a signed frame is sent */
 };
 
-/* Reasons to request the next frame, and the quality of the picture that is shown (session_frames.c). */
+/* Reasons to request the next frame, and the quality of the shown picture (session_frames.c). */
 struct frame_demand {
     /* reasons why a frame is wanted. input: the view changed; data: a reading changed; any: a frame is required even if its
        content is the same, and must decode without earlier frames */
@@ -79,7 +79,7 @@ struct frame_demand {
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
     int64_t preview_ns, refined_ns; /* monotonic times when the newest preview, and the newest refined frame, was requested */
-    /* quality of the best refined frame that was requested for the present view */
+    /* quality of the best refined frame requested for the present view */
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined;
     /* true: a refined frame is requested and has not arrived; this may take a minute, because the render thread draws it
        between other sessions' frames */
@@ -101,7 +101,7 @@ struct frame_delivery {
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all earlier ones */
     bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
-    /* number of sessions that show this view, this session included, by the quality step that each needs */
+    /* by quality step: number of sessions that show this view, this one included, and need the step */
     int steps[QUALITY_LADDER_STEPS];
     int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
@@ -110,15 +110,15 @@ struct frame_delivery {
 struct follow_request {
     bool returned;   /* true: the session resumed another session, whose followers should follow this one again */
     uint64_t heir;   /* number of the session that takes the lead; 0: the lead stays */
-    bool asked;      /* true: the client asked to follow session `wanted`, or nobody */
+    bool asked;      /* true: the client requested to follow session `wanted`, or nobody */
     uint64_t wanted; /* number of the session to follow; 0: none */
 };
 
 /* The leader and the followers of a session (session_follow.c). */
 struct session_following {
     struct session *leader;   /* session whose view this session shows; NULL: its own view. The event loop keeps the pointer valid */
-    bool asked;               /* true: the client asked to follow session `wanted`, or nobody */
-    uint64_t wanted;          /* number of the session that the client asked to follow; 0: nobody */
+    bool asked;               /* true: the client requested to follow session `wanted`, or nobody */
+    uint64_t wanted;          /* number of the session that the client requested to follow; 0: nobody */
     uint64_t left;            /* number of the leader who has gone but whose last view is still shown; 0: none */
     struct view own_view;     /* the session's own view while it follows a leader */
     uint64_t heir_wanted;     /* number of the session that the client wants to hand the lead to; 0: the lead stays */
@@ -136,17 +136,17 @@ struct travel {
     const struct historical_snapshot *historical;
     int64_t wanted_us;        /* instant that the session is going to, UTC microseconds; 0: it has arrived */
     bool asked;               /* true: the readings of the instant wanted_us are being loaded */
-    bool first;               /* true: the session began at a past instant, and nothing is drawn until its readings are loaded */
+    bool first;               /* true: the session began at a past instant; nothing is drawn until the readings are loaded */
     double speed;             /* playback speed in seconds of recorded history per second; 0: paused */
-    int64_t from_us, from_ns; /* reference point of playback: the instant from_us was shown when the monotonic clock was at from_ns */
+    int64_t from_us, from_ns; /* reference point of playback: at the monotonic time from_ns, the instant from_us was shown */
     int64_t stepped_ns;
 };
 
 /* Texts that are still to be sent to the client (session_texts.c). */
 struct owed_texts {
-    /* true: the text of that name is due; loop_checks: the complete list of loop checks is due */
+    /* true: the text with that name is due; loop_checks: the complete list of loop checks is due */
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
-    uint32_t params_seq;    /* sequence number of the client's message that the next `params` answers */
+    uint32_t params_seq;    /* sequence number of the client's message that the next `params` message answers */
     int64_t tags_ns;        /* monotonic time when tags were last sent */
     uint32_t *tag_changes;  /* by tag: change counter (reading.changes) of the reading that was last sent */
     bool alarms_sent;       /* true: `alarms` was sent at least once */
@@ -189,7 +189,7 @@ struct session_tile {
     /* id of a wall's picture in which this tile looks the same as in a frame still on its way to the client; 0: none */
     uint64_t unchanged;
     uint32_t presented_seq;
-    int64_t made_ns; /* time from the request for a preview to the encoded frame, smoothed, in nanoseconds; 0: not known */
+    int64_t made_ns; /* smoothed time in nanoseconds from the request for a preview to the encoded frame; 0: not known */
     int64_t late_us; /* UTC microseconds when the tile was dropped from the wall; 0: it takes part */
     /* out_ns: how long the tile stays dropped. in_ns: monotonic; of a dropped tile: the earliest time of its readmission; of a
        tile that takes part: the time of its last readmission */
@@ -210,7 +210,7 @@ struct session_stats { /* counts of messages and errors, for the log and the met
 
 /* Restrictions of a narrowed token, which allows only some views or one display (session_scope.c). */
 struct session_scope {
-    char named[NAMED_VIEW_ID_BYTES]; /* id of the plant file's view that is shown; "": none */
+    char named[NAMED_VIEW_ID_BYTES]; /* id of the shown view of the plant file; "": none */
     /* by tag: whether this paired display shows the tag; NULL: no restriction (the display shows pictures, or the session is no display) */
     bool *tags;
 };

@@ -144,7 +144,7 @@ static const struct {
     unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
-    /* needs no check that the start is complete: the event loop runs only once models and GL are loaded */
+    /* served without a check for readiness: the event loop runs only once models and GL are loaded */
     { "/readyz", ready, ROLE_NOBODY, 0 },
     { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
     { "/login", ask_login, ROLE_NOBODY, 0 },

@@ -8,7 +8,7 @@
 struct asked { /* the frame, or the pick in a frame, for which an HTTP request waits */
     bool picks;
     struct frame_request frame_request;
-    char **args; /* percent-decoded arguments of the URL, which the signature of a picture covers; freed by asked_free() */
+    char **args; /* percent-decoded arguments of the URL, which a picture's signature covers; freed by asked_free() */
     size_t arg_count;
     struct pick_query pick;
     /* readings of the past instant that the picture shows (a reference); NULL: it shows the present, or the readings are still being
@@ -75,7 +75,7 @@ void chunked_append(struct http_exchange *request, char *body, size_t count, boo
 int chunked_write(struct server_context *server, struct http_exchange *request);
 /* Answers 503 with Retry-After. */
 int request_answer_later(struct http_exchange *request, const char *why);
-/* Answers with a refusal that has no arguments; status 503 also gets Retry-After. */
+/* Answers with a refusal without arguments; status 503 also gets Retry-After. */
 int request_refuse(struct http_exchange *request, int status, enum refusal_code code);
 int request_refuse_for(struct http_exchange *request, int status, const struct refusal *refusal);
 /* Answers that history cannot be read: with 500; on a renderer, which reads history from its core, with 503 and Retry-After. */

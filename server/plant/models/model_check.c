@@ -26,7 +26,7 @@ struct plant_models_check {
     struct model_header header; /* header of the model file that is being checked */
     bool *taken;                /* by model node: true: the node belongs to the asset being checked */
     bool *counted;              /* by model node: true: the node belongs to an asset checked so far, so its triangles are already counted */
-    uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */
+    uint64_t triangles;         /* number of triangles of all models; a model shared by several assets counts once */
     uint32_t *found;
 };
 

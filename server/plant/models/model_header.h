@@ -15,7 +15,7 @@ struct model_header {
     double (*origins)[3];     /* origin of each node's own frame in scene coordinates, in the model's units and axes */
     size_t count;
     bool partial; /* true: boxes may be too small, because the model has instances, or accessors without bounds (min and max) */
-    void *json;   /* parsed JSON of the model file, which owns the names */
+    void *json;   /* parsed JSON of the model file; owns the names */
 };
 
 /* Reads a file. On failure, returns false with the reason in `why`; model_header_finish() is then not needed. */

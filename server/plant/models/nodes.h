@@ -11,7 +11,7 @@ struct model_node { /* node of a model. The array of nodes is in depth-first ord
     const char *name, *mesh; /* names of the node and of its mesh; "": it has none */
     int parent;              /* index of the node's parent; -1: the node is a root */
     uint32_t end;
-    uint32_t number; /* node's index in the model file; a node that was added for an instance has the index of the instanced node */
+    uint32_t number; /* node's index in the model file; for a node added for an instance: index of the instanced node */
 };
 
 #define NODES_SEPARATOR '\n' /* character that separates the node patterns of an asset */

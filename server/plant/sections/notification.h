@@ -34,7 +34,7 @@ struct notify_recipient {
     int line;
 };
 
-struct notify_shift {     /* a time of day in the plant's time zone during which a shift works */
+struct notify_shift {     /* daily working hours of a shift, in the plant's time zone */
     unsigned days;        /* bit mask of the days on which the shift begins; the lowest bit is Monday */
     int from_min, to_min; /* minutes of the day; from_min equal to to_min: the whole day; to_min before from_min: ends on the next day */
 };
@@ -42,12 +42,12 @@ struct notify_shift {     /* a time of day in the plant's time zone during which
 struct notify_step {
     /* minutes from the alarm to this step of the notification: 0 in a rule's first step, ascending in later steps */
     double after_min;
-    uint32_t to;      /* bit mask of the recipients that are notified in this step; bit n: recipient with index n */
+    uint32_t to;      /* bit mask of the recipients notified in this step; bit n: recipient with index n */
 };
 
 struct notify_rule {
     char *id;
-    int priority;             /* least urgent priority of the alarms that the rule covers */
+    int priority;             /* least urgent alarm priority that the rule covers */
     struct notify_list areas; /* patterns for the names of areas that the rule applies to; none: all areas */
     struct notify_shift shift;
     struct notify_step steps[NOTIFY_STEPS];

@@ -87,7 +87,7 @@ bool byte_order_parse(const char *text, enum byte_order *out)
     return false;
 }
 
-/* Reads decimal digits, at most 6. Returns the count of digits; 7 if there are more than 6. */
+/* Reads decimal digits, at most 6. Returns their number, or 7 if there are more than 6. */
 static int read_digits(const char **p, long *value)
 {
     int count = 0;

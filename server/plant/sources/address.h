@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses Modbus addresses, data types and byte orders as tag lists write them (TAGS.md). Thread: any. */
+/* Parses Modbus addresses, data types and byte orders in the notation of tag lists (TAGS.md). Thread: any. */
 #ifndef PLANT_SOURCES_ADDRESS_H
 #define PLANT_SOURCES_ADDRESS_H
 #include <stdbool.h>
@@ -21,7 +21,7 @@ bool address_parse(const char *text, int address_base, struct modbus_address *ou
 /* Parses the name of a data type: ours, or Kepware's except "Default". Returns false for other texts. */
 bool data_type_parse(const char *text, enum data_type *out);
 extern const char data_type_all[];               /* names of all data types, "bool, int16, ...", for error messages */
-const char *data_type_suggest(const char *text); /* Returns the name of a data type most similar to a wrong one, or NULL. */
+const char *data_type_suggest(const char *text); /* Returns the name of the data type most similar to a wrong name, or NULL. */
 const char *data_type_name(enum data_type type); /* Returns our name of a type, such as "int16" or "float32". */
 int data_type_registers(enum data_type type);    /* Returns the number of registers of a type: 1, 2 or 4. */
 bool byte_order_parse(const char *text, enum byte_order *out);

@@ -161,7 +161,7 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
             yaml_error(reader, yaml_map_place(map, belongs[i].key), "%s: has no meaning for %s", belongs[i].key, what);
 }
 
-/* Reports keys that a source of its kind (Modbus, MQTT and so on) requires but lacks. */
+/* Reports missing keys that the source's kind (Modbus, MQTT and so on) requires. */
 static void check_way(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_source *source)
 {
     bool has_hosts = yaml_map_good(map, "hosts"), has_host = yaml_map_good(map, "host");

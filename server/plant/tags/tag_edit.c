@@ -209,7 +209,7 @@ static const struct tag_edit *edit_of(const struct tag_text *list, const struct 
     return NULL;
 }
 
-/* Appends to the header line the columns that the edits need and the tag list lacks. */
+/* Appends to the header line those columns that the edits need and the tag list lacks. */
 static void widen(struct tag_text *list, const struct tag_edit *edits, size_t count, struct text *out)
 {
     bool needed[EDIT_COLUMNS] = { 0 };

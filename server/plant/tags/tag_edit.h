@@ -14,7 +14,7 @@ struct tag_edit {
     const char *node, *place;  /* new texts; NULL: cleared */
     /* new position in the coordinate frame that the asset's settings name, written to the millimetre; NaN: the cells are emptied */
     double position_m[3];
-    bool place_only;           /* true: only empties the cell `Place`, which says that the place is assumed */
+    bool place_only;           /* true: only empties the cell `Place`, which marks the place as assumed */
 };
 
 struct tag_line {         /* line that differs between two versions of the tag list */
@@ -23,7 +23,7 @@ struct tag_line {         /* line that differs between two versions of the tag l
 };
 struct tag_lines { /* zero-initialise */
     struct tag_line *at;
-    size_t count, capacity, more; /* more: number of differing lines that did not fit into the list (TAG_LINES) */
+    size_t count, capacity, more; /* more: number of differing lines beyond the limit of the list (TAG_LINES) */
 };
 enum { TAG_LINES = 200 };
 

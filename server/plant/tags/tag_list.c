@@ -107,7 +107,7 @@ static void read_place(struct tag_list *list)
 
 /* --- unit, limits, timing --------------------------------------------------------------------------------------------------- */
 
-/* Reports the reason why the unit of a row cannot be converted to the unit of its group. */
+/* Reports why the unit of a row cannot be converted to the unit of its group. */
 static void report_unit(struct tag_list *list, enum unit_match match, const char *text)
 {
     static const char otherwise[] = "'units: as-written' in the group switches the conversion off";

@@ -27,12 +27,12 @@ enum { UNIT_NAME_BYTES = 16 };
 /* Finds a known unit whose name is similar to a mistyped one. Returns false if no name is similar. */
 bool unit_suggest(const char *name, char near[UNIT_NAME_BYTES]);
 
-/* Converts a value from the first to the second unit that units_compare() compared. */
+/* Converts a value from the first to the second unit of the units_compare() call. */
 static inline double unit_change_value(const struct unit_change *change, double from)
 {
     return change->converts ? from * change->factor + change->offset : from;
 }
-/* Converts a value back, from the second to the first unit that units_compare() compared. */
+/* Converts a value back, from the second to the first unit of the units_compare() call. */
 static inline double unit_change_back(const struct unit_change *change, double to)
 {
     return change->converts ? (to - change->offset) / change->factor : to;

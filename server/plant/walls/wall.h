@@ -71,7 +71,7 @@ struct day_span {
     int from_min, to_min;
 };
 
-/* One picture that spans the first columns * rows displays of a wall; the displays count row by row. */
+/* One picture that spans the first columns * rows displays of a wall, which are numbered row by row. */
 struct wall_tile {
     int columns, rows;     /* number of displays horizontally and vertically; 0: the wall has no picture across displays */
     double bezel_mm[2];    /* millimetres between the picture areas of two neighbouring displays: horizontally, vertically */
@@ -82,7 +82,7 @@ struct wall {
     char *id;
     double inches, metres; /* diagonal of each display in inches, and viewing distance in metres */
     struct wall_tile tile;
-    struct day_span dim;           /* time of day while the displays are dimmed; equal ends: they are never dimmed */
+    struct day_span dim;           /* daily time span in which the displays are dimmed; equal ends: they are never dimmed */
     double dim_percent;            /* brightness in percent while dimmed */
     struct wall_display *displays; /* all displays of the wall; those of `tile` come first, each with a single pane `main` */
     size_t display_count;

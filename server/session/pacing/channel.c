@@ -12,8 +12,7 @@ static const int64_t RTT_WINDOW_NS =
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
 /* lower limit of a measured transfer time; a faster transfer only shows that bandwidth is plentiful */
 static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4;
-/* longest time from the acknowledgement of a frame to the start of decoding the next one for which that next frame counts as
-   having waited for the decoder */
+/* a frame counts as having waited for the decoder if its decoding started within this time after the acknowledgement of the frame before */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
 /* size in bytes of a frame below which its measurement may only raise the bandwidth estimate, not lower it */
 static const size_t SMALL_BYTES = 4096;

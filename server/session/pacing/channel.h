@@ -28,7 +28,7 @@ struct channel { /* estimate for the connection to one client; zero-initialise; 
 };
 
 struct channel_ack {
-    size_t bytes;    /* bytes of this frame and of the earlier frames that the acknowledgement covers */
+    size_t bytes;    /* bytes of this frame and of the earlier frames covered by the acknowledgement */
     int64_t sent_ns; /* monotonic time when the first of the acknowledged frames was sent */
     int64_t now_ns;
     int64_t decode_ns; /* decoding time as reported by the client; negative: not reported */
@@ -36,7 +36,7 @@ struct channel_ack {
 
 /* Updates the channel estimate with an acknowledgement of the client. */
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack);
-/* Updates the bandwidth estimate from messages other than frames: `bytes` bytes had arrived after took_ns. */
+/* Updates the bandwidth estimate from messages other than frames: `bytes` bytes arrived within took_ns. */
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns);
 /* Updates the round-trip estimate with one measurement. */
 void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);

@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 
-/* size of a JPEG frame in bytes per pixel (196 kB at 1920x1080, quality 78), and number of frames per second */
+/* bytes per pixel of a JPEG frame (196 kB at 1920x1080, quality 78), and frames per second */
 static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;
 /* measured bandwidth as a multiple of what JPEG needs: above PLENTY a switch to JPEG is allowed, below SCARCE the codec returns to H.264 */
 static const double PLENTY = 4, SCARCE = 2;

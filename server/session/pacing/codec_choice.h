@@ -22,7 +22,7 @@ struct codec_choice { /* zero-initialise, which chooses H.264 */
 void codec_choice_update(struct codec_choice *choice, const struct codec_facts *facts, int64_t now_ns);
 
 struct cpu_meter {       /* reads the processors' load from /proc/stat; zero-initialise */
-    uint64_t busy, idle; /* counters of /proc/stat, in clock ticks, at the previous call */
+    uint64_t busy, idle; /* counters of /proc/stat at the previous call, in clock ticks */
 };
 /* Returns the idle share of the machine's processor time since the last call; 1 at the first call, and if it is unknown. stat: the text
    of /proc/stat. */

@@ -27,13 +27,13 @@ struct pacer_flight {
     struct pacer_note note;
 };
 
-struct pacer {                              /* limits the frames that are under way to one client; initialise with pacer_init() */
+struct pacer {                              /* limits the frames under way to one client; initialise with pacer_init() */
     int asked;                              /* number of frames requested and not sent yet */
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
     bool cut;                  /* true: the newest frame was cut short, and the end of its WebSocket message must still be written */
-    int64_t moved_on_ns;       /* monotonic: when the client last acknowledged a frame, or its socket last accepted bytes */
+    int64_t moved_on_ns;       /* monotonic time of the client's last acknowledgement, or when its socket last accepted bytes */
     struct pacer_flight acked; /* the newest frame that the client has acknowledged */
     struct channel channel;
     struct quality_ladder ladder;

@@ -10,7 +10,7 @@ static const int64_t SLOW_NS = 80 * NS_PER_MS;
 static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
 static const int64_t LASTED_NS = 5 * NS_PER_S; /* time without a step down after which the last step up counts as successful */
-/* minimum time between two steps down: the measured lag falls only some frames after a step */
+/* minimum time between two steps down, because the measured lag falls only some frames after a step */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 /* decoding time of a frame above which the client cannot keep up with 25 frames a second */
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS;
@@ -167,7 +167,7 @@ void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int6
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns)
 {
     double unit = (double)bytes / steps[step].bytes;
-    /* the first frame's real size replaces the guess that was made from its number of pixels */
+    /* the first frame's real size replaces the guess made from its number of pixels */
     ladder->unit_bytes = ladder->known ? ladder->unit_bytes + SAMPLE_WEIGHT * (unit - ladder->unit_bytes) : unit;
     if (channel->ns_per_byte > 0) {
         follow_network(ladder, channel, now_ns);

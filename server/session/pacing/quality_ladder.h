@@ -16,15 +16,15 @@ struct rung {
 };
 
 struct quality_ladder { /* chooses the quality and size of one client's frames; initialise with quality_ladder_init() */
-    int step;           /* index of the quality step, 0: best; chosen by the bandwidth */
-    int size;           /* index of the picture size, 0: full; chosen by the client's decoding time or by the server's rendering time */
+    int step;           /* index of the quality step, 0: best; depends on the bandwidth */
+    int size;           /* index of the picture size, 0: full; depends on the client's decoding time and the server's rendering time */
     double unit_bytes;  /* estimated size in bytes of a frame of the best quality (step 0), smoothed */
-    bool reprojects;    /* true: the client shows its newest picture from the present camera, so fewer and better frames suffice */
+    bool reprojects;    /* true: the client reprojects its newest picture to the present camera, so fewer and better frames suffice */
     bool known;         /* true: at least one frame was acknowledged, so unit_bytes is measured */
     /* monotonic times since which these conditions have held: the network can carry a better step; client and server can handle
        a larger picture; decoding takes too long. 0: the condition does not hold now */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
-    int64_t up_ns, down_ns; /* monotonic times when the ladder last stepped up, and last stepped down */
+    int64_t up_ns, down_ns; /* monotonic times of the ladder's last step up and last step down */
     int64_t patience_ns;    /* delay in nanoseconds before the ladder may step up again */
 };
 
@@ -35,9 +35,9 @@ void quality_ladder_begin(struct quality_ladder *ladder, const struct channel *c
 /* Returns the quality and scale of a step, at the ladder's own picture size. */
 struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
 /* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the best step that
-   at least three quarters of the viewers can receive, or a worse one if sending that step's frames to all would occupy the
-   event loop. counts: number of viewers at each step. seen: ladder of the session whose view the viewers see. Returns a
-   negative number if there are too few viewers to share a step. */
+   at least three quarters of the viewers can receive. The step is worse if sending its frames to all would occupy the event
+   loop. counts: number of viewers at each step. seen: ladder of the session whose view the viewers see. Returns a negative
+   number if there are too few viewers to share a step. */
 int quality_ladder_common(const struct quality_ladder *seen, const int counts[QUALITY_LADDER_STEPS]);
 /* Returns the step for this client: the common one, or the client's own step if that is much worse. common negative: the
    client's own step. */

@@ -54,7 +54,7 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
     double scale = fmin(1, fmin(VIEW_MAX_SIDE_PX / side, sqrt((double)most_px / (width * height))));
     *layout = tile_layout_scale(&full, scale);
     while (scale > 0.01 && (tile_layout_width(layout) > VIEW_MAX_SIDE_PX || tile_layout_height(layout) > VIEW_MAX_SIDE_PX ||
-                            /* shrinks again if needed: rounding sizes to whole pixels may make the picture exceed the limit */
+                            /* shrinks again if needed, because rounding to whole pixels may make the picture exceed the limit */
                             (int64_t)tile_layout_width(layout) * tile_layout_height(layout) > most_px))
         *layout = tile_layout_scale(&full, scale *= 0.99);
 }

@@ -41,7 +41,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    /* requests a picture even if its content is the same: the burn-in shift makes the tile show other pixels */
+    /* requests a picture even if its content is the same, because the burn-in shift makes the tile show other pixels */
     session->demand.data = true;
 }
 

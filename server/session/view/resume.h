@@ -34,7 +34,7 @@ bool resumes_find(const struct resumes *resumes, const char *secret, const struc
 bool resumes_has_live(const struct resumes *resumes, uint64_t number);
 /* Drops the views of all lost connections, so that no lost client can resume. Secrets of open connections stay valid. */
 void resumes_forget_gone(struct resumes *resumes);
-/* Removes the entry of a secret, which cannot be used any more. */
+/* Removes the entry of a secret, which becomes invalid. */
 void resumes_forget(struct resumes *resumes, const char *secret);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes a session show another session's view. Its own camera, parameters and size are kept meanwhile. */
+/* Makes a session show another session's view, and keeps the session's own camera, parameters and size meanwhile. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -35,7 +35,7 @@ void session_leader_gone(struct session *session, int64_t now_ns)
     uint64_t called = session->following.leader->identity.number;
     session->following.own_view = session->view;
     session_inherit(session, session->following.leader);
-    view_set_trial(&session->view, 0); /* stops using the leader's trial sensor positions, which were freed with the leader's session */
+    view_set_trial(&session->view, 0); /* stops using the leader's trial sensor positions: they were freed with the leader's session */
     session_follow(session, NULL, now_ns);
     session->following.left = called;
 }
@@ -56,7 +56,7 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 
 void session_ask_lead(struct session *session, const struct message *message)
 {
-    if (!session_is_tile(session)) /* the positions of a wall's displays decide which tile leads, so the message is ignored for tiles */
+    if (!session_is_tile(session)) /* ignored for tiles: the positions of a wall's displays decide which tile leads */
         session->following.heir_wanted = message->follow;
 }
 

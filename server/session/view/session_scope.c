@@ -70,7 +70,7 @@ bool session_look(struct session *session, const char *id, struct view *view, st
     return true;
 }
 
-/* Returns the id of the first view that the token allows and the plant file has; NULL: none. */
+/* Returns the id of the plant file's first view that the token allows; NULL: none. */
 static const char *first_view(const struct session *session)
 {
     const struct plant *plant = session->context->plant;

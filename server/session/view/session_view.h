@@ -4,11 +4,11 @@
 #define SESSION_VIEW_SESSION_VIEW_H
 #include "session/session_state.h"
 
-/* Returns the view that the session is shown: its own or its leader's. */
+/* Returns the view that the session shows: its own or its leader's. */
 const struct view *session_view(const struct session *session);
 /* Returns the view to draw: session_view(), without the leader's trial sensor positions. */
 struct view session_shown(const struct session *session);
-/* Returns the readings that the session is shown: of the present, or of an instant. */
+/* Returns the readings that the session shows: of the present, or of an instant. */
 const struct snapshot *session_snapshot(const struct session *session);
 /* Applies the parameters of a message to a view. If a parameter is wrong, returns false with *error and leaves the view unchanged. */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);

@@ -106,7 +106,7 @@ static json_t *decode_body(const char *token, size_t count)
     size_t length = begin ? count - (size_t)(begin + 1 - token) : 0;
     uint8_t *bytes = mem_array(length + 4, 1);
     int got = length ? EVP_DecodeBlock(bytes, (const uint8_t *)begin + 1, (int)length) : -1;
-    while (got > 0 && bytes[got - 1] == 0) /* strips the zero bytes that the padding of base64 decodes to */
+    while (got > 0 && bytes[got - 1] == 0) /* strips the zero bytes that result from the padding of base64 */
         got--;
     json_t *body = got > 0 ? json_loadb((const char *)bytes, (size_t)got, 0, NULL) : NULL;
     mem_free(bytes);
