@@ -81,7 +81,7 @@ static uint64_t hash_part(uint64_t content, const struct frame_part *part)
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 {
     struct frame *frame = mem_new(sizeof(*frame));
-    /* copies the members from `view` on; the ones before it hold the reference count, which other threads may change meanwhile */
+    /* copies the members from `view` on; the reference count before them may be changed by other threads meanwhile */
     size_t plain = offsetof(struct frame, view);
     assert(part->x_px >= 0 && part->y_px >= 0 && part->x_px + part->width_px <= whole->width_px &&
            part->y_px + part->height_px <= whole->height_px);

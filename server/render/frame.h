@@ -58,7 +58,7 @@ struct frame {
     int64_t data_utc_ns;   /* UTC time in nanoseconds of the snapshot of readings that the frame shows */
     bool clock_unset;      /* true: the clock that gave data_utc_ns was not synchronised */
     int64_t oldest_age_ns; /* age in nanoseconds of the oldest reading that the frame uses; INT64_MAX: it uses none */
-    /* largest error, in engineering units and rounded up, of values in areas that the frame marks as uncertain; 0: no area is marked */
+    /* largest error of values in areas marked as uncertain, in engineering units, rounded up; 0: no area is marked */
     double drawn_error;
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
     /* time that the render thread spent on this frame, waiting for the GPU included; 0: not drawn by a render thread */
@@ -74,8 +74,8 @@ struct frame {
     int triangles;
 };
 
-/* Fills in values and qualities of the markers from the snapshot that the frame was drawn from, and removes markers behind the eye. Call
-   this before other threads see the frame. baselines: for differences; NULL: there are none. */
+/* Fills in values and qualities of the markers from the snapshot used to draw the frame, and removes markers behind the eye.
+   Call this before other threads see the frame. baselines: for differences; NULL: there are none. */
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
 /* Returns NULL when out of memory; the caller owns the frame (frame_unref). pool: pool of pixel buffers; NULL: none */
 struct frame *frame_create(struct frame_pool *pool, int width_px, int height_px);

@@ -36,9 +36,9 @@ struct frame_context {
 const struct model_level *frame_level(const struct frame_context *context, int asset);
 /* Returns whether view->selected_asset is among the visible assets. */
 bool frame_shows_selected(const struct frame_context *context);
-/* Returns the number of triangles of the planned levels of detail of all visible assets. */
+/* Returns the number of triangles in the planned levels of detail of all visible assets. */
 int frame_triangles(const struct frame_context *context);
-/* Returns the age of the oldest reading that the fields of the visible assets use; INT64_MAX: none. */
+/* Returns the age of the oldest reading used by the fields of the visible assets; INT64_MAX: none. */
 int64_t frame_oldest_age_ns(const struct frame_context *context);
 /* Returns how far previews move surfaces towards the sun to avoid shadow acne, in depth units of the shadow map. */
 double frame_sun_slack(const struct frame_context *context);

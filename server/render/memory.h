@@ -15,7 +15,7 @@ enum render_store {
 };
 extern const char *const render_store_names[RENDER_STORES];
 
-/* Writes the number of bytes that each cache takes now into `out`, indexed by enum render_store. */
+/* Writes the current size of each cache in bytes into `out`, indexed by enum render_store. */
 void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_STORES]);
 /* Sets the memory limit for all caches; geometry (models) is not limited. The frame being drawn may exceed the limit. Call between
    frames. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interface of a render backend: GL or software. On machines without a GPU, renderer.c asks the software backend first; GL
-   draws the frames that the software backend cannot. Thread: the one that owns the GL context. */
+   draws the frames that the software backend cannot draw. Thread: the one that owns the GL context. */
 #ifndef RENDER_RENDER_BACKEND_H
 #define RENDER_RENDER_BACKEND_H
 #include <stdbool.h>
@@ -13,8 +13,7 @@ struct renderer;
 
 struct render_backend {
     const char *name;
-    /* true: the backend reads fields from GPU memory, so a render job copies them in GPU memory; false: the job copies them in main
-       memory */
+    /* true: the backend reads fields from GPU memory, so render jobs copy fields there; false: they copy fields in main memory */
     bool draws_from_gpu;
     /* Creates the resources that the backend needs for its first frame; later calls do nothing. Returns false on failure, logged. */
     bool (*init)(struct renderer *renderer);

@@ -31,7 +31,7 @@ struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *
 /* Begins a job that draws the frame in steps; other frames can be drawn in between. The job copies everything it needs from the
    plan. Any number of jobs may be in progress. renderer_end() or renderer_abandon() frees the job. NULL on failure, logged. */
 struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan);
-/* Returns whether a frame with the same view and other readings will be quick (renderer_is_quick) once this job has ended. */
+/* Returns whether a frame of the same view with other readings will be quick (renderer_is_quick) once this job has ended. */
 bool renderer_keeps(const struct render_job *job);
 /* Draws at least one step of the job's frame, and more steps for about budget_ns. Returns true when only renderer_end() is left to call. */
 bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns);

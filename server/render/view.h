@@ -13,13 +13,13 @@
 #include "scene/visibility.h"
 
 enum look {
-    /* colours of the field, whose CIELAB L* shading changes by up to 7; PBR (physically based shading) for assets without a field */
+    /* field colours, in which shading changes CIELAB L* by up to 7; PBR (physically based shading) for assets without a field */
     LOOK_DEFAULT,
     /* PBR with the field as albedo (Fig. 13 of Kim & Suh, Electronics 2025, 14(15), 2938); labelled in the picture, since shading changes
        the colours */
     LOOK_GLOSSY,
     LOOK_FLAT,     /* no shading */
-    LOOK_MATERIALS /* the view shows no field, but all assets in full colour with the materials of their models */
+    LOOK_MATERIALS /* no field; all assets in full colour with the materials of their models */
 };
 /* how sensor directions are drawn, in groups that have directions */
 enum directions_look { DIRECTIONS_ARROWS, DIRECTIONS_STROKES, DIRECTIONS_NONE };
@@ -28,7 +28,7 @@ enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
 enum { VIEW_LINES = PLANT_ISOLINES };
-struct color_scale { /* settings of a view's scale besides colour map, range and colour step. All zero: the defaults */
+struct color_scale { /* settings of a view's scale other than colour map, range and colour step. All zero: the defaults */
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending values that separate bands of uniform colour; used instead of a continuous ramp */
     int break_count;
@@ -37,7 +37,7 @@ struct color_scale { /* settings of a view's scale besides colour map, range and
 };
 
 enum { VIEW_SPLIT_LEAST_PX = 64 };
-struct split_half { /* content of the right half of a split view; members have the names and meanings of those in struct view */
+struct split_half { /* content of the right half of a split view; members are the same as in struct view */
     struct field_params field;
     int colormap;
     double ramp_interval, range_min, range_max;
@@ -91,7 +91,7 @@ void view_scale(const struct plant *plant, const struct view *view, struct scale
    Returns the number of lines. */
 enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
-/* Copies half 0 (all of a view that is not split) or half 1 into `out` as a view of its own. */
+/* Copies half 0 (the whole of an unsplit view) or half 1 into `out` as a view of its own. */
 void view_half(const struct view *view, int half, struct view *out);
 /* Sets the instant that the view shows; 0: now. slot: index of the instant's snapshot in the cache of historical snapshots
    (value/snapshot_cache.h); 0: now, or not loaded yet. The slot is stored in the field parameters of both halves: call this again after
@@ -102,7 +102,7 @@ void view_set_instant(struct view *view, int64_t at_us, int slot);
 void view_set_trial(struct view *view, uint32_t trial);
 /* returns the width of the left half in pixels, which is the x coordinate of the right half */
 int view_left_px(const struct view *view);
-/* Splits the view into two halves. right: a view that is not split, for example one from view_half(); the right half shows its content. */
+/* Splits the view into two halves. right: an unsplit view, for example from view_half(); the right half shows its content. */
 void view_split(struct view *view, const struct view *right);
 /* Returns whether both views show the same picture; ignores sequence numbers and input time. A new member that changes the picture must be
    compared here. */

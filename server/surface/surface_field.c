@@ -196,9 +196,9 @@ static struct edge_window sight_of(double ab, double to_a, double to_b)
     return (struct edge_window){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
-/* Returns the smaller one of best2 and the squared length of the straight path from the source through the edge to the point. da, db:
-   distances of the edge's ends from the source, which is placed beyond the edge to fit both. Ignores a path that does not pass through the
-   edge. */
+/* Returns the smaller of best2 and the squared length of the straight path from the source through the edge to the point. da,
+   db: distances of the edge's ends from the source, which is placed beyond the edge to fit both. Ignores a path that does not
+   pass through the edge. */
 SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;

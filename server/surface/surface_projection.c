@@ -6,7 +6,7 @@
 #include "base/math/vec.h"
 #include "surface/surface_impl.h"
 
-#define SPOT_ON_SURFACE 1e-3 /* distance from a triangle below which a point counts as lying on it, in multiples of the mean edge length */
+#define SPOT_ON_SURFACE 1e-3 /* a point counts as lying on a triangle below this distance, in multiples of the mean edge length */
 /* A model triangle has pieces: the surface's triangles that lie in it. The search for the nearest piece ends when one is found within this
    distance of the point, in multiples of the mean edge length. */
 #define ON_PIECE 1e-5

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serialises a surface to bytes and back. Loading a stored surface takes a fiftieth of the time of building it. Thread: any. */
+/* Serialises a surface to bytes and back. Loading a stored surface is fifty times as fast as building it. Thread: any. */
 #ifndef SURFACE_SURFACE_STORE_H
 #define SURFACE_SURFACE_STORE_H
 #include "base/files/pack.h"
@@ -11,7 +11,7 @@ void surface_pack(const struct surface *surface, struct text *to);
    destroys it. */
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
-/* first bytes of the file in which plantcast-prep stores a surface; the file contains nothing else (base/files/cache_file.h) */
+/* first bytes of a file in which plantcast-prep stores a surface and nothing else (base/files/cache_file.h) */
 #define SURFACE_MAGIC "PLCSURF3"
 
 #endif

@@ -46,8 +46,9 @@ bool alarm_status_is_cleared(enum alarm_status status);
 /* Returns the priority of a tag's alarm of this kind, from 1 (most urgent) to ALARM_PRIORITIES. */
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind);
 
-/* Sort key of the alarms of one tag; the first alarm in this order is shown for the tag. Active alarms come before alarms whose cause is
-   gone. Of these, the more urgent priority comes first, then the outer limit (HH before H), then the unacknowledged alarm. */
+/* Sort key of the alarms of one tag; the tag shows the alarm that comes first. Active alarms come before alarms whose cause is
+   gone. Among these, the more urgent priority comes first, then the outer limit (HH before H), then the unacknowledged alarm.
+   */
 struct alarm_grade {
     int priority;
     enum alarm_kind kind;

@@ -90,7 +90,7 @@ static bool beyond(double raw, double a, double b)
     return raw < fmin(a, b) || raw > fmax(a, b);
 }
 
-/* Returns true if a published number is the unsigned or the signed integer of 16, 32 or 64 bits that has these bits. */
+/* Returns true if a published number has these bits as an unsigned or signed integer of 16, 32 or 64 bits. */
 static bool has_bits(double raw, uint64_t bits)
 {
     int64_t number = bits <= UINT16_MAX ? (int16_t)bits : bits <= UINT32_MAX ? (int32_t)bits : (int64_t)bits;
@@ -154,10 +154,10 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Decodes a numeric value: scaling, unit and quality. raw: the number that the device sent; bits: as for is_sentinel(). */
+/* Decodes a numeric value: scaling, unit and quality. raw: the number that the device sent; bits: as in is_sentinel(). */
 static void decode_analog(const struct tag_scale *scale, const uint64_t *bits, double raw, struct sample *out)
 {
-    /* recognises special values, which report a failure, before scaling: a scaled one would look like a measurement */
+    /* recognises special values, which report a failure, before scaling: once scaled, they would look like measurements */
     if (!isfinite(raw) || is_sentinel(scale, bits, raw)) {
         fail(out);
         return;

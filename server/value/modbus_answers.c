@@ -89,8 +89,8 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    /* the device has answered this block (tags read by one request) before, so one further request decides whether the block is split in
-       two */
+    /* the device has answered requests for this block (tags read by one request) before, so one more request decides whether
+       the block is split in two */
     if (block->answered) {
         block->answered = false;
         block->due_ns = now_ns;

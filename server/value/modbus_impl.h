@@ -52,7 +52,7 @@ struct modbus_source {
     struct modbus_link *link;
     /* --- below: used by the source's thread only */
     struct read_plan plan;
-    /* true: blocks (requests) of the read plan were split, because the device refused some addresses or did not answer for them */
+    /* true: the read plan has split blocks (requests), because the device refused some addresses or did not answer requests for them */
     bool plan_cut;
     struct modbus_unit *units;
     struct backoff backoff; /* backoff of connection attempts */
@@ -63,7 +63,7 @@ struct modbus_source {
     int fallen; /* number of units that have stopped answering since the last answer of any unit */
     struct modbus_manners manners;
     struct log_pace pace;      /* rate limit of the log line that says that the source has no readings */
-    bool loss_said;            /* true: the log says that the source has no readings, and does not yet say that they are back */
+    bool loss_said;            /* true: the log says that the source has no readings, but not yet that they are back */
     struct log_pace unit_pace; /* rate limit of the log line about answers from a unit other than the one requested */
     bool *refused;             /* by index in plant->tags: true if the device refuses to read this tag */
     struct sample *samples;    /* buffer for samples on their way to the store, with room for one sample of each tag */
@@ -75,7 +75,7 @@ enum { GATEWAY_UNITS = 3 };
 
 /* Returns the Modbus unit (slave address) that a block of the read plan belongs to. */
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
-/* Records that a unit answered. Logs this if the log said before that the unit does not answer. */
+/* Records that a unit answered. Logs this if the last log line said that the unit does not answer. */
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
 /* Records that a unit does not answer. The readings of its tags are lost (store_tags_lost()), and the unit gets no request
    before a backoff delay has passed. If GATEWAY_UNITS units have now failed without an answer in between, the readings of all
@@ -91,7 +91,7 @@ void modbus_manners_init(struct modbus_source *modbus);
 void modbus_manners_before(struct modbus_source *modbus, const struct modbus_unit *unit);
 /* Closes the connection after an answer, if the device accepts only one request per connection. */
 void modbus_manners_after(struct modbus_source *modbus);
-/* Learns from an answer how the device handles connections, for example how long it takes for the first one. */
+/* Learns from an answer how the device handles connections, for example how long its first answer takes. */
 void modbus_manners_answered(struct modbus_source *modbus, const struct read_plan_block *block);
 /* Logs, after a failed read, that the device answers later than timeout_ms. */
 void modbus_manners_late(struct modbus_source *modbus);
@@ -117,7 +117,7 @@ bool modbus_is_gateway_exception(int code);
 void modbus_take_exception(struct modbus_source *modbus, size_t block, int code, int64_t now_ns);
 /* Records that the device refuses a block's tags, or answers them again, and logs a change. Returns true if this changed for any tag. */
 bool modbus_note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why);
-/* Returns the delay in nanoseconds before an address that was refused `before` consecutive times is requested again. */
+/* Returns the delay in nanoseconds before the next request for an address that was refused `before` consecutive times. */
 int64_t modbus_refused_pause_ns(int before);
 /* Rebuilds the read plan, including the addresses that the device has refused, because the device may have been repaired or replaced. */
 void modbus_replan(struct modbus_source *modbus);

@@ -28,7 +28,7 @@ enum {
        if late answers come even then, the line counts as cleared after this time without an answer. */
     LATEST_TIMEOUTS = 10,
     QUIET_TIMEOUTS = 5,
-    DRAINED_ANSWERS = 10, /* when this many stray answers have been discarded, the line counts as noisy */
+    DRAINED_ANSWERS = 10, /* number of discarded stray answers from which the line counts as noisy */
 };
 
 struct modbus_link {
@@ -273,8 +273,8 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    /* checks stop_fd a second time: modbus_link_interrupt() may have been called before the socket was in its reserved descriptor, and
-       then could not end this connection */
+    /* checks stop_fd a second time: a call of modbus_link_interrupt() before the socket was in its reserved descriptor could
+       not end this connection */
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;

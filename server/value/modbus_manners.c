@@ -19,8 +19,8 @@ static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
 static const int64_t TOLERANCE_NS = 2 * NS_PER_S;
 /* time limit for the first answer on a connection if the previous connection had no answer at all; doubled after more such connections */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
-/* first delay that is tried between connecting and the first request. Used for RTU over TCP, whose frames have no transaction numbers,
-   so that requests must not be repeated */
+/* first delay to try between connecting and the first request. For RTU over TCP, whose frames have no transaction numbers, so
+   that requests must not be repeated */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
 /* time limit for the answer of a unit (slave address) that is up, if another unit behind the same gateway has just timed out */
 static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
@@ -85,7 +85,7 @@ static void learn_start(struct modbus_source *modbus)
     bool known = manners->first_wait_ns > 0, repeated = answered_ns - sent_ns < timeout_ns / 2;
     char found[200];
     if (answered_ns - manners->connect_delay_ns < timeout_ns) {
-        manners->first_wait_ns = 0; /* the answer was not late after all: the device was slow for another reason before */
+        manners->first_wait_ns = 0; /* the answer was not late after all: an earlier delay had another reason */
         return;
     }
     if (answered_ns > manners->first_wait_ns / 2)

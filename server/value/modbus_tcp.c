@@ -74,7 +74,7 @@ static int receive_all(int fd, int stop_fd, int64_t deadline_ns, uint8_t *bytes,
     return 0;
 }
 
-/* Returns the number of bytes that the values in the response to a request must have. */
+/* Returns the number of bytes that the values in the response to a request must take. */
 static int value_bytes(const struct modbus_question *question)
 {
     return is_bits(question->table) ? (question->count + 7) / 8 : 2 * question->count;

@@ -17,7 +17,7 @@ struct read_plan_block {
     int scan_ms;
     int first, count;            /* registers or bits */
     size_t first_tag, tag_count; /* index of the first tag in read_plan.tags, and number of tags */
-    /* monotonic time when the block is read next. modbus.c sets it; 0 in a new plan; read_plan_split() copies it */
+    /* monotonic time of the block's next read. modbus.c sets it; 0 in a new plan; read_plan_split() copies it */
     int64_t due_ns;
     /* modbus.c sets the following members, too. They are 0 in a new plan, and read_plan_split() copies them. */
     int busy_count; /* number of consecutive responses in which the device reports that it is busy */

@@ -9,7 +9,7 @@ struct reading {
     double value;     /* value in engineering units; never NaN unless the quality is Bad */
     uint32_t quality; /* OPC UA status code; takes the reading's age into account */
     uint32_t changes; /* counter that increases with each change of value, quality or alarm */
-    /* alarm: kind of the alarm that is shown for the tag (enum alarm_kind); alarm_status: its state (enum alarm_status) */
+    /* alarm: kind of the alarm shown for the tag (enum alarm_kind); alarm_status: its state (enum alarm_status) */
     uint8_t alarm, alarm_status;
     int64_t received_utc_ns; /* time when the value arrived (UTC); 0: no value ever arrived */
     int64_t age_ns;          /* age at the time of the snapshot, by the monotonic clock; INT64_MAX: no value was ever received */

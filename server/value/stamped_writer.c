@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects consecutive samples that state the same time, and writes them to the store together. */
+/* Collects consecutive samples with the same timestamp, and writes them to the store together. */
 #include "value/stamped_writer.h"
 
 #include <stdlib.h>
@@ -49,8 +49,8 @@ static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc
     return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
-/* Adds a sample to the batch, which has samples of one time only, at most as many as there are tags. If the sample does not fit, the
-   batch is written first. */
+/* Adds a sample to the batch, whose samples must all have the same time and cannot be more than there are tags. If the sample
+   does not fit, the batch is written first. */
 static void add_sample(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);

@@ -109,7 +109,7 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
-/* Returns true if a tag has the same unit in the old and the new plant. If not, the old reading is not taken over, because the source
+/* Returns true if a tag has the same unit in the old and the new plant. Otherwise the old reading is not taken over; the source
    will soon send a new one. */
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
 {
@@ -235,7 +235,7 @@ static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
     return flat && quality_is_good(held->quality) ? QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE : held->quality;
 }
 
-/* Returns Bad if the controller behind the tag's source has stopped, as the source's heartbeat tag shows; otherwise Good. */
+/* Returns Bad if the source's heartbeat tag shows that the controller behind the source has stopped; otherwise Good. */
 static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     int index = store->plant->tags[tag].source;
@@ -264,7 +264,7 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Returns the worst of three qualities: of the tag's own sample, of the heartbeat of its source, and of its quality tag. */
+/* Returns the worst quality of three: the tag's own sample, the heartbeat of its source, and its quality tag. */
 static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     uint32_t quality = own_quality(&store->tags[tag], now_mono_ns);

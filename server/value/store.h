@@ -57,7 +57,7 @@ void store_unlisten(struct store *store, store_listener *listener, void *arg);
 void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
 /* Writes samples that arrived at this time. If reading the device failed, call store_link_lost() or store_tags_lost() instead. */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
-/* a reading as the store of a core (daemon that reads the devices) shows it, for a daemon that gets its readings from that core */
+/* a reading as shown in the store of a core (daemon that reads the devices), for a daemon that gets its readings from that core */
 struct mirrored {
     int tag;
     uint32_t quality; /* quality that the core shows, which takes the reading's age into account */
@@ -75,8 +75,7 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
 /* Records that some tags cannot be read from now on, for example because one unit behind a gateway fails while others still answer. Their
    values and qualities change as after store_link_lost(). */
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
-/* Makes some tags Bad_CommunicationError immediately, even if their last values are recent, because these values may not be used any
- * more. */
+/* Makes some tags Bad_CommunicationError immediately, even if their last values are recent, because these values must no longer be used. */
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Records that a source can be read again. Each of its tags is usable again from its next sample on. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);

@@ -23,7 +23,7 @@ struct kept_list {
     char *path; /* path of the file; NULL: the list is not stored on disk */
     struct file_writer *writer;
     json_t *list;    /* entries as they are on disk, which clients are sent */
-    json_t *next;    /* entries as they will be after all changes that are queued for the disk; NULL: no change is queued */
+    json_t *next;    /* entries as they will be once all queued changes are written; NULL: no change is queued */
     uint64_t number; /* change counter of `list` */
     bool unreadable;
 };

@@ -21,7 +21,7 @@ static int64_t time_of(const json_t *note, const char *name)
     return json_integer_value(json_object_get(note, name));
 }
 
-/* Returns when a note ends or ended, UTC in microseconds; 0: it has no end and nobody has ended it. */
+/* Returns when a note ends or ended, UTC in microseconds; 0: it has no end, and no user has ended it. */
 static int64_t end_of(const json_t *note)
 {
     int64_t until_us = time_of(note, "until_us"), ended_us = time_of(note, "ended_us");
@@ -97,8 +97,8 @@ static void forget_oldest(json_t *list, int64_t now_us)
         }
 }
 
-/* Makes the id of a note from its time. If another note has that id already (made at the same time, or before the clock was set back),
-   takes the next free id. */
+/* Makes the id of a note from its time. If another note already has that id (made at the same time, or before the clock was set
+   back), takes the next free id. */
 static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
 {
     do

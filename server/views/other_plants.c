@@ -38,7 +38,7 @@ struct other {
     const struct other_plant *plant;
     struct http_request request; /* request for the picture; its `answer` receives the picture */
     char header[HEADER_BYTES];   /* header Plantcast-Frame of the answer */
-    /* times of the next request (due) and of the newest one (begun): monotonic (ns), by the clock of the plant (us) */
+    /* times of the next request (due) and of the newest one (begun); _ns: monotonic, _us: by the clock of the plant */
     int64_t due_ns, begun_ns, begun_us;
     bool running, failing;
     /* --- below: under `lock` */

@@ -12,7 +12,7 @@
 #include "views/kept_list.h"
 
 enum { FEWEST_ID_CHARS = 8 /* minimum length of an id: 40 bits, too many for an id to be found by trying */ };
-/* minimum time between two marks of a link as used: a day, because each change writes the file */
+/* minimum time between two updates of a link's last use: a day, because each change writes the file */
 static const int64_t USED_US = INT64_C(86400000000);
 
 /* At most BURST_LINKS new links may be made at once, and one per LINK_US on average. So one user can neither replace all links
@@ -62,8 +62,8 @@ static const char *member(const json_t *list, size_t at, const char *name)
     return json_string_value(json_object_get(json_array_get(list, at), name));
 }
 
-/* Writes the id of a view, made from its SHA-256, and returns its index in the list, or the list's length. If another view has that id
-   already, the id gets one more character. */
+/* Writes the id of a view, made from its SHA-256, and returns its index in the list, or the list's length. If another view
+   already has that id, the id gets one more character. */
 static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK_ID_BYTES])
 {
     static const char digits[] = "abcdefghijkmnpqrstuvwxyz23456789"; /* alphabet of ids: 32 characters that are easy to tell apart */

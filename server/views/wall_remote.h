@@ -37,7 +37,7 @@ const char *wall_place_wrong(const struct plant *plant, const struct wall_place 
 /* Carries out an order and queues the file (kept_list_put()). The pane must exist in the plant file. Returns REFUSAL_NONE, or why it
    failed. */
 enum refusal_code wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
-/* Shows in a pane the position at which a user points. position_m NULL: removes the pointer from the pane. */
+/* Shows in a pane the position to which a user points. position_m NULL: removes the pointer from the pane. */
 void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
                        const char *desk);
 /* Replaces all pointers with those of another daemon. pointed: the result of wall_remote_pointers_text() there. Returns false

@@ -8,7 +8,7 @@
 struct depth_query {
     GLuint program; /* program of shaders/depth_cells.comp, owned by the caller; zero-initialise all other members */
     GLuint buffer;
-    /* cells (squares of pixels with their depth) of the depth grid, which the GPU writes to memory that is mapped into this process */
+    /* cells (squares of pixels with their depth) of the depth grid; the GPU writes them to memory mapped into this process */
     const struct depth_cell *cells;
     size_t capacity;
     struct depth_lens lens;

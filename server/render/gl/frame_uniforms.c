@@ -8,7 +8,7 @@
 #include "render/light/sky.h"
 #include "render/matrix.h"
 
-/* Returns the period in pixels of the patterns that mark no data (hatch) and uncertain values (stipple). */
+/* Returns the period in pixels of the patterns for no data (hatch) and for uncertain values (stipple). */
 static double pattern_px(const struct view *view)
 {
     return fmax(PATTERN_LEAST_PX, view->height_px / (double)PATTERN_PERIODS);

@@ -19,7 +19,7 @@ struct gpu_scene {
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };
 
-/* Uploads all models. sky: the light under which the colour ramps of previews are computed. Returns false on failure, logged. */
+/* Uploads all models. sky: the light for computing the colour ramps of previews. Returns false on failure, logged. */
 bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene, const struct environment_light *sky);
 void gpu_scene_finish(struct gpu_scene *gpu_scene);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Occlusion culling: computes bounding boxes of assets, uploads them with the ranges of draw commands that they enable, and
+/* Occlusion culling: computes bounding boxes of assets, uploads each with the range of draw commands that its test enables, and
    runs the tests. */
 #include "render/gl/occlusion.h"
 
@@ -15,7 +15,7 @@ enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
    against the depth buffer. The first round draws 1/8 of all triangles untested; each later round draws as many as all rounds
    before. */
 enum { FIRST_ROUND_DIVISOR = 8 };
-/* minimum number of triangles of an asset whose bounding box is tested: drawing fewer triangles costs no more than the test */
+/* minimum number of triangles of an asset for its bounding box to be tested: drawing fewer triangles costs no more than the test */
 static const int MIN_TESTED_TRIANGLES = 200;
 /* margin around an asset's bounding box, as a fraction of the box's size, because positions are 32-bit floats */
 static const double MARGIN_PART = 1e-3;

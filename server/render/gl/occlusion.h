@@ -39,7 +39,7 @@ bool occlusion_begin(struct occlusion *occlusion, const struct frame_context *co
    eighth of all triangles, each later one but the last as many as all rounds before it. Pure. */
 enum { OCCLUSION_ROUNDS = 6 };
 size_t occlusion_round(const struct occlusion *occlusion, size_t first);
-/* Stores which range of draw commands the test of an asset's bounding box enables. */
+/* Stores the range of draw commands that the test of an asset's bounding box enables. */
 void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset *asset, size_t first_command, size_t count);
 /* Uploads the bounding boxes to the GPU. Returns false when the GPU is out of memory, logged. */
 bool occlusion_upload(struct occlusion *occlusion);

@@ -32,8 +32,7 @@ enum surface_program_kind {
 struct surface_pass {
     struct log *log;
     struct occlusion occlusion;
-    /* minimum number of triangles in a frame for occlusion culling; INT_MAX: no occlusion culling, clusters outside the frustum are still
-       culled */
+    /* minimum number of triangles in a frame for occlusion culling; INT_MAX: none, but clusters outside the frustum are still culled */
     int least_hiding;
     bool one_by_one; /* true: each asset is drawn with its own GL calls instead of in batches; for comparison in tests */
     struct draw_batches opaque, blended;

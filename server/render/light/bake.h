@@ -20,7 +20,7 @@ struct light_set {
     uint64_t id; /* unique, never reused; 0: empty */
     struct light_key key;
     double texture_from_plant[16]; /* matrix from plant coordinates to texture coordinates and depth of sun_map */
-    double texel_m, depth_m;       /* side of a texel of sun_map, and difference between the ends of its depth range, in metres */
+    double texel_m, depth_m;       /* side of a texel, and range of depths, of sun_map in metres */
     GLuint sun_map;
     GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness (visible part of the sky) */
     struct pool *pool;
@@ -50,7 +50,7 @@ double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibilit
    logged. */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from, struct openness *kept);
-/* Returns the key (sun, environment, visible assets) of the light set that is being baked. */
+/* Returns the key (sun, environment, visible assets) of the light set being baked. */
 const struct light_key *bake_key(const struct bake *bake);
 /* Issues GL calls for the next few milliseconds of the bake; the key's environment must be bound (render/light/environments.h). Returns
    true once all calls of the bake are issued. */

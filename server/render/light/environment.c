@@ -210,8 +210,8 @@ struct environment_job {
     const struct lobe *lobe; /* sample rays of the roughness layer; NULL for layer 0, a perfect mirror */
 };
 
-/* Returns the index of the texel whose computed light texel `i` copies: texels with equal light are computed once. In a sky that depends on
-   elevation only, the octahedral map repeats in eight equal triangles or, with y up, in two halves. */
+/* Returns the index of the texel from which texel `i` copies its light: texels with equal light are computed once. In a sky
+   that depends on elevation only, the octahedral map repeats in eight equal triangles or, with y up, in two halves. */
 static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);

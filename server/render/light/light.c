@@ -126,8 +126,8 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
-/* Returns a cached light set (baked light) whose openness (visible part of the sky) a new set for `key` can copy. NULL: the cache has
-   none. */
+/* Returns a cached light set (baked light) whose openness (visible part of the sky) can be copied for a new set for `key`.
+   NULL: the cache has none. */
 static const struct light_set *find_open(const struct light *light, const struct light_key *key)
 {
     double most = bake_least_open(light->gpu_scene, &key->shown);

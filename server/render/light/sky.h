@@ -18,8 +18,8 @@ struct sky {
 /* Compiles the shader programs and computes the colours of the backdrops. Returns false on failure, logged. */
 bool sky_init(struct sky *sky, struct log *log);
 void sky_finish(struct sky *sky);
-/* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted. The ground's shadow is
-   that of the whole plant. Pure. */
+/* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted. (The ground shows the
+   shadow of the whole plant, which would otherwise be wrong.) Pure. */
 bool sky_sees_ground(const struct frame_context *context, const struct light *light);
 /* Draws backdrop and ground shadow at all pixels that no surface covers. */
 void sky_draw(const struct sky *sky, const struct frame_context *context, const struct light *light);

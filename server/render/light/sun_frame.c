@@ -8,7 +8,7 @@
 #include "base/math/vec.h"
 #include "render/matrix.h"
 
-/* number of rotations around the sun's direction, within a quarter turn, that are tried to find the smallest frustum */
+/* number of rotations around the sun's direction, within a quarter turn, tried to find the smallest frustum */
 enum { TRIED_ANGLES = 32 };
 
 struct sun_extent {

@@ -12,7 +12,7 @@ struct crowd_item {
     bool held; /* true: the marker was drawn in the previous frame */
 };
 
-/* Sets drawn[i] to whether items[i] (a marker) is drawn. unit: size of one pixel at 1280x720. */
+/* Sets drawn[i] to true if items[i] (a marker) is to be drawn. unit: size of one pixel at 1280x720. */
 void crowd_thin(const struct crowd_item *items, size_t count, double unit, bool *drawn);
 
 #endif

@@ -7,7 +7,7 @@
 
 enum { MAX_TICKS = 40 };
 struct ticks {
-    double values[MAX_TICKS], places[MAX_TICKS]; /* positions of the ticks' texts along the bar: 0 at MIN, 1 at MAX */
+    double values[MAX_TICKS], places[MAX_TICKS]; /* positions of the tick labels along the bar: 0 at MIN, 1 at MAX */
     int count;
 };
 /* minimum distance between lines of text at the colour bar, as a multiple of the font size (text_px) */

@@ -351,7 +351,7 @@ static void draw_text(struct pen *pen, const struct legend *legend, double y, co
     pen_text(pen, legend->bar.x + legend->bar.width + 0.55 * pen->text_px, y + 0.92 * pen->text_px, text);
 }
 
-/* Draws the legend's arrow of the longest length, and the value that an arrow of this length shows. */
+/* Draws the longest arrow into the legend, together with the value that it represents. */
 static void draw_longest(struct pen *pen, const struct legend *legend, double y)
 {
     double left = legend->card.x + legend->pad, long_px = overlay_arrow_px(pen);

@@ -207,7 +207,7 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
            marker->y_px < area->height;
 }
 
-/* The labels to be placed: one item for every visible marker that no card (a box of the overlay such as the legend) covers. */
+/* The labels to be placed: one item for every visible marker outside all cards (boxes of the overlay, such as the legend). */
 struct marker_labels {
     struct label_item *items;
     struct label_text *texts;

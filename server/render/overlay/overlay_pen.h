@@ -33,7 +33,7 @@ struct pen {
 
 /* Selects the half of a split view in which the following calls draw. */
 void pen_choose_half(struct pen *pen, int half);
-/* Returns whether a box lies inside the pen's area and overlaps no box that is occupied already. */
+/* Returns whether a box lies inside the pen's area and overlaps no occupied box. */
 bool pen_is_free(const struct pen *pen, const struct label_box *box);
 /* Marks a box as occupied. */
 void pen_take(struct pen *pen, const struct label_box *box);
@@ -74,7 +74,7 @@ double overlay_bar_left(struct pen *pen);
 int overlay_strip_height(int width_px, int height_px);
 /* Writes the machine-readable legend strip over the lowest rows of the frame, if the frame is large enough. bgrx: the frame's pixels. */
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
-/* Draws the legend of the half of the view that the pen has selected. */
+/* Draws the legend of the pen's half of the view. */
 void overlay_legend(struct pen *pen);
 /* Returns whether both halves of a split view have equal legends. Afterwards the pen draws on the right half. */
 bool overlay_legend_is_shared(struct pen *pen);
@@ -90,7 +90,7 @@ bool overlay_unproven(const struct pen *pen, int tag);
 /* Draws an alarm ring. The colour shows the priority, the form the state: thick: unacknowledged; thin: acknowledged; hollow: returned to
    normal but not acknowledged. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
-/* Returns whether the half of the view that the pen has selected shows arrows. */
+/* Returns whether the pen's half of the view shows arrows. */
 bool overlay_has_arrows(const struct pen *pen);
 /* overlay_arrow_px returns the length of the longest arrow in pixels, overlay_arrow_value the value that this length represents. */
 double overlay_arrow_px(const struct pen *pen);
@@ -101,7 +101,7 @@ void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_
 bool overlay_is_unknown_direction(const struct frame_label *label);
 /* Draws the cross that marks an unknown direction. */
 void overlay_unknown_direction(struct pen *pen, double x, double y);
-/* Draws the arrows in the half of the view that the pen has selected. */
+/* Draws the arrows in the pen's half of the view. */
 void overlay_arrows(struct pen *pen);
 /* Draws markers, alarm rings and labels of the selected half. */
 void overlay_markers(struct pen *pen);

@@ -11,7 +11,7 @@ struct arrow_set {                  /* arrows of one asset; zero-initialise, fre
     struct direction *found;
     size_t count;
     double spacing_m; /* approximate distance in metres between neighbouring arrows if all are drawn */
-    float error_m;    /* error in metres of the level of detail on whose triangles the positions lie */
+    float error_m;    /* error in metres of the level of detail that the positions lie on */
     bool sought;      /* `places` has been computed */
     uint64_t content; /* hash of the sensor directions used to compute the directions in `found` */
 };
@@ -26,7 +26,7 @@ double arrows_value(const struct arrow_set *set, size_t place, const struct asse
 double arrows_value_at(const struct direction_place *at, const struct asset_view *file, const struct fields_entry *field);
 /* Writes the position with index `place` and the arrow's direction there, both in the plant frame. */
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3]);
-/* Transforms a position and a direction from the coordinates of the asset's file to the plant frame. */
+/* Transforms a position and a direction from the asset file's coordinates to the plant frame. */
 void arrows_place_at(const struct direction_place *at, const struct direction *to, const struct scene_asset *asset, double place_m[3],
                      double along[3]);
 void arrows_finish(struct arrow_set *set);

@@ -68,7 +68,7 @@ static bool is_apart(const struct isoline_search *search, double value, const do
 
 /* A piece of an edge. */
 struct edge_piece {
-    float ends_m[2][3]; /* positions of both ends of the piece of a triangle's edge, in coordinates of the asset file */
+    float ends_m[2][3]; /* positions of both ends of the piece of an edge, in coordinates of the asset file */
     double values[2];
 };
 
@@ -78,8 +78,9 @@ static void between_ends(const struct edge_piece *piece, double part, float out_
         out_m[c] = (float)((double)piece->ends_m[0][c] + part * ((double)piece->ends_m[1][c] - (double)piece->ends_m[0][c]));
 }
 
-/* Returns where on a piece of a triangle's edge the field has this value: 0 at the first end, 1 at the second. The value must lie between
-   the values at both ends. A field that is evaluated at pixels is not linear along the piece, so it is searched by bisection. */
+/* Returns where on a piece of a triangle's edge the field has this value: 0 at the first end, 1 at the second. The value must
+   lie between the values at both ends. A field that is evaluated at pixels is not linear along the piece, so the position is
+   found by bisection. */
 static double part_of_value(const struct isoline_search *search, const struct edge_piece *piece, double value)
 {
     double low = 0, high = 1;
@@ -266,8 +267,8 @@ static void collect_arrows(struct isolines *isolines, const struct frame_context
     const struct scene *scene = context->gpu_scene->scene;
     const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    /* a view with trial sensor positions shows no arrows: assets that the trial leaves unchanged would still show directions from before
-       the trial */
+    /* a view with trial sensor positions shows no arrows: assets not affected by the trial would still show directions from
+       before the trial */
     if (!isolines_has_arrows(scene, context->view))
         return;
     for (size_t i = 0; i < context->visible_count; i++) {

@@ -14,7 +14,8 @@ struct isoline_point {
     double value, place_m[3];
     double along[3]; /* direction of an arrow in the plant frame; zero: unknown */
     bool arrow, uncertain;
-    /* number of the stroke (short streamline) in this frame, from 1 up, equal for all of its points; 0: the point belongs to no stroke */
+    /* number of the stroke (short streamline) in this frame, from 1 up, the same for all of its points; 0: the point belongs to no
+       stroke */
     uint16_t stroke;
     float slack_m;   /* depth tolerance in metres: how far the point may lie behind the drawn surface */
 };

@@ -13,7 +13,7 @@
 
 #define STROKE_NONE UINT32_MAX
 enum { MAX_CROSSINGS = 64 };          /* maximum number of edges crossed within one step */
-/* length of a step when a stroke (short streamline) is traced, as a fraction of the distance between arrows */
+/* step length for tracing strokes (short streamlines), as a fraction of the distance between arrows */
 static const double STEP_PART = 0.35;
 /* smallest cosine between the directions of consecutive steps of a stroke (120 degrees): sharper turns are vortices too small to trace */
 static const double MIN_DOT = -0.5;

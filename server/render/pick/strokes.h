@@ -19,7 +19,7 @@ struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_
     int *lengths; /* number of points of each stroke (short streamline); 0: the direction at its start is unknown */
     size_t count;
     bool sought;
-    uint64_t content; /* hash of the sensor directions from which the strokes (short streamlines) were traced */
+    uint64_t content; /* hash of the sensor directions used to trace the strokes (short streamlines) */
 };
 
 /* Traces the asset's strokes (short streamlines) again if the directions of its arrows changed; `arrows` must be up to date. */

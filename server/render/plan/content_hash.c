@@ -28,7 +28,7 @@ static void add_color_scale(XXH3_state_t *state, const struct color_scale *color
     hash_bytes(state, color_scale->lines, (size_t)color_scale->line_count * sizeof(*color_scale->lines));
 }
 
-/* Hashes the visibility of all assets, even of those outside the view, because a hidden asset casts no shadow. */
+/* Hashes the visibility of all assets, including those outside the view, because hidden assets cast no shadow. */
 static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct visibility *visibility = &plan->view.visibility;
@@ -67,7 +67,7 @@ static void add_colors(XXH3_state_t *state, const struct view *view)
 {
     double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
     hash_bytes(state, numbers, sizeof(numbers));
-    /* the instant is hashed because a frame carries its time: equal pixels at two instants are two frames */
+    /* hashes the instant because a frame carries its time: frames of two instants differ even if their pixels are equal */
     hash_bytes(state, &view->at_us, sizeof(view->at_us));
     add_field_params(state, &view->field);
     add_color_scale(state, &view->color_scale);

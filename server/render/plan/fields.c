@@ -184,7 +184,7 @@ size_t fields_vertices(const struct fields *fields, int asset, const struct fiel
     return fields->reference ? count : field_vertices(fields->field, asset, params, count);
 }
 
-/* Finds or creates the cache entry of one asset, and sets entry->behind if its values are out of date. NULL: the asset shows no field. */
+/* Finds or creates the cache entry of one asset. Sets entry->behind if its values are out of date. NULL: the asset shows no field. */
 static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t all)
 {
     struct field_params room;

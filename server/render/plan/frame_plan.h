@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A frame plan: what one frame shows, decided once: visible assets and their levels of detail, light, fields, and the hash of
-   all that. Immutable once complete. Everything that prepares, shares, draws or caches the frame uses its plan. Thread: the one
-   that owns the GL context. */
+/* A frame plan decides once what one frame shows: visible assets and their levels of detail, light and fields. It also holds a
+   hash of all these. Immutable once complete. Everything that prepares, shares, draws or caches the frame uses its plan.
+   Thread: the one that owns the GL context. */
 #ifndef RENDER_PLAN_FRAME_PLAN_H
 #define RENDER_PLAN_FRAME_PLAN_H
 #include "render/light/light.h"
@@ -14,7 +14,7 @@ struct frame_plan {
     struct view_constants constants;
     /* key of the light set (baked light) that the frame uses: the view's own or, while that is not ready, the most similar one */
     struct light_key lit_by;
-    double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
+    double error_px; /* maximum surface error of a level of detail, in pixels of the frame (lod_selection.h); 0: finest levels only */
     int *visible;    /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
     /* by index in `visible`: number of the asset's vertices, counted from the first in the file, whose field values drawing and

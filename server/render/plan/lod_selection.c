@@ -2,8 +2,8 @@
 /* Chooses the error bound of a frame's levels of detail so that the frame stays within its triangle budget. */
 #include "render/plan/lod_selection.h"
 
-/* Upper limit, by tier (preview or refined), of the error bound of levels of detail, in pixels: silhouettes may be displaced by this
-   much. */
+/* Upper limit of the error bound of levels of detail, in pixels, by tier (preview or refined). Silhouettes may be displaced by
+   this much. */
 static const double MAX_ERROR_PX[] = { [TIER_PREVIEW] = 1.0, [TIER_REFINED] = 0.7 };
 /* Triangle budget by tier (preview or refined). A frame lowers its error bound below MAX_ERROR_PX as long as it has at most this many
    triangles. The budget of refined frames is generous, because people read values from them. A preview that draws more than a few assets in

@@ -11,7 +11,7 @@
 enum { BIND_SENSORS = 5, BIND_CORNERS = 6, BIND_POSITIONS = 7, UNIT_DISTANCES = 14, FIRST_TRIANGLE = 8 };
 enum { SENSORS_PER_TEXEL = 4 };
 
-struct sensors_head { /* first bytes of the GPU buffer of sensors, in the layout std430; must match shaders/reference.glsl */
+struct sensors_head { /* header of the GPU buffer of sensors, in the layout std430; must match shaders/reference.glsl */
     float power, radius_m, reach_m, empty;
     float range, vertices, hot_spot_m, seen;
     int32_t paper, geodesic, fill, show;

@@ -21,8 +21,8 @@ struct reference {
 
 void reference_init(struct reference *reference, const struct gpu_scene *gpu_scene, struct field *field);
 void reference_finish(struct reference *reference); /* a zeroed struct is fine */
-/* Uploads the sensors of one asset, with the readings that the last call of field_scalars_of() with these parameters used. The caller owns
-   the buffer. Returns 0 when out of memory. */
+/* Uploads the sensors of one asset, with the readings used in the last call of field_scalars_of() with these parameters. The
+   caller owns the buffer. Returns 0 when out of memory. */
 GLuint reference_sensors(const struct reference *reference, int asset, const struct field_params *params);
 /* Creates the GPU buffer that shaders with PIXEL_FIELD read to evaluate this field at each pixel. The caller owns the buffer.
    Returns 0 when out of memory, logged. */

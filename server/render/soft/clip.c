@@ -13,8 +13,8 @@ struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex,
     return corner;
 }
 
-/* Returns the signed distance of a triangle's corner from a clipping plane, positive on the side that clipping keeps. plane: 0: near plane;
-   1 to 4: left, right, top, bottom of the guard band (a border around the frame); 5 and up: section planes. */
+/* Returns the signed distance of a triangle's corner from a clipping plane, positive on the side that is kept. plane: 0: near
+   plane; 1 to 4: left, right, top, bottom of the guard band (a border around the frame); 5 and up: section planes. */
 static float inside(const struct raster *raster, const struct near_corner *corner, int plane)
 {
     const float *at = corner->at;

@@ -50,8 +50,8 @@ struct sun_band { /* one band of the sun's shadow map: its rows of texels, and t
     int width_px, row_count;
 };
 
-/* Copies the texels of tile (u, v) of the shadow map; the map's last row and column are repeated as lower and right neighbours. Returns the
-   tile's smallest and largest depth, as in soft_light.sun_bounds. */
+/* Copies the texels of tile (u, v) of the shadow map. The map's last row and column serve as their own lower and right
+   neighbours. Returns the tile's smallest and largest depth, as in soft_light.sun_bounds. */
 static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_t *to)
 {
     static const uint16_t nothing[SUN_TILE_TEXELS];
@@ -116,8 +116,8 @@ static double margin(double at)
     return t * t * (3 - 2 * t);
 }
 
-/* Returns the brightness of a ground texel, 0..255, as shaders/ground.frag computes it. light: sunlight, and openness (visible part of the
-   sky); u, v: position on the ground, 0..1. */
+/* Returns the brightness of a ground texel, 0..255, like shaders/ground.frag. light: sunlight, and openness (visible part of
+   the sky); u, v: position on the ground, 0..1. */
 static uint8_t ground_factor(const uint8_t light[2], double u, double v)
 {
     double dark = fmin(GROUND_SUN * (1 - light[0] / 255.0) + GROUND_SKY * (1 - light[1] / 255.0), GROUND_MOST);

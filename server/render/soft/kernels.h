@@ -39,7 +39,8 @@ struct soft_kernels {
     /* Shades the surfaces that show no field and writes their colours. alphas: receives their opacity, 0..1; NULL: not needed. */
     void (*shade_surfaces)(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
-    /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's `ink`: how much dark lines cover each pixel. */
+    /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's `ink`, that is, each pixel's coverage by
+       dark lines. */
     void (*ink_band)(const struct refined *refined, int band);
     /* Colours bands (groups of pixel rows) of a visibility buffer: a task of workers_for(). arg: struct resolve_job */
     void (*color_bands)(void *arg, size_t begin, size_t end);

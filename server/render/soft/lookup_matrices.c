@@ -15,7 +15,7 @@ static void copy_columns(const double from[16], float to[4][4])
             to[c][r] = (float)from[4 * c + r];
 }
 
-/* Computes the matrix that maps (x in pixels, y in pixels, depth, 1) of the frame to clip space with w = 1. */
+/* Computes the matrix from (x in pixels, y in pixels, depth, 1) in the frame to clip space with w = 1. */
 static void clip_from_pixel(const struct raster *raster, double out[16])
 {
     matrix_identity(out);
@@ -37,8 +37,8 @@ static void aim_sun(struct raster *raster, const double clip[16])
     copy_columns(out, raster->sun_from_pixel);
 }
 
-/* Computes raster->ray_from_pixel: a matrix that maps pixels to directions of view rays, as near.xyz / near.w in shaders/sky.vert. near.w
-   is the same for all pixels. */
+/* Computes raster->ray_from_pixel: a matrix from pixels to directions of view rays, like near.xyz / near.w in shaders/sky.vert.
+   near.w is the same for all pixels. */
 static void aim_rays(struct raster *raster, const double clip[16])
 {
     double eye_from_clip[16], out[16];

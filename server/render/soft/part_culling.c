@@ -164,7 +164,7 @@ static void add_pixels(struct raster *raster, struct soft_mesh *mesh, const stru
         to->place_from_pixel[c / 4][c % 4] = (float)from_pixel[c];
 }
 
-/* Fills *mesh with the data that drawing this asset in the frame needs, and adds the number of its vertices to raster->vertex_count. */
+/* Fills *mesh with the data for drawing this asset in the frame, and adds the number of its vertices to raster->vertex_count. */
 static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, const struct model_level *level)
 {
     const struct frame_context *context = raster->context;

@@ -53,8 +53,8 @@ float pixel_lists_step(const float *scale)
 
 struct eight_sensors {
     lanes at[3], value, strength, decay;
-    /* masks of the sensors (of eight) in each state. counts: mask of the elements that hold a sensor; beyond the end of the list they hold
-       none */
+    /* masks of the sensors (of eight) in each state. counts: mask of the elements that hold a sensor; those beyond the end of
+       the list hold none */
     lanes_int used, lost, no_limits, uncertain, counts;
 };
 

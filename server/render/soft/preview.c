@@ -10,8 +10,8 @@
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
 
-/* Returns whether the frame shows isolines. Isolines are computed while triangles are drawn, so a preview with isolines is drawn again, and
-   not only recoloured, when readings change. */
+/* Returns whether the frame shows isolines. Isolines are computed while triangles are drawn. So when readings change, a preview
+   with isolines is drawn again rather than just recoloured. */
 static bool has_lines(const struct frame_context *context)
 {
     return context->colormap.lines || view_is_operator(context->view);

@@ -44,8 +44,8 @@ static int compare(const void *a, const void *b, void *arg)
     return order ? order : by_number(one, other);
 }
 
-/* Writes, for each row of the colour ramps (one per material), the index of the first row with equal colours. Returns the number of
-   different rows. */
+/* Writes, for each row of the colour ramps (one per material), the index of the first row with equal colours. Returns the
+   number of distinct rows. */
 static size_t find_first(const struct ramp_search *rows, size_t count, uint32_t *order, uint32_t *first)
 {
     size_t different = 0;

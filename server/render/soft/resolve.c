@@ -202,7 +202,7 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
    values) */
 struct eight_shown {
     lanes w1, w2, carried;
-    /* -1: field_colors() may colour the pixel; 0: the pixel, or a corner of its triangle, has a flag, so flagged_color() must */
+    /* -1: field_colors() may colour the pixel; 0: the pixel or a corner of its triangle has a flag, so flagged_color() must colour it */
     lanes_int known;
     struct eight_places places; /* surface points of the eight pixels; fields evaluated from sensors are evaluated there */
 };

@@ -19,7 +19,7 @@ struct sample_group { /* the samples of one pixel that show the same surface */
 
 enum { SAMPLE_SHARE = VISIBILITY_SHARES / SAMPLES };
 
-struct mixed { /* a pixel that shows several surfaces, and the range of its items (surfaces to shade) in the row */
+struct mixed { /* a pixel that shows several surfaces, and the range of its items (surfaces to shade) in the row's array */
     int column;
     uint8_t field_count, surface_count;
     uint16_t sky, cap; /* area of the pixel that shows sky, and area that shows section caps; 0..VISIBILITY_SHARES */

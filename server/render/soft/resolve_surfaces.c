@@ -8,7 +8,7 @@
 
 /* --- textures ------------------------------------------------------------------------------------------------------------------ */
 
-/* Writes the vector, in plant coordinates, from the surface point at one pixel to that at the next pixel. by: change of the three corner
+/* Writes the vector, in plant coordinates, from one pixel's surface point to the next pixel's. by: change of the three corner
    weights per pixel. */
 static void place_slopes(const struct refined *refined, const struct soft_triangle *triangle, const float by[3], float out[3])
 {

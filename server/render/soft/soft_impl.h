@@ -32,9 +32,9 @@ enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
 #define MARK_CAP 0xe0000000u
 #define MARK_KIND 0xc0000000u
 enum { MOST_RAMPS = 1 << 14 };
-/* Mark of a field that is evaluated at the pixel. With i the index in raster->pixels: MARK_PIXELS | i << 8 | row of the
-   colour map + raster->row_bias (8 bits). raster_color() evaluates the field and replaces the mark by MARK_FIELD | index of the colour in
-   the rows of the colour map. */
+/* Mark of a field that is evaluated at the pixel. With i the index in raster->pixels: MARK_PIXELS | i << 8 | row of the colour
+   map + raster->row_bias (8 bits). raster_color() evaluates the field and replaces the mark with MARK_FIELD | index of the
+   colour in the rows of the colour map. */
 #define MARK_PIXELS 0x20000000u
 
 struct soft_vertex {
@@ -71,12 +71,12 @@ struct soft_pixels { /* field of a mesh that is evaluated at pixels; positions a
     float place_from_pixel[4][4]; /* matrix, column by column */
 };
 
-struct soft_rect { /* rectangle in pixels; the row `bottom` and the column `right` belong to it */
+struct soft_rect { /* rectangle in pixels, including the row `bottom` and the column `right` */
     int left, top, right, bottom;
 };
 
 struct soft_item { /* a part (group of neighbouring triangles, parts.h) that may be visible in the frame */
-    float near;    /* depth of the part's nearest point; above 1: the part reaches in front of the near plane */
+    float near;    /* depth of the part's nearest point; above 1: the part extends beyond the near plane towards the eye */
     struct soft_rect rect;
     uint32_t part;
     bool cut;    /* true: a section plane cuts through the part (group of triangles) */
@@ -149,7 +149,7 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     size_t mesh_capacity;
     struct soft_pixels *pixels;
     size_t pixels_count, pixels_capacity;
-    int row_bias; /* number added to the colour map row that a MARK_PIXELS mark stores, so that the stored number is not negative */
+    int row_bias; /* number added to the row of the colour map in a MARK_PIXELS mark, so that it is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: number of elements from one row to the next, a multiple of LANES */
     /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles are enlarged by it. Previews: 0 */
     float reach_px;
@@ -277,13 +277,13 @@ struct soft_triangle {
     uint32_t mesh, material;
     uint32_t vertices[3]; /* indices of the triangle's three vertices in the asset file */
 };
-/* Finds the triangle with this id among the found parts (groups of triangles). On entry triangle->mesh is the index of the mesh to try
-   first: that of a neighbouring pixel, or 0. */
+/* Finds the triangle with this id among the found parts (groups of triangles). On entry, triangle->mesh is the index of the
+   mesh to try first: the mesh of a neighbouring pixel, or 0. */
 void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle);
 /* Computes the weights of the triangle's three corners at any point of the frame, up to a common factor. Weight i is
    weights[i][0] x + weights[i][1] y + weights[i][2]. vertices: indices in the asset file. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
-/* draws the outline of the selected asset, whose pixels are those with a mark (colour code); overwrites raster->depth */
+/* draws the outline of the selected asset, which covers the pixels with a mark (colour code); overwrites raster->depth */
 void raster_outline(const struct raster *raster);
 
 #endif

@@ -85,9 +85,9 @@ static inline uint32_t soft_id(const struct soft_tile *tile, const struct soft_f
     return (tile->first_id + (face->triangle & FACE_TRIANGLE)) | (face->triangle & FACE_BACK ? ID_BACK : 0);
 }
 
-/* Rasterizes the parts (groups of triangles) that raster_find() listed into a rectangle (a multiple of LANES wide, at most a tile).
-   `samples` already hold the depth of nearer surfaces. Writes only depth and ids. Appends the fragments of blended triangles that no opaque
-   surface hides to `fragments`. Runs on a worker. */
+/* Rasterizes the parts (groups of triangles) found by raster_find() within a rectangle (a multiple of LANES wide, at most a
+   tile). `samples` already hold the depth of nearer surfaces. Writes only depth and ids. Appends the fragments of blended
+   triangles that no opaque surface hides to `fragments`. Runs on a worker. */
 void raster_samples(const struct raster *raster, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES], int pitch_px,
                     float reach_px, struct soft_fragments *fragments);
 

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-struct tile_entry { /* entry for one part (group of triangles) in a tile's list of the parts that may be visible in the tile */
+struct tile_entry { /* entry for one part (group of triangles) in a tile's list of possibly visible parts */
     uint64_t order; /* sort key of the part: its depth, nearest first; parts at equal depth keep the order in which they were found */
     uint32_t mesh, item;
 };

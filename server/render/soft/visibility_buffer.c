@@ -165,7 +165,7 @@ static void number_bands(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Gives the vertices that some pixel shows consecutive indices, mesh by mesh, and drops all others. */
+/* Renumbers the vertices that are visible at any pixel, mesh by mesh and consecutively, and drops all others. */
 static void number_vertices(struct visibility_buffer *buffer, uint32_t *numbers)
 {
     uint32_t count = 0;

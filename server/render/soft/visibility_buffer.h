@@ -110,7 +110,7 @@ struct visibility_buffer {
     bool finds_cells;
     /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) used to compute the values in `carried` */
     float scale[4];
-    uint32_t *vertices; /* vertices that some pixel shows, mesh by mesh: index of each in the asset's file */
+    uint32_t *vertices; /* visible vertices, mesh by mesh: index of each in the asset's file */
     /* value at each visible vertex, interpolated over triangles: column of the colour map or, on a logarithmic scale, the
        field's value. NAN: a flag of the vertex selects a pattern */
     float *carried;
@@ -142,7 +142,7 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
    others. Returns false when out of memory. */
 bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *workers);
 
-/* Copies the field values of the frame's assets into buffer->carried, plain and flags, for the vertices that some pixel shows. */
+/* Copies the field values of the frame's assets into buffer->carried, plain and flags, for all visible vertices. */
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);

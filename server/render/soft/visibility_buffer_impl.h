@@ -41,7 +41,7 @@ static inline bool has_ink(const struct visibility_buffer *buffer, size_t pixel)
     return buffer->ink[pixel] || (buffer->veil && buffer->veil[pixel]);
 }
 
-/* Returns the colour of a pixel with feature edge, ghost line or rim over it. */
+/* Returns the colour of a pixel after drawing feature edge, ghost line or rim over it. */
 static inline uint32_t inked(const struct visibility_buffer *buffer, size_t pixel, uint32_t color)
 {
     typedef uint8_t octets __attribute__((vector_size(4)));

@@ -17,8 +17,8 @@ struct propagation {
     /* up to PROPAGATION_FAN neighbours of a point in angular order, and the triangles between consecutive neighbours */
     struct propagation_fan {
         uint32_t to[PROPAGATION_FAN]; /* by lane: point index of the neighbour; index of the fan's own point in unused lanes */
-        /* length of the edge to the neighbour in metres; negative: that length, but the neighbour must get no distance from this point;
-           INFINITY: unused lane */
+        /* length of the edge to the neighbour in metres. Negative: the length, but the neighbour must get no distance from this
+           point. INFINITY: unused lane */
         float length_m[PROPAGATION_FAN];
         /* cosine and sine of the angle to the next neighbour; sine 0: no triangle in between */
         float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN];

@@ -11,8 +11,8 @@
 /* smallest barycentric weight of a source. A source on a corner or edge is moved into the triangle so that all weights have at
    least this value */
 #define MIN_WEIGHT 1e-6
-/* lay_out_beyond() follows a straight line to find the triangle that has a corner. The line ends inside the triangle: at this fraction
-   of the way from the corner to the middle of the opposite side. */
+/* lay_out_beyond() follows a straight line to find the triangle with a given corner. The line ends inside the triangle, at this
+   fraction of the way from the corner to the middle of the opposite side. */
 #define CORNER_OFFSET 1e-3
 /* Points whose distances differ by up to this many buckets of the priority queue may be processed in any order. Distances count as final up
    to the current bucket plus this many. */

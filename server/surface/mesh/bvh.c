@@ -10,8 +10,9 @@
 #include "surface/mesh/bvh_impl.h"
 
 #define LEAF_TRIS 4u
-/* maximum distance between the intersection computed on the segment and the one computed in the triangle, as a fraction of the longest of
-   their sides. With a larger distance, segment and triangle are nearly parallel, so that only rounding decides where they meet. */
+/* maximum distance between the intersection as computed on the segment and in the triangle, as a fraction of the longest side
+   of both. If the distance is larger, segment and triangle are nearly parallel, so that only rounding decides where they meet.
+   */
 #define SAME_PLACE 1e-6
 
 static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double low[3], double high[3])

@@ -8,7 +8,7 @@
 
 struct bvh;
 
-/* Builds the hierarchy of a mesh, which must outlive the hierarchy unchanged. The caller destroys it. */
+/* Builds the hierarchy of a mesh. The mesh must outlive the hierarchy and stay unchanged. The caller destroys the hierarchy. */
 struct bvh *bvh_create(const struct trimesh *mesh);
 /* Frees the hierarchy and sets *bvh to NULL. *bvh may be NULL. */
 void bvh_destroy(struct bvh **bvh);

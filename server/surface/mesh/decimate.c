@@ -25,7 +25,7 @@ struct thin {
 
 struct star_face { /* triangle of a star; a star is the set of triangles around a point */
     uint32_t tri, corner;
-    /* normal: normal of the triangle, not of unit length; length: its length, which is twice the triangle's area */
+    /* normal: normal vector of the triangle; length: length of that vector, which is twice the triangle's area */
     double normal[3], length;
 };
 

@@ -4,7 +4,7 @@
 #define SURFACE_MESH_DECIMATE_H
 #include "surface/mesh/trimesh.h"
 
-/* input of decimate_mesh(): the points that may be removed, and the conditions for it */
+/* input of decimate_mesh(): the points that may be removed, and the conditions for removing them */
 struct decimate_params {
     const uint32_t *part; /* per triangle */
     const char *keep;     /* by point: 1: decimation must not remove the point */

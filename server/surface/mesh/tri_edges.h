@@ -9,7 +9,7 @@
 
 /* Sides are numbered: 3 t + i is the side of triangle t from its corner i to the next. */
 struct tri_edge {
-    /* sides: the first two sides at this edge; faces: number of all sides at this edge, which is the number of triangles that meet there */
+    /* sides: the first two sides at this edge; faces: number of sides at this edge, that is, of triangles that meet there */
     uint32_t sides[2], faces;
 };
 

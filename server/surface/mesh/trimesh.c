@@ -150,8 +150,8 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
     mesh->tri_source[mesh->tri_count++] = source;
 }
 
-/* Hash grid that finds points near enough to be welded (merged). Its cells have twice the welding distance as side, so that a lookup reads
- * only the eight cells that may contain such points. */
+/* Hash grid for finding points near enough to be welded (merged). The side of its cells is twice the welding distance, so that
+ * a lookup reads only the eight cells that may contain such points. */
 struct weld_grid {
     double cell_m;
     uint32_t *heads, *next;

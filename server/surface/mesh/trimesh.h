@@ -61,7 +61,7 @@ uint32_t trimesh_root(uint32_t *parent, uint32_t i);
 /* Union-find: joins the sets that contain a and b. */
 void trimesh_join(uint32_t *parent, uint32_t a, uint32_t b);
 
-/* Writes a normal of the triangle whose length is twice the triangle's area. */
+/* Writes a normal vector of the triangle; its length is twice the triangle's area. */
 void trimesh_normal(const struct trimesh *mesh, size_t tri, double out[3]);
 double trimesh_tri_area(const struct trimesh *mesh, size_t tri);
 /* Returns the total area of all triangles, square metres. */
@@ -83,7 +83,7 @@ uint32_t edge_table_add(struct edge_table *table, uint32_t a, uint32_t b);
 uint32_t edge_table_find(const struct edge_table *table, uint32_t a, uint32_t b);
 /* Prefetches the memory that a lookup of the edge will read. */
 void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b);
-/* Prefetches the table entries of the edges of a triangle that follows a few places after `tri` in `tris`, if there is one. */
+/* Prefetches the table entries for the edges of a triangle that comes a few places after `tri` in `tris`, if there is one. */
 void edge_table_prefetch_ahead(const struct edge_table *table, const uint32_t (*tris)[3], size_t tri, size_t tri_count);
 
 #endif

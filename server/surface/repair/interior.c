@@ -20,7 +20,7 @@
 /* distance of test points from a triangle that may be inside its own part, on each side. Unit: reach (distance up to which a
    part counts as touching, parts.h) */
 #define BARELY 0.05
-#define FLUSH 0.9 /* two touching faces count as lying on each other if the cosine between their normals is at least this */
+#define FLUSH 0.9 /* minimum cosine between the normals of two touching faces for them to count as lying on each other */
 /* minimum height of a triangle for its normal to count as reliable. Unit: reach (distance up to which a part counts as
    touching, parts.h) */
 #define SLIVER 2.0
@@ -115,7 +115,7 @@ struct interior_search {
     char *hidden;
 };
 
-/* directions of the test rays; irregular numbers, so that hardly any model has faces parallel to them */
+/* directions of the test rays: irregular, so that hardly any model has faces parallel to them */
 static const double directions[RAYS][3] = {
     { 0.3572, 0.6129, 0.7048 },    { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 },
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },

@@ -7,7 +7,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define LOOKS 0.5    /* a face faces a point if the cosine between its normal and the direction to the point is at least this */
+#define LOOKS 0.5    /* minimum cosine between a face's normal and the direction to a point for the face to face the point */
 #define NEXT_TO 1e-3 /* relative to the distance */
 
 static void list_triangles(struct line_of_sight *sight)

@@ -72,7 +72,7 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
         target[i] = trimesh_root(target, i);
 }
 
-/* insertions of points, grouped by edge (sorted by their position from the end with the lower index) and by triangle */
+/* inserted points, grouped by edge (sorted by position from the end with the lower index) and by triangle */
 struct crossing_lists {
     struct edge_table edges;
     /* by edge index (edge_first) or triangle (tri_first): index of its first insertion; one additional element at the end */
@@ -274,7 +274,7 @@ static void set_point(struct face_triangulation *face, const struct trimesh *mes
     }
     for (size_t i = 0; i < face->count; i++)
         if (face->ids[i] == id)
-            return; /* the triangulation has this point already, as a corner or on a side */
+            return; /* the triangulation already has this point, as a corner or on a side */
     face_triangulation_insert(face, face_triangulation_add_point(face, id, x, y));
 }
 

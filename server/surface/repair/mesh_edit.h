@@ -22,11 +22,11 @@ struct mesh_edit {
 void mesh_edit_init(struct mesh_edit *edit);
 /* Frees the batch without applying it, and leaves it empty. */
 void mesh_edit_finish(struct mesh_edit *edit);
-/* Requests that points a and b, which are distance_m apart, are merged. */
+/* Requests that points a and b, which are distance_m apart, be merged. */
 void mesh_edit_merge_points(struct mesh_edit *edit, uint32_t a, uint32_t b, double distance_m);
-/* Requests that a point, distance_m away from the edge a-b, is inserted into this edge at fraction t from a. */
+/* Requests that a point, distance_m away from the edge a-b, be inserted into this edge at fraction t from a. */
 void mesh_edit_insert_in_edge(struct mesh_edit *edit, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m);
-/* Requests that a point, distance_m away from the triangle, is inserted into the triangle. */
+/* Requests that a point, distance_m away from the triangle, be inserted into the triangle. */
 void mesh_edit_insert_in_tri(struct mesh_edit *edit, uint32_t point, uint32_t tri, double distance_m);
 /* Requests an edge between the two points, in each edited triangle that contains both. */
 void mesh_edit_connect(struct mesh_edit *edit, uint32_t a, uint32_t b);

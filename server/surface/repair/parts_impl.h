@@ -14,8 +14,8 @@ struct parts_finding {
         /* open_m: total length of the patch's edges with one face. branching_m: total length of its edges with three or more
          * faces, if only one of these belongs to the patch */
         double open_m, branching_m, area_m2;
-        /* Area of those triangles of the patch that occur in the model at least twice as often as the part's triangle that occurs least
-           often. If it is most of the patch's area, the patch may be a wall between two bodies. */
+        /* Area of the patch's triangles that occur in the model at least twice as often as the part's least frequent triangle.
+           If it is most of the patch's area, the patch may be a wall between two bodies. */
         double doubles_m2;
         bool loose;        /* true: the patch is open and only stands on other patches, like a fin on a tube */
     } * patches;

@@ -47,7 +47,7 @@ static void outwards(const struct seams *s, uint32_t e, uint32_t p, double along
     vec_sub(s->mesh->points[edge[edge[0] == p]], s->mesh->points[p], along);
 }
 
-/* Returns whether the faces at two edges that run along each other lie on each other, on the same side of the edges. */
+/* Returns whether the faces at two edges that run alongside each other lie on each other, on the same side of the edges. */
 static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
 {
     const uint32_t edges[2] = { e, f };

@@ -13,7 +13,7 @@
 #include "surface/repair/repair.h"
 #include "surface/repair/repair_impl.h"
 
-#define PARALLEL 1e-4 /* two edges count as parallel if the squared sine of the angle between them is below this */
+#define PARALLEL 1e-4 /* maximum squared sine of the angle between two edges for them to count as parallel */
 
 struct contacts {
     struct trimesh *mesh;
@@ -156,9 +156,10 @@ static void find_touch(const struct contacts *c, const double point_m[3], struct
         bvh_nearest_unlike(c->bvh, point_m, c->reach_m, c->own, reaches_as_far, c, place);
 }
 
-/* Finds points that touch another body, and requests that they are inserted there. A surface within the reach of a thin part (half of its
-   thickness) touches the part, from either side. A surface beyond the reach touches only if both face each other: the distance is then a
-   gap to bridge. Rims and intersections do not use such touches, because the part does not cover the other surface there. */
+/* Finds points that touch another body, and requests their insertion there. A surface within the reach of a thin part (half of
+   its thickness) touches the part, from either side. A surface beyond the reach touches only if both face each other: the
+   distance is then a gap to bridge. Rims and intersections do not use such touches, because the part does not cover the other
+   surface there. */
 static void find_touches(struct contacts *c)
 {
     struct line_of_sight sight;
@@ -252,7 +253,7 @@ static void find_rims(struct contacts *c)
         }
 }
 
-/* Adds a mesh point for each crossing, and requests that the point is inserted into both the edge and the triangle (or other edge). Points
+/* Adds a mesh point for each crossing, and requests its insertion into both the edge and the triangle (or other edge). Points
    are added only after all searches, because the searches read the array of points. */
 static void set_crossings(struct contacts *c, struct repair_report *report)
 {

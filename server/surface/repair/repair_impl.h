@@ -6,7 +6,7 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair.h"
 
-#define REPAIR_AT_END 1e-3 /* distance from an end of an edge, as a fraction of the edge's length, below which a point counts as that end */
+#define REPAIR_AT_END 1e-3 /* a point counts as an end of an edge if it is nearer to it than this, as a fraction of the edge's length */
 
 /* Returns whether the triangle has this point as a corner. */
 bool repair_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);

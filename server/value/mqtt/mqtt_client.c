@@ -278,7 +278,7 @@ int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_m
     return client->status == MOSQ_ERR_SUCCESS ? 0 : explain(client, client->status, client->errno_then, why);
 }
 
-/* Returns true if the TLS layer holds received bytes that it has already decrypted; poll() on the socket does not report these. */
+/* Returns true if the TLS layer holds bytes that it has received and decrypted already; poll() on the socket does not report these. */
 static bool holds_more(struct mqtt_client *client)
 {
     SSL *tls = mosquitto_ssl_get(client->library);

@@ -40,8 +40,8 @@ void mqtt_client_destroy(struct mqtt_client **client);
 /* Waits until the connection is made, at most until the deadline. Returns 0; -ECANCELED if stop_fd became readable; -ETIMEDOUT; another
    negative code with the reason in `why`. */
 int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Waits for input, at most until the deadline; then receives and sends, and calls the functions of `events`. Returns 0; -ECANCELED if
-   stop_fd became readable; another negative code with the reason in `why` when the connection has ended. */
+/* Waits for input, at most until the deadline; then receives and sends, and calls the callbacks in `events`. Returns 0;
+   -ECANCELED if stop_fd became readable; another negative code with the reason in `why` when the connection has ended. */
 int mqtt_client_serve(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Subscribes to topics, which must outlive the client; may be called once per client. Returns false if the request cannot be sent:
  * mqtt_client_serve() then reports the reason. */

@@ -36,7 +36,7 @@ struct mqtt_source {
 
 /* Writes the values in a message to the tags of its topic, or refuses the message and logs the reason. */
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
-/* Counts a refused message, and logs at most one such message per minute. */
+/* Counts a refused message. Logs at most one refused message per minute. */
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
 /* Logs, at most once a minute, how many refused messages mqtt_refuse() has not logged. */
 void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns);

@@ -20,7 +20,7 @@ static const char PREFIX[] = "spBv1.0/";
 struct alias {
     uint64_t number;
     size_t topic; /* index of the node's or device's topic, whose birth certificate defined the alias */
-    /* the tags of that topic that take their values from the metric with this alias: index of the first one, and their number */
+    /* tags of that topic that take their values from the metric with this alias: index of the first, and their number */
     size_t first_tag, tags;
 };
 
@@ -238,7 +238,8 @@ static void write_value(struct sparkplug *sparkplug, int tag, const struct stamp
     stamped_writer_add(sparkplug->params.writer, tag, value, false, true);
 }
 
-/* Writes a metric's value to a tag. Returns false if the metric has another type than in the birth certificate, or is not a number. */
+/* Writes a metric's value to a tag. Returns false if the metric's type differs from that in the birth certificate, or its value is
+   not a number. */
 static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metric *metric, int tag, char why[200])
 {
     struct stamped_value value = { .quality = metric->quality, .utc_ns = metric->utc_ns };

@@ -30,7 +30,7 @@ struct opcua_source {
     struct host_turn turn;
     bool link_up, link_known;
     int refusals_said, deadbands_said;
-    bool *wrong; /* by node: true once the log says that the node's value is not a number, until it is one again */
+    bool *wrong; /* by node: true while the log's last word is that the node's value is not a number */
     int64_t skew_said_ns;
     struct log_pace missed_pace; /* rate limit of the log line about lost notifications */
 };

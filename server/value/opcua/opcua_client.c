@@ -22,8 +22,8 @@ enum { DISCOVERIES = 3 };
 
 /* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
-/* Log callback of open62541. The library only logs a gap in the sequence numbers of notifications, although the values in between are
-   lost: that log line sets client->missed. */
+/* Log callback of open62541. If the sequence numbers of notifications have a gap, the values in between are lost, but the
+   library only logs this. That log line sets client->missed. */
 static void on_log(void *arg, UA_LogLevel level, UA_LogCategory category, const char *format, va_list args)
 {
     struct opcua_client *client = arg;
@@ -137,8 +137,7 @@ static bool takes_us(const struct opcua_client *client, const UA_EndpointDescrip
     return false;
 }
 
-/* Returns the endpoint with the best security among those that the configuration permits; NULL with the reason in `why` if there is
- * none. */
+/* Returns the endpoint with the best security that the configuration permits; NULL with the reason in `why` if there is none. */
 static UA_EndpointDescription *choose(const struct opcua_client *client, UA_EndpointDescription *endpoints, size_t count, char why[200])
 {
     static const char TCP[] = "http://opcfoundation.org/UA-Profile/Transport/uatcp-uasc-uabinary";

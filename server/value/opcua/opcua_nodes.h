@@ -11,7 +11,7 @@ struct opcua_node {
     const char *name_space, *id; /* namespace URI, and identifier in the namespace, such as s=NAME; owned by the plant */
     const int *tags;             /* indices in plant->tags of the tags that take their values from the node */
     size_t tag_count;
-    int sampling_ms; /* sampling interval in milliseconds: the shortest one that any of the node's tags requests */
+    int sampling_ms; /* sampling interval in milliseconds: the shortest that any of the node's tags requests */
     /* the smallest deadband of the node's tags, or the source's deadband; none if one tag states percent and another does not */
     struct opcua_deadband deadband;
     bool own_deadband; /* true: the tag list states the deadband; false: the source does */

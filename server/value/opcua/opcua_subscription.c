@@ -96,7 +96,7 @@ static void on_deleted(UA_Client *library, UA_UInt32 subscription, void *arg)
 
 static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    /* Creates the subscription. Its keep-alive interval is short, so that a server that stopped answering is noticed soon. */
+    /* Creates the subscription. Its keep-alive interval is short, so that a server that stopped answering is detected soon. */
     int poll_ms = client->source->poll_ms < KEPT_ALIVE_MS ? client->source->poll_ms : KEPT_ALIVE_MS;
     UA_CreateSubscriptionRequest request = { .requestedPublishingInterval = poll_ms, .publishingEnabled = true };
     UA_CreateSubscriptionResponse response;
