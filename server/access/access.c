@@ -162,7 +162,7 @@ char *access_content_policy(const struct access_params *params)
 
 /* --- lists in headers ---------------------------------------------------------------------------------------------------------- */
 
-/* Returns the next word of a header's comma-separated list and advances *at past the word; *n receives the word's length. NULL: there
+/* Returns the next word of a header's comma-separated list and moves *at past it; *n receives the word's length. NULL: there
    are no more words. */
 static const char *next_word(const char **at, size_t *n)
 {
@@ -195,8 +195,8 @@ bool access_list_rest(const char *list, const char *prefix, char *out, size_t si
     return false;
 }
 
-/* Parses one entry of X-Forwarded-For into `out`: an IP address. An IPv6 address may have brackets, and an IPv4 address may have a port.
-   Returns false if the entry is not an address. */
+/* Parses one entry of X-Forwarded-For into `out`: an IPv6 address, possibly in brackets, or an IPv4 address, possibly with a
+   port. Returns false if the entry is neither. */
 static bool read_forwarded(const char *at, size_t n, char *out, size_t size)
 {
     char word[64];

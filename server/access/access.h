@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rules of access to the daemon: where it may listen, which host names and pages may use it, and what its own pages may load.
-   message/role.h says what each role may do. No input or output except access_notice_read(). Thread: any. */
+/* Access rules of the daemon: where it may listen, which host names and web pages may use it, and what its own pages may load.
+   message/role.h says what each role may do. No input or output except in access_notice_read(). Thread: any. */
 #ifndef ACCESS_ACCESS_H
 #define ACCESS_ACCESS_H
 #include "access/quota.h"
@@ -25,10 +25,10 @@ struct access_params {
     const char *openid_path;                  /* path of the configuration file of --openid; NULL: no sign-in with OpenID Connect */
     const char *tls_cert_path, *tls_key_path; /* paths of the certificate and its private key; NULL: no TLS */
     const char *hosts[ACCESS_MAX_NAMES];      /* host names that clients may use in the Host header, in addition to this machine's own */
-    const char *origins[ACCESS_MAX_NAMES];    /* origins of web pages on other hosts that may connect, as SCHEME://HOST[:PORT] */
+    const char *origins[ACCESS_MAX_NAMES];    /* origins (SCHEME://HOST[:PORT]) of web pages on other hosts that may connect */
     int host_count, origin_count;
-    const char *notice_path; /* path of the text file of --notice, shown to users before they sign in; NULL: none */
-    double lock_min;         /* minutes without user activity after which the user must sign in again; 0: never */
+    const char *notice_path; /* path of the --notice text file, whose text users see before they sign in; NULL: none */
+    double lock_min;         /* minutes of inactivity after which the user must sign in again; 0: never */
     struct quotas quotas;
 };
 
@@ -47,25 +47,25 @@ bool access_name_is_address(const char *name);
    params->origins lists its origin. An empty origin is allowed, because such a request does not come from a browser. secure:
    the connection uses TLS. */
 bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure);
-/* Reads the text file of --notice: UTF-8, 4 kB at most. The caller frees the text with mem_free. NULL on failure, already logged. */
+/* Reads the --notice text file: UTF-8, 4 kB at most. The caller frees the text with mem_free. Returns NULL on failure, already logged. */
 char *access_notice_read(struct log *log, const char *path);
 /* Returns the Content-Security-Policy header of the daemon's pages: they load from this server only, and only pages of
    params->origins may embed them in a frame. The caller frees the text with mem_free. */
 char *access_content_policy(const struct access_params *params);
 /* Returns true if a header's comma-separated list contains that word. */
 bool access_list_has(const char *list, const char *word);
-/* Finds the word of a header's comma-separated list that begins with the prefix, and writes the rest of that word to `out`. Returns
-   false if there is none. */
+/* Finds the first word of a header's comma-separated list that begins with `prefix`, and writes the rest of the word to `out`.
+   Returns false if there is none. */
 bool access_list_rest(const char *list, const char *prefix, char *out, size_t size);
 /* Parses ADDRESS or ADDRESS/BITS (option --trusted-proxy) and adds the network to params->proxies. A network that contains a loopback
    address also sets behind_proxy. Returns false if the text is invalid, if BITS is 0, or if there are too many networks. */
 bool access_add_proxy(struct access_params *params, const char *text);
 /* Returns true if the peer with this numeric address is a known proxy, so that its X-Forwarded-For header is trusted. */
 bool access_is_proxy(const struct access_params *params, const char *address);
-/* Writes the client's address from an X-Forwarded-For header to `out`. That is the last address in the header that is not in
+/* Writes the client's address from an X-Forwarded-For header to `out`: the last address in the list that is not in
    params->proxies, because each proxy appends the address of its peer. Returns false if there is none. */
 bool access_forwarded(const struct access_params *params, const char *list, char *out, size_t size);
-/* Returns true if a query argument is a token. Tokens are refused in URLs, because logs and browser histories keep URLs. */
+/* Returns true if a query argument is a token. Tokens are not accepted in URLs, because logs and browser histories keep URLs. */
 bool access_argument_is_token(const char *argument);
 
 #endif

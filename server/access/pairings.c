@@ -27,7 +27,7 @@ struct pairings {
     struct kept_list kept; /* content of devices.json, the list of paired devices, each { id, hash, wall, display, from, by, time_us } */
     struct pending_pairing waiting[PAIRINGS];
     size_t count;
-    uint64_t number;  /* increases with each change of the list of waiting devices */
+    uint64_t number;  /* increases whenever the list of waiting devices changes */
     int64_t wrong_ns; /* monotonic start of the current minute, in which wrong digits are counted */
     int wrong;
 };

@@ -39,7 +39,7 @@ struct pairings *pairings_open(struct log *log, const char *folder, struct file_
 void pairings_close(struct pairings **pairings); /* frees the pairings and sets *pairings to NULL; accepts a pointer to NULL */
 /* Returns true if the secret has the form of a token from tokens_make(), which has 256 random bits. */
 bool pairings_secret_valid(const char *secret);
-/* Returns the reason why this daemon cannot pair devices, or REFUSAL_NONE. */
+/* Returns why this daemon cannot pair devices, or REFUSAL_NONE. */
 enum refusal_code pairings_refusal(const struct pairings *pairings);
 /* Returns the state of the requesting device; a new device joins the devices that wait for approval. PAIRING_DONE: paired.
    PAIRING_WAITS: not approved yet; `digits` and their remaining seconds are set. PAIRING_FULL: too many devices are waiting.

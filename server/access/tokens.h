@@ -31,8 +31,8 @@ struct tokens;
 struct tokens *tokens_create(struct log *log, const char *path);
 /* Sets (copies) the name of this plant; from now on, tokens for other plants are refused. */
 void tokens_set_plant(struct tokens *tokens, const char *plant);
-/* Makes tokens_find() also accept paired devices (access/pairings.h). `find` is pairings_find(), and `pairings` its struct pairings,
-   which must stay valid until the next call. */
+/* Makes tokens_find() accept paired devices (access/pairings.h) as well. `find` is pairings_find(), and `pairings` its struct
+   pairings, which must stay valid until the next call. */
 typedef bool tokens_find_device(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
 void tokens_set_pairings(struct tokens *tokens, tokens_find_device *find, const void *pairings);
 void tokens_destroy(struct tokens **tokens); /* frees the tokens and sets *tokens to NULL; accepts a pointer to NULL */
@@ -41,8 +41,8 @@ bool tokens_look(struct tokens *tokens);
 /* Returns true if the file has a token whose holder has that name. */
 bool tokens_has_name(const struct tokens *tokens, const char *name);
 
-/* Finds the holder of a token, in the file or among paired devices, and writes it to *out. Returns false if there is none (then
-   out->role is ROLE_NOBODY), or if the token has expired. */
+/* Finds the holder of a token, in the file or among paired devices, and writes it to *out. Returns false if there is none
+   (out->role is then ROLE_NOBODY), or if the token has expired. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
 /* Returns the current role of a token's holder; ROLE_NOBODY: the token was revoked, has expired, or is now restricted to other
    views or another display. */
@@ -52,7 +52,7 @@ enum role tokens_role(const struct tokens *tokens, const struct token_holder *ho
 /* Parses a line of the token file into *out. Returns 1 on success, 0 for an empty line or a comment, -1 with *why (static text)
    for an invalid line. */
 int tokens_parse_line(const char *line, struct token_holder *out, const char **why);
-/* Computes the SHA-256 hash by which a token is stored and found. */
+/* Computes the SHA-256 hash under which a token is stored and looked up. */
 void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES]);
 /* Generates a token of 256 random bits. Returns false if the system's random number generator failed. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1]);
@@ -66,7 +66,7 @@ bool tokens_plant_valid(const char *plant);
 bool tokens_views_valid(const char *views);
 /* Parses WALL:NUMBER, the only display that a token may show, into *out. Returns false if the text is invalid. */
 bool tokens_parse_display(const char *text, struct token_holder *out);
-/* Returns the role that the holder effectively has: ROLE_OPEN (pictures only) if the token is restricted to some saved views. */
+/* Returns the holder's effective role: ROLE_OPEN (pictures only) if the token is restricted to some saved views. */
 enum role tokens_role_of(const struct token_holder *holder);
 /* Returns true if the holder may see that saved view. */
 bool tokens_may_see(const struct token_holder *holder, const char *view);

@@ -37,7 +37,7 @@ void alarm_service_stop(struct alarm_service **service);
 /* Sets the only listener for changes; NULL: none. The service's thread or alarm_service_act() calls changed(arg) under a lock
    after alarms have changed, so the callback must only wake another thread. */
 void alarm_service_listen(struct alarm_service *service, void (*changed)(void *arg), void *arg);
-/* Returns the number of alarm changes so far; it grows by 1 with each change of any alarm. */
+/* Returns the number of alarm changes so far. */
 uint64_t alarm_service_number(const struct alarm_service *service);
 /* Calls each() under the lock, newest change first, for every alarm that changed after alarm_service_number() was `since`;
    since 0: for every alarm that is not normal. Returns the current alarm_service_number(). */

@@ -51,8 +51,7 @@ static enum alarm_outcome acknowledge(struct alarm_state *state)
     return ALARM_CHANGED;
 }
 
-/* Resets a latched alarm (one that remains after its cause ended). Refused while it is unacknowledged, so that no alarm disappears
-   unseen. */
+/* Resets a latched alarm (one that outlasts its cause). Refused while the alarm is unacknowledged, so that no alarm disappears unseen. */
 static enum alarm_outcome reset(struct alarm_state *state)
 {
     if (!state->latched || state->active || state->unacknowledged || state->aside)

@@ -33,9 +33,9 @@ struct alarm_state {     /* state of one alarm; all zero: normal */
 };
 
 struct alarm_rule {
-    bool acknowledges; /* true: operators must acknowledge the alarm; false: the alarm is either active or normal */
+    bool acknowledges; /* true: operators must acknowledge the alarm; false: the alarm has no state but active and normal */
     bool latches;
-    bool forgets; /* true: the alarm becomes normal when its cause ends, even if nobody has acknowledged it */
+    bool forgets; /* true: the alarm becomes normal when its cause ends, even if unacknowledged */
     /* true: if the alarm is raised now, it is suppressed, because the device's alarm already reports the failure */
     bool carried;
 };
@@ -44,7 +44,7 @@ enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* the presen
 
 /* Applies an event to an alarm's state. Returns whether the state changed, stayed the same, or does not allow the event. */
 enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alarm_rule *rule, enum alarm_event event);
-/* Returns the alarm's state as one of the states of ISA-18.2. */
+/* Returns the alarm's ISA-18.2 state. */
 enum alarm_status alarm_state_status(const struct alarm_state *state, const struct alarm_rule *rule);
 const char *alarm_event_name(enum alarm_event event); /* returns the event's name, such as "acknowledge" (static text) */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The alarms of a plant: their creation, and how samples, time and operators change them. */
+/* The alarms of a plant: how they are created, and how samples, time and operators change them. */
 #include "alarm/alarms_impl.h"
 
 #include <math.h>
@@ -59,8 +59,8 @@ static void add_bad(struct alarms *alarms, int tag)
     add_suppression(alarms, index);
 }
 
-/* Creates the LINK alarm of a device (raised when the device does not answer), or adjusts it to one more tag of the device. Its delay is
-   the shortest delay of the device's tags, but at least least_on_ns. It is one level less urgent than the most urgent of the tags. */
+/* Creates a device's LINK alarm (raised when the device does not answer), or adapts it to another tag of the device. Its delay
+   is the shortest of the tags' delays, but at least least_on_ns. It is one level less urgent than the most urgent tag. */
 static void add_link(struct alarms *alarms, struct alarm_device *device, int tag, int64_t least_on_ns)
 {
     const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarms.settings;
@@ -95,9 +95,9 @@ static bool never_stale(const struct alarms *alarms, size_t tag)
     return alarms->plant->tags[tag].validity.stale_s >= PLANT_NEVER_STALE_S;
 }
 
-/* Creates the LINK alarm of every device (raised when the device does not answer). Its delay comes from those tags of the
-   device that have a BAD alarm (raised when the value is Bad), or from all its tags if none has one. A replayed file ends
-   normally, so its source gets a LINK alarm only if one of its tags has a BAD alarm. */
+/* Creates the LINK alarm of every device (raised when the device does not answer). Its delay comes from the device's tags that
+   have a BAD alarm (raised when the value is Bad), or from all its tags if none has one. A replayed file ends normally, so its
+   source gets a LINK alarm only if one of its tags has a BAD alarm. */
 static void add_links(struct alarms *alarms)
 {
     const struct plant *plant = alarms->plant;
@@ -404,7 +404,7 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     follow_acknowledgement(alarms, index, at);
 }
 
-/* If a delay of the alarm is over, ends it as of the time when it was over. */
+/* If a delay of the alarm is over, ends the delay; the change gets the time when it was over. */
 static void advance(struct alarms *alarms, int index, struct instant now)
 {
     struct alarm *alarm = &alarms->list[index];

@@ -29,7 +29,7 @@ struct alarm {
     struct alarm_state state;
     /* true: the other alarm system, which this alarm mirrors, reports the alarm as acknowledged */
     bool acknowledged_there;
-    bool held;                                              /* true: the tag's value is Bad, so the alarm keeps its last state */
+    bool held;                                              /* true: the alarm keeps its last state, because the tag's value is Bad */
     double value;                                           /* the tag's value when the alarm was raised; NaN: no value */
     int64_t raised_utc_ns;                                  /* UTC time when the alarm was last raised; 0: never */
     int64_t changed_utc_ns;                                 /* UTC time when the alarm's state last changed */
@@ -48,7 +48,7 @@ struct alarm {
 
 /* One change of one alarm, as alarms_listener receives it. */
 struct alarm_change {
-    const struct alarm *alarm; /* the alarm, in its state after the change */
+    const struct alarm *alarm; /* the alarm, already in its new state */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
@@ -68,7 +68,7 @@ struct alarms;
 struct alarms *alarms_create(const struct plant *plant, const struct alarms_listener *listener);
 void alarms_destroy(struct alarms **alarms); /* frees the alarms and sets *alarms to NULL; accepts a pointer to NULL */
 
-/* Evaluates sample events of the store, in the order of the array. */
+/* Evaluates the store's sample events in the order of the array. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count);
 /* Applies the passing of time: ends delays and shelving. Readings in `now` that have become stale count as Bad samples, because
    no event reports them. */
@@ -89,7 +89,7 @@ int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* 
 int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_kind kind);
 /* returns the unit of the alarm's value and limit; "": none */
 const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm);
-enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the alarm's state as one of the words of ISA-18.2 */
+enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the alarm's ISA-18.2 state */
 uint64_t alarms_number(const struct alarms *alarms);          /* returns the number of alarm changes so far */
 /* Returns the index of the alarm that changed last, or -1 if none has changed; the alarm's member `older` is the index of the
    one that changed before it. */

@@ -25,7 +25,7 @@ struct alarms {
     struct alarms_listener listener;
     struct alarm *list;
     size_t count, capacity;
-    struct feed *feeds; /* which alarms depend on the samples of which tag; sorted by tag */
+    struct feed *feeds; /* which alarms depend on which tag's samples; sorted by tag */
     size_t feed_count, feed_capacity;
     int *by_tag; /* indices in `list` of all alarms, sorted by tag */
     /* [tag], with one extra element at the end: position of the tag's first entry in `feeds` and in by_tag */

@@ -99,7 +99,7 @@ static void try_to_write(struct journal *journal, bool now)
     count_written(journal, rows - journal->taken.count, error);
 }
 
-/* Moves the queued journal rows to the list of rows that this thread writes. The caller holds the lock. */
+/* Moves the queued journal rows to the list that this thread writes. The caller holds the lock. */
 static void take(struct journal *journal)
 {
     struct entries *taken = &journal->taken, *waiting = &journal->waiting;

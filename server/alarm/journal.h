@@ -31,7 +31,7 @@ void journal_end(struct journal *journal, struct settling_ticket *ticket);
 int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
 /* Returns the journal row for a change of an alarm; texts are copied. */
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag, const char *unit);
-/* queues a row of the journal to be written; never waits */
+/* queues a journal row for writing; never blocks */
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry);
 /* Returns true once after a new journal file was created. The file lacks the current alarm states, so the caller must pass each
    alarm that is not normal to journal_keep(). */

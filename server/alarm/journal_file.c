@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tables of the alarm journal in SQLite: one row for each change of an alarm, and the present state of each alarm. */
+/* The alarm journal's SQLite tables: one row for each change of an alarm, and the current state of each alarm. */
 #include "alarm/journal_file.h"
 
 #include <errno.h>

@@ -9,7 +9,7 @@
 enum { JOURNAL_VERSION = 2, JOURNAL_UNIT_BYTES = 64 };
 
 struct journal_entry {
-    struct alarm alarm; /* the alarm, in its state at utc_ns */
+    struct alarm alarm; /* the alarm, with its state at utc_ns */
     bool changed;       /* true: the entry is a change of the alarm; false: only its current state */
     enum alarm_event event;
     enum alarm_status before, after;
@@ -42,9 +42,9 @@ struct journal_file *journal_file_read(struct log *log, const char *folder, int 
 void journal_file_close(struct journal_file **file); /* closes the file and sets *file to NULL; accepts a pointer to NULL */
 /* Writes all entries in one transaction, except changes already in the file. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
-int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows of changes before before_us */
-/* Calls each() for the stored state of every alarm that was not normal at the last write to the journal. unit: of the alarm's value;
-   NULL: not known. */
+int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows of changes older than before_us */
+/* Calls each() for the stored state of every alarm that was not normal at the last write to the journal. unit: unit of the
+   alarm's value; NULL: unknown. */
 int journal_file_states(struct journal_file *file,
                         void (*each)(void *arg, const char *tag, const char *unit, const struct alarm *alarm), void *arg);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),

@@ -15,7 +15,7 @@ struct audit_chain {                 /* the last line of an audit trail, which t
     char hash[AUDIT_HASH_CHARS + 1]; /* hash of the trail's last line; 64 zeros: the trail is empty */
 };
 
-/* One event of the audit trail. Texts may be NULL (not known) and are shortened if too long. */
+/* One event of the audit trail. Texts may be NULL (unknown) and are truncated if too long. */
 struct audit_entry {
     const char *event;  /* kind of event: login, logout, access, alarm and so on; AUDIT.md has the list */
     const char *result; /* result of the action: done, refused or failed */
@@ -30,7 +30,7 @@ struct audit_entry {
 
 /* Initialises the chain for an audit trail without lines. */
 void audit_chain_init(struct audit_chain *chain);
-/* Appends the audit line of an entry, with its newline, to `out`, and advances the chain to that line. */
+/* Appends the audit line for an entry, including the newline, to `out`, and advances the chain to that line. */
 void audit_chain_add(struct audit_chain *chain, const struct audit_entry *entry, int64_t utc_us, struct text *out);
 /* Checks an audit line (without its newline) against the chain. first: the line is the oldest that still exists, so the hash of
    its predecessor is not checked. Returns true and advances the chain, or false with the reason in *why (static text). */

@@ -40,7 +40,7 @@ static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
     return bytes - window + end;
 }
 
-/* Sets the chain to the last complete line of the audit file; removes an incomplete line that a crash left. */
+/* Sets the chain to the last complete line of the audit file; removes an incomplete line left by a crash. */
 static int find_chain(struct audit_file *file, char **finding)
 {
     struct stat st;

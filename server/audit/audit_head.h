@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PATH.head: sequence number and hash of the audit trail's last line. Its length is fixed and it is overwritten in place, so that it can
-   be written even on a full disk. Thread: one. */
+/* PATH.head: sequence number and hash of the audit trail's last line. It has a fixed length and is overwritten in place, so
+   that writing it works even on a full disk. Thread: one. */
 #ifndef AUDIT_AUDIT_HEAD_H
 #define AUDIT_AUDIT_HEAD_H
 #include "audit/audit_chain.h"

@@ -39,12 +39,12 @@ struct audit_syslog {
     pthread_t thread;
     counter *good, *lost;
     /* --- below: used only by the thread */
-    CURL *connection;          /* libcurl's handle of the connection; NULL: not connected */
+    CURL *connection;          /* libcurl handle of the connection; NULL: not connected */
     char why[CURL_ERROR_SIZE]; /* libcurl's last error on the connection */
     struct lines sent;         /* lines sent over the connection but not yet delivered; requeued if the connection breaks */
     bool proven;               /* true: a line was delivered over this connection */
     int refusals;              /* number of consecutive connections that the server closed before a line was delivered */
-    bool failing;              /* true: the server cannot be reached, or accepts no lines */
+    bool failing;              /* true: the server is unreachable or accepts no lines */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
@@ -114,7 +114,7 @@ static void disconnect(struct audit_syslog *syslog)
     pthread_mutex_unlock(&syslog->lock);
 }
 
-/* Logs the first failure after a success, for example "cannot be reached" with libcurl's error as `why`. */
+/* Logs the first failure after a success. what: for example "cannot be reached"; why: libcurl's error. */
 static void report_failure(struct audit_syslog *syslog, const char *what, const char *why)
 {
     if (!syslog->failing)
@@ -179,7 +179,7 @@ static bool connect_now(struct audit_syslog *syslog)
     return false;
 }
 
-/* Returns NULL if the connection is open, else why it ended. */
+/* Returns why the connection ended; NULL: it is open. */
 static const char *why_closed(struct audit_syslog *syslog)
 {
     char byte;
@@ -251,7 +251,7 @@ static bool send_next(struct audit_syslog *syslog)
         return true;
     if (!syslog->connection && !connect_now(syslog))
         return false;
-    /* the line stays valid without the lock, because only this thread removes lines from the queue */
+    /* the line stays valid without the lock, because only this thread dequeues lines */
     if (!send_all(syslog, &first->text)) {
         disconnect(syslog);
         return false;

@@ -26,7 +26,7 @@ void refusal_text(const struct refusal *refusal, char out[REFUSAL_TEXT_BYTES]);
 const char *refusal_words(enum refusal_code code);
 /* Returns {"code": ..., "args": {...}}, or NULL for REFUSAL_NONE. */
 json_t *refusal_json(const struct refusal *refusal);
-/* Sets two members of a JSON answer: `why`, the English sentence ("" for REFUSAL_NONE), and `refusal` if something was refused. */
+/* Sets two members of a JSON answer: `why`, the English sentence ("" for REFUSAL_NONE), and `refusal`, unless the code is REFUSAL_NONE. */
 void refusal_add(json_t *answer, enum refusal_code code);
 void refusal_add_with(json_t *answer, const struct refusal *refusal); /* like refusal_add(), for a refusal with arguments */
 /* Sets two members of a JSON answer, `unaudited` and `unaudited_refusal`: why the audit trail does not record the action. */

@@ -37,7 +37,7 @@ static const int64_t STEP_NS = 500 * NS_PER_MS;
 static const int64_t QUICK_NS = 100 * NS_PER_MS;
 
 struct pending_request {
-    uint64_t id, client; /* ids of a forwarded act and of the client that sent it; id 0: the entry is free */
+    uint64_t id, client; /* ids of a forwarded action and of the client that sent it; id 0: the entry is free */
 };
 
 struct core_link {
@@ -67,9 +67,9 @@ struct core_link {
     char why[WHY_BYTES]; /* why this connection ended */
     struct thread thread;
     /* --- below: under thread.lock */
-    struct lws_context *context; /* libwebsockets context of the connection to the core; NULL: not connected */
+    struct lws_context *context; /* libwebsockets context for the connection to the core; NULL: not connected */
     bool is_up;
-    uint64_t session; /* number of the connection over which readings arrive, unique among all links of this process */
+    uint64_t session; /* number of the connection that delivers readings, unique among all links of this process */
     int up_index;     /* index in params.urls of the core that is sending readings */
     struct text *out; /* messages queued for sending to the core */
     size_t out_count, out_capacity;

@@ -39,10 +39,10 @@ struct core_link_params {
 struct core_link;
 /* Returns true if a URL is valid for a core: scheme, host and port, but no path. */
 bool core_link_url_good(const char *url);
-/* Starts the link. Returns NULL if the token cannot be read or the thread cannot be started (logged). The strings of `params` must
+/* Starts the link. Returns NULL if the token cannot be read or the thread cannot be started (logged). Strings in `params` must
    outlive the link. */
 struct core_link *core_link_start(const struct core_link_params *params);
-/* Ends the thread. For forwarded actions that were not answered, core_link_collect() returns the answer that the outcome is unknown. */
+/* Ends the thread. For forwarded actions still unanswered, core_link_collect() returns the answer that the outcome is unknown. */
 void core_link_halt(struct core_link *link);
 /* Ends the thread like core_link_halt() and frees the link. Sets *link to NULL; accepts a pointer to NULL. */
 void core_link_stop(struct core_link **link);

@@ -26,7 +26,7 @@ void core_sent_finish(struct core_sent *sent);
 void core_readings_write(struct text *out, const struct snapshot *snapshot, struct core_sent *sent);
 
 struct core_readings {
-    int64_t utc_ns; /* the core's UTC clock when it took the readings */
+    int64_t utc_ns; /* the core's UTC clock when the snapshot of the readings was taken */
     /* smallest difference between this machine's monotonic clock and the core's over all messages of this connection; the
        caller sets it to INT64_MAX for a new connection */
     int64_t least_ns;

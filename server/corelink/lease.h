@@ -3,15 +3,15 @@
    caller passes the time. Thread: one at a time. Three parties vote: the leader, its standby, and a row in a database. The
    leader may act for LEASE_HOLD_NS from the time when it sent the last confirmed request. Such a request is a renewal of the
    row, or a question that the standby answered with a promise not to bid for LEASE_NS. A follower may bid for the row only if
-   it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and the row names it as standby or names no
-   standby. A bid changes the row only if the row is still as the bidder saw it. So one of two bids wins, and a leader that has
-   renewed in the meantime stays leader. A leader that shuts down gives the lease: it stops acting, then removes itself from the
-   row and names the node that may bid at once. A follower that saw the former leader in the row of the same epoch need not
-   wait, because its promise bound it only to that leader. After LEASE_NS, any node may bid for a row that was given. The leader
-   counts only promises of the node that the row names as its standby, as confirmed by a renewal: no other node may bid. A
-   leader whose standby is in maintenance names itself as standby, and makes promises to itself without a message. LEASE_HOLD_NS
-   is shorter than LEASE_NS by more than the clocks of two machines can drift apart in that time. Clocks of different machines
-   are never compared. */
+   three conditions hold: it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and the row names it or
+   nobody as standby. A bid changes the row only if the row is still as the bidder saw it. So one of two bids wins, and a leader
+   that has renewed in the meantime stays leader. A leader that shuts down gives the lease: it stops acting, then removes itself
+   from the row and names the node that may bid at once. A follower that saw the former leader in the row of the same epoch need
+   not wait, because its promise bound it only to that leader. After LEASE_NS, any node may bid for a row that was given. The
+   leader counts only promises of the node that the row names as its standby, as confirmed by a renewal: no other node may bid.
+   A leader whose standby is in maintenance names itself as standby, and makes promises to itself without a message.
+   LEASE_HOLD_NS is shorter than LEASE_NS by more than the clocks of two machines can drift apart in that time. Clocks of
+   different machines are never compared. */
 #ifndef CORELINK_LEASE_H
 #define CORELINK_LEASE_H
 #include <stdbool.h>
@@ -36,7 +36,7 @@ struct lease_row {    /* the lease's row in the database */
 struct lease {
     char node[LEASE_NODE_BYTES]; /* name of this node */
     int64_t instance;
-    struct lease_row row; /* the row of the database as this core last read or wrote it */
+    struct lease_row row; /* the database row as this core last read or wrote it */
     bool known;           /* true: `row` is valid */
     bool leads;
     bool lost;                     /* true: this node was the leader, but another node leads now */

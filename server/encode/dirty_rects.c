@@ -75,7 +75,7 @@ struct rect_list {
     size_t count, capacity;
 };
 
-/* Adds a horizontal run of differing tiles; extends the rectangle directly above if that has the same left edge and width. */
+/* Adds a horizontal run of differing tiles, or extends the rectangle directly above by it if that has the same left edge and width. */
 static void add_run(struct rect_list *list, const struct dirty_rect *run)
 {
     for (size_t i = 0; i < list->count; i++) {

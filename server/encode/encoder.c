@@ -55,7 +55,7 @@ bool encoder_is_stream(const char *name)
 static bool find_dirty_rects(const struct encoder *encoder, const struct frame *frame, const struct frame *before, struct dirty_rect *rects,
                              int *count)
 {
-    if (encoder->impl->is_stream) /* the codec finds changes itself */
+    if (encoder->impl->is_stream) /* the codec detects changes itself */
         return !dirty_rects_none(before, frame);
     *count = dirty_rects_find(before, frame, rects);
     if (*count == 0)

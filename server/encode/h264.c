@@ -37,7 +37,7 @@ static struct encoder *h264_create(struct log *log, const char *library)
     return NULL;
 }
 
-/* H.264 needs even sizes: if width or height is odd, repeats luma's last column or row. */
+/* H.264 needs even dimensions: repeats luma's last column or row if width or height is odd. */
 static void extend(const struct h264_planes *to, int width_px, int height_px)
 {
     size_t pitch = (size_t)to->pitches[0];

@@ -33,7 +33,7 @@ enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MAX_THREADS = 8 };
 struct h264_codec {
     const AVCodec *codec;
     const struct library *library;
-    AVCodecContext *context; /* libavcodec context for frames of the size of the newest frame */
+    AVCodecContext *context; /* libavcodec context for the size of the newest frame */
     AVFrame *picture;
     AVPacket *out;
     struct h264_upload *upload;
@@ -100,8 +100,8 @@ static int thread_count(int width_px, int height_px)
     return (int)(parts < most ? parts : most);
 }
 
-/* Describes the frames to libavcodec. Colours are BT.601 at full range, as in JPEG, because libyuv converts to it fastest and
-   browsers reproduce it most exactly (with BT.709 at limited range, chromium is off by up to 12 of 255). */
+/* Describes the frames to libavcodec. Colours are BT.601 at full range, as in JPEG: libyuv converts to it fastest, and browsers
+   reproduce it most exactly. With BT.709 at limited range, chromium is off by up to 12 of 255. */
 static void describe(AVCodecContext *context, const struct h264_codec *h264)
 {
     context->width = (h264->width_px + 1) & ~1;

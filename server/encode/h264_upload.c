@@ -10,7 +10,7 @@
 #include "base/mem.h"
 
 struct h264_upload {
-    AVFrame *interleaved; /* NULL: the encoder accepts planes */
+    AVFrame *interleaved; /* frame with interleaved chroma; NULL: the encoder accepts planes */
     bool device;          /* true: the encoder accepts only frames in its device's memory */
 };
 

@@ -106,7 +106,7 @@ static void write_halved(struct jpeg_compress_struct *codec, const struct yuv_pl
     begin(codec, planes->width_px, planes->height_px, JCS_YCbCr, quality, true);
     while (codec->next_scanline < codec->image_height) {
         for (int c = 0; c < 3; c++)
-            for (int j = 0; j < (c ? ROWS / 2 : ROWS); j++) { /* rows below the picture's lower edge repeat its last row */
+            for (int j = 0; j < (c ? ROWS / 2 : ROWS); j++) { /* rows below the picture's lower edge are copies of its last row */
                 int height = c ? (planes->height_px + 1) / 2 : planes->height_px;
                 int y = (int)codec->next_scanline / (c ? 2 : 1) + j;
                 rows[c][j] = planes->plane[c] + (ptrdiff_t)(y < height ? y : height - 1) * planes->pitch[c];

@@ -14,7 +14,7 @@ struct yuv_planes {
     int pitch[3];
 };
 
-enum { PLANES_BAND_PX = 16 };                                                   /* number of pixel rows in one band */
+enum { PLANES_BAND_PX = 16 };                                                   /* height of a band in pixel rows */
 size_t planes_bands(int height_px);                                             /* returns the number of bands */
 void planes_convert(const struct yuv_planes *planes, size_t begin, size_t end); /* converts the bands [begin, end) */
 

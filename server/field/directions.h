@@ -3,9 +3,9 @@
    field's value, interpolated as usual. Its direction is that of sum_i w_i v_i with w_i = s_i / D_i^p, where v_i are the
    sensors' vectors after parallel transport along the surface to the point (prepared: preprocess/influence/transport.h). So
    vectors on two sides of a sphere do not cancel in between merely because they point in opposite directions in space. A
-   direction is unknown where no sensor with a direction reaches, where a sensor without a usable direction or reading is nearer
-   than all others, where vectors cancel (|sum| < DIRECTION_LEAST times the sum of their lengths), and where a vector is nearly
-   perpendicular to the surface. Thread: any that may read the scene. */
+   direction is unknown where no sensor with a direction reaches, and where a sensor without a usable direction or reading is
+   nearest. It is also unknown where vectors cancel (|sum| < DIRECTION_LEAST times the sum of their lengths), and where a vector
+   is nearly perpendicular to the surface. Thread: any that may read the scene. */
 #ifndef FIELD_DIRECTIONS_H
 #define FIELD_DIRECTIONS_H
 #include "field/params.h"

@@ -11,14 +11,14 @@
 #include "plant/exact.h"
 #include "plant/singles.h"
 
-/* GROUP: number of triangles evaluated together. GRAIN: number of triangles per job of a worker thread. MAX_PIECES: largest number of
-   pieces into which one triangle is halved repeatedly. */
+/* GROUP: number of triangles evaluated together. GRAIN: number of triangles per job of a worker thread. MAX_PIECES: maximum
+   number of pieces into which one triangle is split by repeated halving. */
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
 #define MAX_POWER 2.0f /* for interpolation shepard: largest power (exponent of the distance) for which STEP samples finely enough */
-/* For shepard, the error in a triangle is at most L^2 K / (6 d^2), with L its longest side, d its distance to the nearest
-   sensor, and K / d^2 a bound on the second derivative of the weights. */
+/* For shepard, the error in a triangle is at most L^2 K / (6 d^2). L is its longest side, d its distance to the nearest sensor,
+   and K / d^2 a bound on the second derivative of the weights. */
 #define SHEPARD_ACCEPTED 6.0f
 /* for interpolation paper: longest side of a triangle that needs no samples, as a fraction of the distance to the nearest
    sensor and of the radius R */
@@ -60,7 +60,7 @@ struct drawn_error_job {
     float radius_m, accepted, error_m;
     const uint32_t *members;
     const double *ones;
-    uint32_t first;       /* number of the first triangle */
+    uint32_t first;       /* index of the first triangle to measure */
     float *errors;        /* error of each triangle */
     float *vertex_errors; /* error of each vertex's value due to errors of geodesic distances; NULL: not measured */
 };
@@ -133,7 +133,7 @@ static void enqueue(struct sampler *sampler, const struct triangle_piece *piece)
     sampler->queue[sampler->queued++] = *piece;
 }
 
-/* Returns the length of the piece's longest side. *begin receives the index of the corner where that side begins. */
+/* Returns the length of the piece's longest side. *begin receives the index of the corner at which that side begins. */
 static float longest_side(const struct sampler *sampler, const struct triangle_piece *piece, int *begin)
 {
     float at[3][3], longest = -1;
@@ -293,7 +293,7 @@ static void measure_some(void *arg, size_t begin, size_t end)
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = sampler_init(sampler, job);
     float step = STEP * fminf(1, MAX_POWER / job->weights->power);
-    /* out of memory: the errors are unknown, so all are set to the maximum */
+    /* out of memory: the errors stay unknown, so all are set to the maximum */
     for (size_t t = job->first + begin; t < job->first + end && !good; t++)
         job->errors[t] = 1;
     for (size_t t = job->first + begin; t < job->first + end && good; t++) {

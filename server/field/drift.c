@@ -25,7 +25,7 @@ enum { BESIDE = 3, WITHIN = 2 };
 static const double MIN_JUMP_FACTOR = 6;     /* smallest jump to be found, relative to the residuals' usual change over as many hours */
 static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models the time that heat takes from the
                                                 other sensors to this one */
-static const double DEPENDENT_PART = 1. / 6; /* residuals further apart than this fraction of the recorded time count as independent */
+static const double DEPENDENT_PART = 1. / 6; /* residuals farther apart than this fraction of the recorded time count as independent */
 static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's length (a column is one term of the model over all
                                                 hours) that must be independent of the other columns */
 
@@ -41,7 +41,7 @@ struct week { /* hourly data of one sensor */
    square root of the hour's weight. */
 struct drift_rows {
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
-    double counted; /* sum of the hours' weights */
+    double counted; /* sum of the weights of the hours */
     int hour[DRIFT_HOURS], count, columns;
 };
 

@@ -32,7 +32,7 @@ struct drift {
     enum drift_verdict verdict;
     double change;  /* drift over the week, in the reading's unit; NaN: unknown */
     double error;   /* standard error of `change` */
-    double scatter; /* standard deviation of the differences between readings and model, noise included */
+    double scatter; /* standard deviation of the differences between readings and model, including noise */
     int hours;      /* number of hours used */
 };
 

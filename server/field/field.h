@@ -39,7 +39,7 @@
 #include "value/baselines.h"
 #include "value/snapshot.h"
 
-/* Computes the scalars of all assets of a scene, and caches them by parameters. Thread: one at a time. */
+/* Computes the scalars of all assets of a scene, and caches them by their parameters. Thread: one at a time. */
 struct field;
 /* Creates an empty field. Both workers and scene must outlive it. The caller destroys it. */
 struct field *field_create(struct workers *workers, const struct scene *scene);
@@ -116,7 +116,7 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
 struct field_sensor {
     int tag;
     float surface_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
-    uint32_t column;    /* index of the sensor in the asset file; trial sensors have indices from the file's sensor count on */
+    uint32_t column;    /* index of the sensor in the asset file; trial sensors have indices from the file's number of sensors on */
     bool in_file;       /* true: a column of the file has the sensor's geodesic distances; false: along_m has them */
     /* geodesic distance of each vertex if the file lacks them; NULL: not known yet, or straight-line distances are used */
     const float *along_m;

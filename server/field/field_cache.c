@@ -107,9 +107,9 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
     return true;
 }
 
-/* Caches columns of G (one sensor's weights at all vertices) only when they are summed for the second time, because each set of
-   weights is summed only once while a user drags a slider. To make room, evicts only entries last used before the previous use
-   of these weights; otherwise two busy fields would evict each other forever. If not all columns fit, caches the parts for the
+/* Caches columns of G (one sensor's weights at all vertices) only when they are summed for the second time: while a user drags
+   a slider, each set of weights is summed only once. To make room, evicts only entries last used before the previous use of
+   these weights; otherwise two busy fields would evict each other forever. If not all columns fit, caches the parts for the
    first vertices, which all levels of detail use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {

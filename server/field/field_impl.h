@@ -10,9 +10,9 @@
 struct field {
     struct workers *workers;
     const struct scene *scene;
-    struct field_layout **layouts;          /* sensor layouts by [asset][group]; NULL: not created yet, or the asset has no sensor of the
-                                               group */
-    struct field_state **states;            /* by asset: linked list of the asset's cached states (computed fields) */
+    struct field_layout **layouts;          /* [asset][group]: sensor layouts; NULL: not created yet, or the asset has no sensor of
+                                               the group */
+    struct field_state **states;            /* [asset]: linked list of the asset's cached states (computed fields) */
     struct weights *weights[FIELD_BUCKETS]; /* hash table of all cached weights, by their key */
     struct baselines *baselines;            /* NULL: none */
     struct trials *trials;                  /* NULL: none */
@@ -43,7 +43,7 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
 
 /* Returns the bucket (linked list) of the hash table of cached weights to which this hash belongs. */
 struct weights **field_cache_bucket(struct field *field, uint64_t hash);
-/* Releases the state's reference to its weights, which can then be evicted. */
+/* Drops the state's reference to its weights, which can then be evicted. */
 void field_cache_release_weights(struct field_state *state);
 /* Removes the state at *link from its asset's list of cached states and destroys it. */
 void field_cache_remove_state(struct field *field, struct field_state **link);

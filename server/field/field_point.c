@@ -10,7 +10,7 @@
 #include "field/update.h"
 #include "plant/influence.h"
 
-/* Interpolates the scalars of the triangle's corners, as a drawn frame does. */
+/* Interpolates between the scalars of the triangle's corners, like a drawn frame. */
 static void point_drawn(const struct scalars *scalars, const struct field_place *place, struct field_point *out)
 {
     double value = 0, no_data = 0, uncertain = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field's inner loops. They are branch-free and sum in the order of sensors at each vertex, so that every machine and every division
-   into blocks gives identical bits. */
+/* The field's inner loops. They are branch-free and sum over the sensors in order at each vertex, so that every machine and
+   every division into blocks gives identical bits. */
 #include "field/kernels.h"
 
 #include <assert.h>

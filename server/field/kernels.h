@@ -14,7 +14,7 @@
 
 struct scalar;
 
-/* Decodes distance codes of an asset file (protocol/asset_distance.h) to metres. */
+/* Decodes distance codes from an asset file (protocol/asset_distance.h) to metres. */
 void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m);
 /* Writes the straight-line distance of each position from the point. */
 void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m);
@@ -29,8 +29,8 @@ float kernel_largest(const float *distance_m, size_t count, float most_m);
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
 /* For one sensor: if it contributes, raises top[i] to its exponent in the paper's Algorithm 1 (Kim & Suh 2025), max(0, 1 -
    distance / radius) strength / ln 2 (a power of 2), if that is larger. A sensor contributes within its reach. If no sensor
-   reaches vertex i, the nearest one contributes alone and continues its value, so that a triangle of which only one corner is
-   reached can be interpolated. Start with zeros and call once for each sensor. */
+   reaches vertex i, the nearest one contributes alone and continues its value, so that a triangle with one reached corner can
+   be interpolated. Start with zeros and call once for each sensor. */
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 
@@ -44,7 +44,7 @@ struct kernel_column {
     float reach_m, strength, decay;
     float power;            /* exponent of the distance, for interpolation shepard */
     const float *near_log2; /* log2 of near_m, for interpolation shepard with a power other than 2 */
-    bool alike;             /* for interpolation shepard: true: all strengths are equal */
+    bool alike;             /* for interpolation shepard: all strengths are equal */
     float radius_m;         /* radius R, for interpolation paper */
 };
 /* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the

@@ -9,12 +9,12 @@
 
 struct layout_sensor {
     int tag;               /* index in plant->tags */
-    uint32_t column;       /* index of the sensor in the asset file; trial sensors have indices from the file's sensor count on */
+    uint32_t column;       /* index of the sensor in the asset file; trial sensors have indices from the file's number of sensors on */
     float surface_m[3];    /* position of the sensor in metres, in the coordinates of the asset file */
     uint32_t vertex;       /* index of the vertex nearest to the sensor */
     bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m instead of the file */
     const float *tried_m;  /* geodesic distance of each vertex; NULL: not known yet */
-    const float *heat_m;   /* distance of each vertex by the heat method; NULL: not prepared */
+    const float *heat_m;   /* each vertex's distance by the heat method; NULL: not prepared */
     float strength, decay; /* as configured, >= 0 */
 };
 
@@ -33,7 +33,7 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
 struct field_layout {
     const struct asset *file;
     const struct plant_group *group;
-    uint32_t number;              /* index of the group in the plant */
+    uint32_t number;              /* index of `group` in the plant */
     const struct plant_tag *tags; /* the plant's tags */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;

@@ -202,7 +202,7 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
     return count;
 }
 
-/* Predicts all sensors of a snapshot. The caller frees the result (mem_free). */
+/* Predicts all sensors from the readings of a snapshot. The caller frees the result (mem_free). */
 static struct neighbour *predict_from(const struct neighbours *neighbours, const struct snapshot *snapshot)
 {
     const size_t count = neighbours_count(neighbours);

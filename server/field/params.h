@@ -19,7 +19,7 @@ struct field_override {
 #define FIELD_AS_CONFIGURED (-1.0f)
 enum { FIELD_OVERRIDES = 256 };
 
-/* A session's choices about its field. Compared byte by byte, so zero-initialise all bytes, then call field_params_default(). */
+/* A session's choices about its field. Compared byte by byte: zero-initialise all bytes, then call field_params_default(). */
 struct field_params {
     int group;
     enum field_show show;

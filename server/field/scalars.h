@@ -18,7 +18,7 @@ struct scalar {
     uint8_t uncertain;
     /* 255: in the operator's view, the nearest sensor is good but its tag has no limits, so there is data but no value */
     uint8_t no_limits;
-    uint8_t no_data; /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0. Derived from `lacking` */
+    uint8_t no_data; /* 255: no good sensor reaches the vertex, or the nearest configured one is Bad; else 0. Derived from `lacking` */
 };
 
 struct scalars {
@@ -29,7 +29,7 @@ struct scalars {
     /* sum of the largest value changes of all versions so far: a copy of the scalars made when `travel` was t is wrong by at
        most travel - t */
     double travel;
-    size_t count;   /* number of elements of `at`: one for each vertex in the asset file */
+    size_t count;   /* number of elements of `at`: one per vertex of the asset file */
     size_t ready;   /* the first `ready` vertices are up to date: as many as the requested levels of detail need */
     uint64_t grown; /* number of times that `ready` has grown */
     const struct scalar *at;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Maps values to positions on the scale, and positions to colours. */
+/* Maps values to positions on the colour scale, and positions to colours. */
 #include "field/scale.h"
 
 #include <math.h>

@@ -34,7 +34,7 @@ int scale_index(const struct scale *scale, double value);
 void scale_look_up(const struct scale *scale, double value, uint8_t rgb[3]);
 /* Writes the values at which bands meet, ascending. Returns their number; 0 if there are no bands, or more than SCALE_EDGES values. */
 int scale_edges(const struct scale *scale, double edges[SCALE_EDGES]);
-/* Returns the smallest change of a value that can change its colour. */
+/* Returns the smallest change that can change a value's colour. */
 double scale_step(const struct scale *scale);
 
 #endif

@@ -10,7 +10,7 @@
 struct update; /* defined in update.h */
 
 struct state_input {           /* a sensor's contribution to the sums from which the field is computed */
-    double value;              /* value of the sensor's reading in engineering units; for interpolation paper scaled to 0..1 */
+    double value;              /* the sensor's reading in engineering units; for interpolation paper scaled to 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
 
@@ -48,7 +48,7 @@ struct field_state *state_create(int asset, struct field_layout *layout, const s
 /* Frees the state. Accepts a pointer to NULL; sets the pointer to NULL. */
 void state_destroy(struct field_state **state);
 size_t state_bytes(const struct field_state *state);
-/* Returns by how many bytes the state would grow with room for the first `count` vertices. */
+/* Returns how many bytes the state would grow by with room for the first `count` vertices. */
 size_t state_more_bytes(const struct field_state *state, size_t count);
 /* Allocates memory for the first `count` vertices; assets far from the camera need few. Returns false when out of memory, with nothing
    changed. */
@@ -61,7 +61,7 @@ void state_read(struct field_state *state, const struct snapshot *snapshot, cons
 void state_fill(struct field_state *state);
 /* Returns true if state->weights must be replaced, because other sensors are usable in state->now than for these weights. */
 bool state_needs_weights(const struct field_state *state);
-/* Returns true if the state's scalars are out of date: they were computed from other inputs than state->now. */
+/* Returns true if the state's scalars are out of date: they were computed from inputs that differ from state->now. */
 bool state_is_behind(const struct field_state *state);
 /* For SHOW_DISTANCE, in place of state_read() and an update: fills the scalars once with the distances from one sensor of the layout. */
 void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);

@@ -19,7 +19,7 @@
 #define ERROR_MARGIN 1.1
 /* the error limit (error_limit) is replaced if it is stricter than necessary by more than this factor */
 #define ERROR_SLACK 1.5
-#define MAX_BLIND 1000.0 /* largest height of a hot spot that is shown, in multiples of the group's range */
+#define MAX_BLIND 1000.0 /* largest height of a hot spot to show, in multiples of the group's range */
 /* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding error remains.
    After a larger change, everything is summed again */
 #define STEP_LIMIT 1e6
@@ -364,10 +364,10 @@ void update_run(struct field_state *state)
     update->next = update->end;
 }
 
-/* A legend gives an error bound only if values on more than this fraction of an asset's surface may be wrong by more than 1/255
-   of the range. Preparation does not subdivide triangles that nobody sees (inside bodies, and at jumps of distance), which are
-   up to a quarter of the surface of the demo's machines. These triangles are marked and picks report them, but a number in the
-   legend would warn of errors that no frame shows. */
+/* A legend gives an error bound only if errors exceed 1/255 of the range on more than this fraction of an asset's surface.
+   Preparation does not subdivide triangles that nobody sees (inside bodies, and at jumps of distance), which are up to a
+   quarter of the surface of the demo's machines. These triangles are marked and picks report them, but a number in the legend
+   would warn of errors that no frame shows. */
 static const float MIN_LEGEND_SHARE = 0.3f;
 
 static double drawn_error(const struct field_state *state)

@@ -51,8 +51,8 @@ static inline bool weight_takes_part(float distance_m, float near_m, float reach
     return (within | nearest) & finite;
 }
 
-/* Multiplies a weight by the squared remaining distance to the finite reach, relative to the nearest sensor's: ((reach - distance) /
-   (reach - near))^2. */
+/* Fades a weight towards the finite reach: multiplies it by the square of the remaining distance, relative to the nearest
+   sensor's: ((reach - distance) / (reach - near))^2. */
 static inline float weight_faded(float weight, float distance_m, float near_m, float reach_m)
 {
     float left = (reach_m - distance_m) / (reach_m - near_m);

@@ -393,8 +393,8 @@ static enum place place_of(float near_m, float lost_m, float no_limits_m, float 
     return lost_m < near_m ? PLACE_LOST : PLACE_GOOD;
 }
 
-/* fin: computes how many metres nearer the sensors would have to be to determine MIN_SENSOR_SHARE of the value. The fraction that they
-   determine falls by the factor e per decay length. */
+/* fin: computes how many metres nearer the sensors would have to be to determine MIN_SENSOR_SHARE of the value. The fraction
+   that they determine falls by a factor of e per decay length. */
 static void find_beyond(struct weights *weights, size_t begin, size_t count)
 {
     double share[KERNEL_BLOCK] = { 0 };
@@ -417,8 +417,8 @@ void weights_deviations(const struct weights *weights, size_t begin, size_t coun
     }
 }
 
-/* gp: computes how many metres nearer the sensors would have to be to remove MIN_KNOWN_PART of the prior's variance. The fraction that
-   they remove falls by the factor e^2 per decay length. */
+/* gp: computes how many metres nearer the sensors would have to be to remove MIN_KNOWN_PART of the prior's variance. The
+   fraction that they remove falls by a factor of e^2 per decay length. */
 static void find_unknown(struct weights *weights, size_t begin, size_t count)
 {
     float deviations[KERNEL_BLOCK];

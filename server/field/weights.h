@@ -67,8 +67,8 @@ struct weights {
     /* for prepared interpolations with lost sensors: [sensor]: its value if all used sensors read 1; else NULL */
     double *ones;
     float decay_m; /* metres; for interpolation fin: the decay length; for gp: 1/k, with k as in preprocess/influence/gaussian.h */
-    const float *deviations; /* for interpolation gp: [vertex]: standard deviation of the field while all sensors are used; else NULL */
-    const float *priors;     /* for interpolation gp: [vertex]: standard deviation of the field without any sensor */
+    const float *deviations; /* [vertex], for interpolation gp: standard deviation of the field while all sensors are used; else NULL */
+    const float *priors;     /* [vertex], for interpolation gp: standard deviation of the field without any sensor */
     float deviation;         /* for interpolation gp: standard deviation of the prior */
     float *errors;           /* [vertex]: largest error of linear interpolation within the adjacent triangles; unit and method in
                                 drawn_error.h; NULL: not measured */
@@ -85,7 +85,7 @@ struct weights {
     uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */
     size_t kept_blocks;
     int users;           /* number of states that use these weights */
-    uint64_t used, sums; /* used: tick (field_impl.h) of the last use; sums: how often the weights were summed */
+    uint64_t used, sums; /* used: tick (field_impl.h) of the last use; sums: number of times that the weights were summed */
     struct weights *next;
 };
 

@@ -96,7 +96,7 @@ static void read_capabilities(struct gl *gl)
     glGetIntegerv(GL_MAX_SAMPLES, &gl->max_samples);
 }
 
-/* Sets the GL state that every pass relies on: rows from the top, depth 1 (near) to 0 (far). */
+/* Sets the GL state on which every pass relies: rows from the top, depth 1 (near) to 0 (far). */
 static void set_conventions(struct gl *gl)
 {
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);

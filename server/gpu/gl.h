@@ -10,7 +10,7 @@
 enum gl_kind { GL_AUTO, GL_EGL_DEVICE, GL_EGL_SURFACELESS, GL_OSMESA };
 
 struct gl_device { /* identifies an EGL device, either by its index in EGL's list or by its PCI address */
-    int index;     /* -1: the address is used */
+    int index;     /* -1: identified by the address */
     unsigned domain, bus, slot, function;
 };
 
@@ -44,7 +44,7 @@ bool gl_lost(const struct gl *gl);
 /* For tests: destroys the underlying context, like a device reset. */
 void gl_lose(struct gl *gl);
 
-void gl_clear_errors(void); /* discards errors of earlier calls, so that gl_no_errors() reports only errors of later calls */
+void gl_clear_errors(void); /* discards earlier errors, so that gl_no_errors() reports only later ones */
 bool gl_no_errors(void);    /* returns true if GL has reported no error since the last check */
 /* Returns how often this thread's contexts have run out of GPU memory, as far as the functions of this header noticed.
    Everything created or drawn between two calls with different results is invalid. */

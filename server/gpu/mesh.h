@@ -20,8 +20,8 @@ enum mesh_attribute {
     MESH_SECOND_TEXCOORD = 7,
     MESH_INSTANCE_PLACES
 };
-/* number of 4-float vectors per instance: 3 rows of the matrix for normals (from MESH_INSTANCE_NORMALS on), and 7 rows of matrices for
-   positions (from MESH_INSTANCE_PLACES on) */
+/* number of 4-float vectors per instance: 3 rows of the normal matrix (from MESH_INSTANCE_NORMALS on), and 7 rows of position
+   matrices (from MESH_INSTANCE_PLACES on) */
 enum { MESH_INSTANCE_VECTORS = 10 };
 
 /* Input of mesh_init(). Pointers need only be valid during the call, except for positions, colours and indices. GL on a
@@ -48,7 +48,7 @@ struct gpu_mesh {
 bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
                const struct mesh_params *params); /* creates the buffers from `params`; returns false when out of memory, logged */
 void mesh_finish(struct gpu_mesh *mesh);
-void mesh_bind(const struct gpu_mesh *mesh); /* makes the mesh the source of the following draws */
+void mesh_bind(const struct gpu_mesh *mesh); /* makes the mesh the source of the draws that follow */
 /* Sets the instances for the following draws. instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance. */
 void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances);
 

@@ -11,8 +11,8 @@
 
 #include "base/log/log.h"
 
-/* texels per block; must match shaders/instance.glsl. With 4-byte texels, a block satisfies the largest alignment that GL may demand of
-   storage buffer offsets */
+/* texels per block; must match shaders/instance.glsl. With 4-byte texels, a block meets the strictest alignment that GL may
+   demand of storage buffer offsets */
 enum { POOL_BLOCK = 64 };
 
 struct pool;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compresses rows of 64-bit numbers with zstd, column by column and byte by byte, and decompresses them. */
+/* Compresses and decompresses rows of 64-bit numbers with zstd, grouped by column and by byte. */
 #include "history/columns.h"
 
 #include <zstd.h>

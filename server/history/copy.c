@@ -143,7 +143,7 @@ static bool copy_state(struct log *log, const char *from_path, const char *to_pa
     if (code == SQLITE_OK)
         code = copy_pages(from, to);
     if (code == SQLITE_OK)
-        /* turns off write-ahead logging in the copy, so that the copy is a single file */
+        /* disables write-ahead logging in the copy, so that the copy is a single file */
         code = sqlite3_exec(to, "PRAGMA journal_mode = DELETE", NULL, NULL, NULL);
     bool good = code == SQLITE_OK ? is_whole(log, to, to_path) : failed(log, from_path, "cannot be copied", sqlite3_errstr(code));
     sqlite3_close(to);

@@ -13,8 +13,8 @@
 enum { COPY_HASH_BYTES = 33 }; /* size of a file's hash as text: 32 hexadecimal digits and a terminating 0 */
 
 /* Copies a consistent state of the database `from` to a single file, checks it and syncs it to disk. Returns false on failure
-   (logged); `to` is then removed. This function and copy_file() follow no symbolic links, and read only files owned by the
-   owner of their folder or by the caller, so that root can safely copy from a folder of the daemon's user. `to` must not exist;
+   (logged); `to` is then removed. This function and copy_file() follow no symbolic links, and read only files that belong to
+   the owner of their folder or to the caller. So root can safely copy from a folder of the daemon's user. `to` must not exist;
    if root creates it, it gets the owner of its folder, and only that owner and group can read it. */
 bool copy_database(struct log *log, const char *from, const char *to);
 /* Copies a file byte for byte. Returns false on failure (logged); `to` is then removed. */

@@ -437,8 +437,8 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     return error;
 }
 
-/* Closes the month's file after the spooled rows were written, but leaves its held rows (newest samples that are not recorded
-   yet) there, so that recover() handles them as after a crash. */
+/* Closes the month's file after the spooled rows were written. Its held rows (newest samples that are not recorded yet) stay
+   there, so that recover() handles them as after a crash. */
 static int leave_file(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);

@@ -337,8 +337,8 @@ int history_intervals(struct history_reader *reader, const char *tag, int64_t fr
     int64_t length_us = level < 0 ? stretch_us : bucket_length(stretch_us, level);
     struct month_request of = { tag, level, from_us - from_us % length_us, to_us - to_us % length_us + length_us - 1 };
     *out = (struct history_series){ .bucket_us = length_us };
-    /* The first pass reads the buckets before and after the range only in part. If the series includes such a bucket, the second pass
-       extends the range and reads it in full. */
+    /* The first pass reads the buckets before and after the range only in part. If the series includes such a bucket, the
+       second pass extends the range to read it in full. */
     for (int pass = 0; pass < 2 && !error; pass++) {
         error = read_buckets(reader, &of, out);
         drop_outer_buckets(out, from_us, to_us);

@@ -30,7 +30,7 @@ enum {
     MEDIANS = 10 /* a time between two samples longer than this many times the median is a gap */
 };
 
-/* The samples of one tag in the imported file. */
+/* The samples of a tag in the imported file. */
 struct import_series {
     bool has_row;   /* true: the current pass over the CSV file has already read a row of this tag */
     int64_t row_us; /* time of this tag's last row in the current pass */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Imports samples from a CSV file into history, such as data from before Plantcast was installed. Works while a daemon is recording. */
+/* Imports samples from a CSV file into history, for example from before Plantcast was installed. Works while a daemon is recording. */
 #ifndef HISTORY_IMPORT_H
 #define HISTORY_IMPORT_H
 #include "base/log/log.h"

@@ -21,7 +21,7 @@ int month_chunk_store(struct month_file *file, struct month_chunk *chunk);
    points with those of existing blocks in that time span; a new point replaces an old one of the same time. */
 int month_blocks_write(struct month_file *file, int64_t id, const struct month_chunk *chunk, const struct history_point *points,
                        size_t count);
-/* Calls `edit` with the points of each block of a tag that overlaps from_us..to_us, and rewrites the block if `edit` returns true. */
+/* Calls `edit` with the points of each block of a tag that overlaps from_us..to_us, and rewrites the block if `edit` returned true. */
 typedef bool month_block_edit(void *arg, struct history_points *points);
 int month_blocks_edit(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, month_block_edit *edit, void *arg);
 /* Merges two ascending lists into `out`. If both have a point at the same time, that of `b` wins. */

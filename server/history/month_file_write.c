@@ -35,7 +35,7 @@ static int end(struct month_file *file, int error)
     memset(file->ids, 0, file->tag_count * sizeof(*file->ids));
     file->slot = file->slot_before;
     file->stamp = file->stamp_before;
-    file->chunk->id = 0; /* drops the cached chunk: after the rollback, the next chunk may get the same id with other times */
+    file->chunk->id = 0; /* drops the cached chunk, because after the rollback the next chunk may get the same id with other times */
     return error;
 }
 
@@ -188,7 +188,7 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
                      size_t held_count)
 {
     struct month_row *recorded = NULL, *newest = NULL;
-    /* moves points that an earlier handle left in the table `second` to compressed blocks */
+    /* moves points left in the table `second` by an earlier handle to compressed blocks */
     int error = file->writes ? 0 : month_file_tidy(file);
     if (error || (error = begin(file)))
         return error;

@@ -27,7 +27,7 @@ struct rollup { /* zero-initialise, then set length_us and step */
     bool has_last, open;
     struct history_point last;
     struct history_bucket bucket;
-    double area; /* integral over time of the value in the current bucket, in value times microseconds */
+    double area; /* integral over time of the value in the current bucket, in units of value times microseconds */
 };
 
 /* Adds the next point in order of time; a point older than the last one is treated as if it had the last one's time. Returns

@@ -20,7 +20,7 @@ struct swinging_door { /* zero-initialise */
     bool open, has_skipped, has_held;
     struct history_point anchor;  /* point recorded last */
     struct history_point held;    /* newest sample that left the deadband; recorded when a later one does not fit the swinging door */
-    struct history_point skipped; /* newest sample, if it stayed within the deadband around the last sample that left the deadband */
+    struct history_point skipped; /* newest sample, if it stayed within the deadband around the last sample that left it */
     /* slopes, in units per microsecond, of the steepest and the flattest line from the anchor that pass all later samples
        within the deviation */
     double slope_low, slope_high;

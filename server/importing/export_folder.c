@@ -134,7 +134,7 @@ struct export_upload *export_upload_begin(const char *folder, const char *name, 
     upload->fd = mkostemp(upload->hidden, O_CLOEXEC);
     *error = upload->fd < 0 ? -errno : 0;
     if (upload->fd < 0) {
-        mem_free(upload->hidden); /* the hidden file could not be created, so none needs to be removed */
+        mem_free(upload->hidden); /* there is no hidden file to remove, because it could not be created */
         upload->hidden = NULL;
         export_upload_abandon(&upload);
     }

@@ -36,7 +36,7 @@ void export_folder_list(const char *folder, struct export_list *list);
 void export_list_finish(struct export_list *list);
 /* Returns the name (static text) of the hidden file that stores the units and axes last used for reading models. */
 const char *export_folder_choice(void);
-/* Returns the name (static text) of the hidden file with the report of `plantcast import`. */
+/* Returns the name (static text) of the hidden file that contains the report of `plantcast import`. */
 const char *export_folder_report(void);
 /* Removes the hidden files left by unfinished uploads. */
 void export_folder_sweep(const char *folder);

@@ -34,8 +34,8 @@ struct plant_import {
     char *why; /* why the last import order failed; NULL: it succeeded */
 };
 
-/* Reads the stored choice of units, axis and encoding from its file, whose text is "UNITS/UP/ENCODING/MESH_UNITS"; parts at the end may
-   be missing. */
+/* Reads the stored choice of units, axis and encoding from its file, with the text "UNITS/UP/ENCODING/MESH_UNITS"; trailing
+   parts may be missing. */
 static void read_choice(struct plant_import *import)
 {
     struct import_order order = { 0 };

@@ -8,7 +8,7 @@
 bool fit_parse(const struct plant *plant, const json_t *o, struct fit_message *out, struct message_error *error);
 /* Parses the members of a `camera` message, except seq, into *out. Returns false with *error naming the wrong member. */
 bool camera_parse(const json_t *object, struct camera *out, struct message_error *error);
-/* Moves the camera so that each half of the view shows the asset, tag or plant that the `fit` message names. */
+/* Moves the camera so that each half of the view shows the asset, tag or plant named in the `fit` message. */
 void fit_apply(const struct scene *scene, const struct fit_message *fit, const struct view *view, struct camera *camera);
 /* Sets view->camera from the members `camera`, `projection`, `height_m`, `fit` and `side` of the JSON object `o`. Without them,
    the view gets the plant's initial camera or, if the plant file has none, one that shows the whole plant. bare: the picture

@@ -14,7 +14,7 @@ bool may_number(const json_t *o, const char *name, double low, double high, doub
 bool need_seq(const json_t *o, uint32_t *out, struct message_error *error);
 bool need_vector(const json_t *o, const char *name, double out[3], struct message_error *error);
 bool may_vector(const json_t *o, const char *name, double out[3], bool *given, struct message_error *error);
-/* Reads a member whose text is one of the names of a table; *out receives the name's value. */
+/* Reads a member whose text must be a name in a table; *out receives the name's value. */
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* Reads a text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);

@@ -5,7 +5,7 @@
 
 json_t *number(double value)
 {
-    /* adding 0.0 turns -0.0 into 0.0, so that JSON never has a minus sign before zero */
+    /* adding 0.0 turns -0.0 into 0.0, so that JSON never contains a negative zero */
     return isfinite(value) ? json_real(value + 0.0) : json_null();
 }
 

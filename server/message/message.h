@@ -139,7 +139,7 @@ struct pick_request {
 
 enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
-    int action;                          /* action of the user on the alarms (enum alarm_event) */
+    int action;                          /* the user's action on the alarms (enum alarm_event) */
     /* indices of the tags whose alarms the request names; for alarms of kind ALARM_LINK, indices of devices (alarm/devices.h) */
     int tags[ALARM_REQUEST_MOST], count;
     uint8_t kinds[ALARM_REQUEST_MOST]; /* kind of each alarm (enum alarm_kind), in the order of `tags` */
@@ -149,7 +149,7 @@ struct alarm_request {
 
 #define TIME_MOST_SPEED 3600
 struct time_request {
-    bool has_at;   /* true: the session goes to the instant at_us; false: it stays at the instant shown now */
+    bool has_at;   /* true: the session moves to the instant at_us; false: it stays at the instant shown */
     int64_t at_us; /* microseconds UTC; 0: live */
     double speed;  /* seconds of history per second of playback; negative: backwards; 0: paused */
 };
@@ -168,7 +168,7 @@ struct place_request {
 
 struct coverage_request {
     int group;    /* index of the group whose sensor coverage is assessed; -1: the group shown in the view */
-    double far_m; /* metres from the nearest sensor beyond which a surface counts as uncovered; 0: the default */
+    double far_m; /* metres from the nearest sensor beyond which a surface counts as not covered; 0: the default */
 };
 
 struct loop_check_request {

@@ -15,7 +15,7 @@ extern const struct name names_arrows[], names_backdrop[], names_strip[], names_
     names_fill[], names_show[], names_scale[], names_look[], names_codec[], names_projection[], names_side[], names_pick[],
     names_signed[]; /* one table for each enum; each is terminated by an entry whose text is NULL */
 
-/* Returns the enum value of a name; -1: the table does not have the name. */
+/* Returns the enum value of a name; -1: the name is not in the table. */
 int name_find(const struct name *names, const char *text);
 /* Returns the name of a value (static text). The table must contain the value. */
 const char *name_of(const struct name *names, int value);

@@ -11,7 +11,7 @@ static const char *const NOW = "now";
 
 /* --- reading --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the index of the tag with a name; -1 with *error if there is none. */
+/* Returns the index of the tag with that name; -1 with *error if there is none. */
 static int find_tag(const struct plant *plant, const char *field, const char *tag, struct message_error *error)
 {
     char name[48];

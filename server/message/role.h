@@ -21,7 +21,7 @@ static inline bool role_is_node(enum role role)
     return role == ROLE_RENDERER || role == ROLE_STANDBY;
 }
 
-extern const struct name names_role[]; /* names of the roles; the last entry's text is NULL */
+extern const struct name names_role[]; /* names of the roles; terminated by an entry whose text is NULL */
 
 /* Returns true if that role may send the message; if not, *error says why. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);

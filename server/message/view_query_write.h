@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a view as the query of /snapshot.png that produces it: the reverse of view_query.h. Pure. */
+/* Writes a view as the query of /snapshot.png that reproduces it: the reverse of view_query.h. Pure. */
 #ifndef MESSAGE_VIEW_QUERY_WRITE_H
 #define MESSAGE_VIEW_QUERY_WRITE_H
 #include "message/view_address.h"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages of control-room displays, of desks that send views to displays, and of engineers who pair displays. Thread: the event loop. */
+/* Messages of control-room displays, of desks that send views to them, and of engineers who pair them. Thread: the event loop. */
 #ifndef MESSAGE_WALL_MESSAGE_H
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"
 
-/* tile_parse(), display_parse() and their siblings parse messages into out->hello.tile, out->wall or out->pair; send_to_wall_parse() also
-   writes view and title into out->view_edit. They return false with *error saying what is wrong. */
+/* tile_parse(), display_parse() and the functions below parse messages into out->hello.tile, out->wall or out->pair;
+   send_to_wall_parse() also writes view and title to out->view_edit. They return false with *error saying what is wrong. */
 /* Reads the optional member `tile` (display of a wall) of the message hello. */
 bool tile_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);

@@ -13,7 +13,7 @@ enum { ID_TOKEN_BYTES = 64 * 1024, ID_TOKEN_SKEW_S = 60 };
 struct id_token_expected {
     const struct openid_config *config;
     const json_t *jwks; /* the identity provider's public keys */
-    const char *nonce;  /* nonce that the token must contain; NULL: not checked, because a token from a refresh need not contain one */
+    const char *nonce;  /* nonce that the token must contain; NULL: not checked, because a token from a refresh may lack one */
     const char *sub;    /* subject (user id at the provider) that the token must contain; NULL: not known yet */
     int64_t now_s;      /* present time, seconds UTC */
     int64_t patience_s; /* seconds for which a token is still accepted after it expires (claim `exp`) */
@@ -22,7 +22,7 @@ struct id_token_expected {
 enum id_token_fault {
     ID_TOKEN_GOOD,
     ID_TOKEN_BAD,
-    ID_TOKEN_NO_KEY, /* the token is signed with a key that is not in `jwks`: the provider may have a new key */
+    ID_TOKEN_NO_KEY, /* the token was signed with a key that is not in `jwks`: the provider may have a new key */
 };
 
 /* Verifies an ID token. If it is valid, *claims receives its claims (free with json_decref()); otherwise *why (static text)

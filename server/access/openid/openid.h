@@ -28,13 +28,13 @@ struct openid *openid_start(const struct openid_params *params);
 void openid_stop(struct openid **openid);
 const struct openid_config *openid_config_of(const struct openid *openid);
 
-/* Begins a log-in. Returns the URL at the provider to which the browser must be redirected (free with mem_free()). `binding` receives a
+/* Begins a log-in. Returns the URL at the provider to redirect the browser to (free with mem_free()). `binding` receives a
    cookie that the same browser must bring back. Returns NULL with *why (static text) if the log-in cannot begin. */
 char *openid_begin(struct openid *openid, const uint8_t address[16], const char *path, int64_t now_ns,
                    char binding[SIGN_IN_SECRET_CHARS + 1], const char **why);
 
 struct openid_return { /* parameters of the request with which a browser returns from the provider; the texts may be NULL */
-    uint64_t request;  /* id of the HTTP request; openid_collect() returns it with the answer */
+    uint64_t request;  /* id of the HTTP request; openid_collect() returns it along with the answer */
     const char *state, *code, *iss, *error, *binding, *from;
 };
 enum openid_finish {
@@ -44,7 +44,7 @@ enum openid_finish {
     OPENID_FOREIGN,
     OPENID_FULL, /* too many log-ins are waiting for verification; the user must try again */
 };
-/* Handles the request with which a browser returned from the provider. */
+/* Handles the request with which a browser returns from the provider. */
 enum openid_finish openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns);
 
 enum openid_result {
@@ -60,7 +60,7 @@ struct openid_answer {
     uint64_t request;
     uint8_t address[16]; /* address of the client that began the log-in */
     enum openid_result result;
-    char cookie[SIGN_IN_SECRET_CHARS + 1]; /* value of the cookie that identifies the new session */
+    char cookie[SIGN_IN_SECRET_CHARS + 1]; /* value of the cookie for the new session */
     char path[SIGN_IN_PATH_BYTES];         /* path of the page to which the browser is redirected */
     char *why;                             /* reason for the refusal; NULL: the user is signed in */
     struct openid_answer *next;
@@ -75,8 +75,8 @@ bool openid_take_changed(struct openid *openid);
 bool openid_find(struct openid *openid, const char *cookie, struct token_holder *out);
 /* Returns the current role of a user; ROLE_NOBODY: the user is not signed in. */
 enum role openid_role(struct openid *openid, const struct token_holder *holder);
-/* Returns the newest ID token of a user who signed in at this daemon (free with mem_free()). The daemon sends it to a core, which
-   verifies it. NULL: there is none. */
+/* Returns the newest ID token of a user who signed in at this daemon (free with mem_free()); NULL: there is none. The daemon
+   sends the token to a core, which verifies it. */
 char *openid_id_token(struct openid *openid, const struct token_holder *holder);
 /* Verifies the ID token of a user who signed in at another daemon with the same provider and client id. Uses only the keys
    known here and sends no request to the provider. A token is accepted for config->hours after it was issued, which is also how

@@ -18,7 +18,7 @@ struct openid_reply {
 /* Requests a URL with GET and reads the JSON answer. bearer: an access token; NULL: none. */
 bool openid_get(const struct openid_config *config, const char *url, const char *bearer, const _Atomic bool *stop,
                 struct openid_reply *reply);
-/* Sends a form with POST. Authenticates this server with its client secret, by HTTP Basic or, if in_form, as a field of the form. */
+/* Sends a form with POST. Authenticates this server with its client secret, through HTTP Basic or, if in_form, as a form field. */
 bool openid_post(const struct openid_config *config, const char *url, const char *form, bool in_form, const _Atomic bool *stop,
                  struct openid_reply *reply);
 void openid_reply_finish(struct openid_reply *reply);

@@ -26,7 +26,7 @@ struct openid_jobs {
     int count;
 };
 
-/* Kinds of requests to the identity provider; each request runs in a short-lived thread of its own. */
+/* Kinds of requests to the identity provider. Each request runs in a short-lived thread of its own. */
 enum openid_task { OPENID_TASK_CODE, OPENID_TASK_CHECK, OPENID_TASK_REVOKE, OPENID_TASK_DISCOVER, OPENID_TASKS };
 
 struct openid {
@@ -61,7 +61,7 @@ struct openid {
 void *openid_run(void *arg);
 /* Queues the result of a log-in for openid_collect(); takes ownership of the text `why`. The caller holds the lock. */
 void openid_add_answer(struct openid *openid, const struct openid_job *job, enum openid_result result, const char *cookie, char *why);
-/* openid_record() writes an entry to the audit trail. openid_say_refused() also logs and counts a refused log-in. */
+/* openid_record() writes an entry to the audit trail; openid_say_refused() does so too, and also logs and counts a refused log-in. */
 void openid_record(struct openid *openid, const char *event, const char *result, const struct token_holder *holder, const char *from,
                    const char *what, const char *why);
 void openid_say_refused(struct openid *openid, const char *from, const char *why);
@@ -103,7 +103,7 @@ bool openid_complete(struct openid *openid, json_t *claims, const char *access_t
    NULL with *result and *why (mem_free) if the log-in failed. */
 struct person *openid_redeem(struct openid *openid, const struct openid_job *job, enum openid_result *result, char **why);
 enum openid_rights { RIGHTS_UNKNOWN, RIGHTS_GONE, RIGHTS_SAME };
-/* Checks a signed-in user's rights again at the provider. Updates role and tokens of `person`, a copy that owns its texts. Returns
+/* Rechecks a signed-in user's rights at the provider. Updates role and tokens of `person`, a copy that owns its texts. Returns
    RIGHTS_UNKNOWN if the provider does not answer. *why: static text. */
 enum openid_rights openid_check(struct openid *openid, struct person *person, const char **why);
 /* Revokes a refresh token at the provider, if the provider supports that. */

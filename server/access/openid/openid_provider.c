@@ -119,8 +119,8 @@ static json_t *take_keys(struct openid *openid)
     return keys;
 }
 
-/* Requests the provider's keys, unless they were requested within KEYS_INTERVAL_NS or another thread has already replaced `keys`.
-   Returns false if no newer keys than `keys` are available. */
+/* Requests the provider's keys, unless this was done within the last KEYS_INTERVAL_NS or another thread has already replaced
+   `keys`. Returns false if no keys newer than `keys` are available. */
 static bool renew_keys(struct openid *openid, const json_t *keys)
 {
     pthread_mutex_lock(&openid->asking);

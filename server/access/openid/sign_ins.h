@@ -12,7 +12,7 @@ struct sign_in { /* a log-in in progress: the browser has been redirected to the
     char binding[SIGN_IN_SECRET_CHARS + 1];
     char path[SIGN_IN_PATH_BYTES]; /* path of the page to show after the log-in */
     uint8_t address[16];
-    int64_t began_ns; /* monotonic time when the log-in began; 0: the entry is free */
+    int64_t began_ns; /* monotonic time when the log-in began; 0: this table entry is free */
 };
 
 struct person {                 /* a session of a signed-in user; the struct owns its texts */
@@ -34,16 +34,16 @@ void sign_ins_destroy(struct sign_ins **table); /* frees the table and sets *tab
    same address, so that no address displaces other addresses' log-ins. Returns the log-in, valid until the next call; NULL: the
    system's random number generator failed. */
 const struct sign_in *sign_ins_begin(struct sign_ins *table, const uint8_t address[16], const char *path, int64_t now_ns);
-/* Removes the log-in with that state from the table, so that it can be completed only once, and copies it to *out. Returns false if
-   there is none, it has expired, or another browser began it. */
+/* Removes the log-in with that state from the table and copies it to *out, so that it can be completed only once. Returns false
+   if there is none, it has expired, or another browser began it. */
 bool sign_ins_take(struct sign_ins *table, const char *state, const char *binding, int64_t now_ns, struct sign_in *out);
 
 /* Adds a session of a signed-in user; takes ownership of the texts of `person`. cookie: receives the new session's secret.
    *left receives a refresh token that is no longer used, for example that of a session removed to make room (free with
    mem_free()); NULL: none. Returns false if the system's random number generator failed. */
 bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1], char **left);
-/* sign_ins_find(), sign_ins_find_hash() and sign_ins_numbered() return the session with a cookie, with a cookie's hash or with a number;
-   NULL: there is none. The result is valid until the next call that adds or removes a session. */
+/* Return the session with a given cookie, hash of a cookie, or number; NULL: there is none. The result is valid until a session
+   is added or removed. */
 struct person *sign_ins_find(struct sign_ins *table, const char *cookie);
 struct person *sign_ins_find_hash(struct sign_ins *table, const uint8_t hash[TOKEN_HASH_BYTES]);
 struct person *sign_ins_numbered(struct sign_ins *table, uint64_t number);

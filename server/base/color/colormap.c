@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The built-in colour maps, and the out-of-range colours of other maps. */
+/* The built-in colour maps, and the choice of out-of-range colours for other maps. */
 #include "base/color/colormap.h"
 
 #include <math.h>

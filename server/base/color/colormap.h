@@ -8,7 +8,7 @@
 
 #define COLORMAP_SHADING 7.0
 struct colormap {
-    /* name of the map: "relief" (the default) and "calm": low contrast, for shaded 3D; "viridis", "cividis", "diverging", "turbo" */
+    /* name: "relief" (the default) and "calm" (both low contrast, for shaded 3D), "viridis", "cividis", "diverging", "turbo" */
     char name[128];
     uint8_t rgb[256][3]; /* colours of values from MIN (index 0) to MAX (index 255) */
     /* largest change of lightness L* that shading may cause, up or down: at most COLORMAP_SHADING, less for maps that encode
@@ -16,7 +16,7 @@ struct colormap {
     double shading;
     /* true if 95 of 100 shaded pixels are read correctly to within 3 % of the range, even after JPEG compression and by deuteranopes */
     bool safe;
-    uint8_t below[3], above[3]; /* colours for values below MIN and above MAX; they differ clearly from all colours of the map */
+    uint8_t below[3], above[3]; /* colours for values below MIN and above MAX, clearly different from all colours of the map */
 };
 
 enum { COLORMAPS_BUILT_IN = 6 };

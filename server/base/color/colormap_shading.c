@@ -34,7 +34,7 @@ static int nearest(const double labs[256][3], const double lab[3])
 
 static void add_noise(const uint8_t rgb[3], int noise, double out[3])
 {
-    /* directions of luma Y and chroma Cb, Cr in RGB */
+    /* directions of luma Y and chroma Cb and Cr in RGB space */
     static const double axes[3][3] = { { 1, 1, 1 }, { 0, -0.344136, 1.772 }, { 1.402, -0.714136, 0 } };
     for (int c = 0; c < 3; c++)
         out[c] = fmin(fmax(rgb[c] + (noise % 2 ? -NOISE_AMPLITUDE : NOISE_AMPLITUDE) * axes[noise / 2][c], 0), 255);

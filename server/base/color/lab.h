@@ -7,8 +7,8 @@
 
 enum color_vision { VISION_NORMAL, VISION_DEUTERANOPE, VISION_COUNT };
 
-/* Converts sRGB components 0..255 (fractions allowed) to CIELAB, as seen with this colour vision. Deuteranopes: Machado, Oliveira,
-   Fernandes 2009, severity 1. */
+/* Converts sRGB components 0..255 (fractions allowed) to CIELAB, as perceived with this colour vision. Deuteranopes: Machado,
+   Oliveira, Fernandes 2009, severity 1. */
 void lab_from_srgb(const double srgb[3], enum color_vision vision, double lab[3]);
 /* Converts an 8-bit sRGB colour to CIELAB, normal vision. */
 void lab_from_rgb(const uint8_t rgb[3], double lab[3]);

@@ -11,7 +11,7 @@
 #include "base/refusal.h"
 
 struct atomic_file {
-    char *path, *beside; /* path of the file, and of the temporary file; NULL: no write is in progress */
+    char *path, *beside; /* path of the file, and of the temporary file next to it; NULL: no write is in progress */
     int fd; /* descriptor of the temporary file, for reading and writing; the caller may set the file's permissions and owner */
 };
 

@@ -108,7 +108,7 @@ void cache_file_close(struct cache_file *file)
     *file = (struct cache_file){ 0 };
 }
 
-/* Hashes and writes the parts one by one, because joining them in memory could take tens of megabytes. */
+/* Hashes and writes the parts one by one, because joining them could take tens of megabytes of memory. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
     struct cache_head head = { .key = key };

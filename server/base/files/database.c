@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Opens SQLite files, converts old versions, handles errors. */
+/* Opens SQLite files, upgrades old versions, handles errors. */
 #include "base/files/database.h"
 
 #include <errno.h>
@@ -184,7 +184,7 @@ static int open_handle(struct database *database, const char *name, int flags)
 
 static int open_to_write(struct database *database, int *version)
 {
-    /* synchronous = FULL: a committed transaction survives a loss of power */
+    /* synchronous = FULL: committed transactions survive a power failure */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     if (code == SQLITE_OK) /* the format's pragmas must run first: some have an effect only on a file without pages */

@@ -12,7 +12,7 @@
 
 #include "base/log/log.h"
 
-struct database_format { /* one of our file formats: SQLite's application id and version, schema, and prepared statements */
+struct database_format { /* one of our file formats: SQLite's application id and version, the schema, and the prepared statements */
     int application_id, version;
     const char *set_up;            /* SQL pragmas for connections that write to the file */
     const char *const *schemas;    /* array of `version` SQL scripts; each upgrades a file from the preceding version */
@@ -30,13 +30,13 @@ struct database {
 
 /* Initialises a database without opening it. Takes ownership of `path` (mem_free), which must end in ".sqlite". */
 void database_init(struct database *database, struct log *log, char *path, const struct database_format *format);
-void database_finish(struct database *database); /* Closes the database; a zeroed struct is fine and stays zeroed. */
+void database_finish(struct database *database); /* Closes the database; a zeroed struct is allowed and stays zeroed. */
 
 /* Opens the file for writing. Creates it if it is missing, and upgrades an older version in one transaction. A damaged file is
    renamed and replaced by a new one; *renewed is then true. A file of a newer version is left unchanged: -EACCES. */
 int database_open(struct database *database, bool *renewed);
-/* Opens the file for reading, even on a read-only disk. Returns -ENOENT, not logged, if the file is missing or nothing has been written
-   to it yet. The file may have any version up to this program's. */
+/* Opens the file for reading, even on a read-only disk. Returns -ENOENT, not logged, if the file is missing or still empty. The
+   file may have any version up to this program's. */
 int database_open_to_read(struct database *database);
 /* Opens a file that another handle of this program already writes, so that both can write. Does not create, upgrade or rename
    the file. Commits are atomic, but the newest may be lost in a power failure. Returns -ENOENT, not logged, if the file is
@@ -51,7 +51,7 @@ bool database_set_aside(struct database *database);
 sqlite3_stmt *database_statement(struct database *database, int index);
 /* Steps a statement once. Returns the SQLite code. */
 int database_step(struct database *database, sqlite3_stmt *statement);
-/* Steps a statement to its end and resets it. Returns the SQLite code, SQLITE_OK instead of SQLITE_DONE. */
+/* Steps a statement to its end and resets it. Returns the SQLite code, but SQLITE_OK for SQLITE_DONE. */
 int database_run(struct database *database, sqlite3_stmt *statement);
 int database_exec(struct database *database, const char *sql, const char *doing);
 /* Logs an SQLite error with the file, the failed action (`doing`) and the cause. Returns the error as -errno, or 0 for

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queue of jobs for the writing thread, and the results of the newest jobs. */
+/* Queue of jobs for the writer thread, and the results of the newest jobs. */
 #include "base/files/file_writer.h"
 
 #include <errno.h>

@@ -48,8 +48,7 @@ static inline void settling_wrote(struct settling *settling, uint64_t rows, int 
     settling->error = error ? error : settling->error;
 }
 
-/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS while the result is open, or the -errno due to which they count
-   as not saved. */
+/* Returns 0 if all rows of the ticket are on disk, -EINPROGRESS while that is undecided, and another -errno if they count as not saved. */
 static inline int settling_state(const struct settling *settling, const struct settling_ticket *ticket, int64_t now_ns)
 {
     if (ticket->last > ticket->first && settling->lost > ticket->first)

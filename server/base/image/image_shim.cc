@@ -37,7 +37,7 @@ const char *format_of(const unsigned char *bytes, size_t size)
     return nullptr;
 }
 
-/* Expands one to four channels to four: grey, grey and alpha, RGB, RGBA. */
+/* Expands one to four channels (grey; grey and alpha; RGB; RGBA) to four. */
 template <typename T> void spread(const T *from, int channels, size_t pixels, T opaque, T *to)
 {
     for (size_t i = 0; i < pixels; i++, from += channels, to += 4) {

@@ -58,7 +58,7 @@ bool log_is_text(const struct log *log)
 }
 
 static const char *const names[] = { "error", "warn", "info", "debug" };
-static const char *const priorities[] = { "3", "4", "6", "7" }; /* priorities of syslog, by log level */
+static const char *const priorities[] = { "3", "4", "6", "7" }; /* syslog priorities, by log level */
 
 static void stamp_now(char *out, size_t size)
 {

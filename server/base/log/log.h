@@ -13,7 +13,7 @@ enum log_format {
        `<PRIORITY>text` */
     LOG_JOURNAL,
 };
-/* Events that other programs watch for; each has a name and a MESSAGE_ID of its own (log_events.c). */
+/* Events that other programs watch for; each has its own name and MESSAGE_ID (log_events.c). */
 enum log_event {
     EVENT_NONE,
     EVENT_READY,
@@ -44,7 +44,7 @@ void log_destroy(struct log **log);
 /* Sets the format. Call it before other threads use the log. journal_socket: socket for LOG_JOURNAL, copied; NULL: the system journal's
    socket. */
 void log_set_format(struct log *log, enum log_format format, const char *journal_socket);
-/* Sets the plant's name that LOG_JSON and LOG_JOURNAL write with each line. Call it before other threads use the log. */
+/* Sets the plant's name, which LOG_JSON and LOG_JOURNAL add to each line. Call it before other threads use the log. */
 void log_set_plant(struct log *log, const char *plant);
 /* Returns true if the format is LOG_TEXT, which is meant for people. */
 bool log_is_text(const struct log *log);
@@ -57,7 +57,7 @@ void log_event(struct log *log, enum log_level level, enum log_event event, cons
 #define log_info(log, ...) log_at(log, LOG_INFO, __VA_ARGS__)
 #define log_debug(log, ...) log_at(log, LOG_DEBUG, __VA_ARGS__)
 
-/* Returns an event's name in JSON; NULL for EVENT_NONE. The sibling log_event_id() returns the MESSAGE_ID of the event in the journal. */
+/* Returns an event's name for JSON; NULL for EVENT_NONE. log_event_id() returns the event's MESSAGE_ID for the journal. */
 const char *log_event_name(enum log_event event);
 const char *log_event_id(enum log_event event);
 

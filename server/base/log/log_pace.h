@@ -11,7 +11,7 @@ enum { LOG_PACE_BYTES = 64 };
 
 struct log_pace { /* zero-initialise the members other than first_ns and longest_ns */
     int64_t first_ns, longest_ns;
-    int64_t pause_ns, next_ns; /* length of the current pause, and its end (monotonic); next_ns 0: no line was written yet */
+    int64_t pause_ns, next_ns; /* length of the current pause, and its end (monotonic); next_ns 0: no line has been written yet */
     long unsaid;
 };
 

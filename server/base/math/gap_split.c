@@ -9,8 +9,7 @@
 #include "base/math/vec.h"
 
 enum { BINS = 256, MAX_SPLITS = 64 };
-static const double SMALL_SHARE = 0.02; /* stray pieces are small if together they have at most this fraction of the area of all
-                                           triangles */
+static const double SMALL_SHARE = 0.02; /* stray pieces are small if together they have at most this fraction of the total area */
 /* lengths of a gap in sizes of the main part: beyond a gap of SMALL_GAP, small pieces are stray; beyond a gap of LARGE_GAP,
    pieces of any area */
 static const double SMALL_GAP = 1, LARGE_GAP = 100;
@@ -44,7 +43,7 @@ static double size_of(const struct gap_tri *tris, size_t count)
     return size_m;
 }
 
-/* Finds the widest interval along an axis without any corner of a triangle. Returns its length; 0: there is none. */
+/* Finds the widest interval along an axis that contains no corner of a triangle. Returns its length; 0: there is none. */
 static double find_gap(const struct tri_range *part, int axis, double min_m, double max_m, double *from_m, double *to_m)
 {
     struct {
@@ -99,8 +98,8 @@ static size_t gather(struct tri_range *part, int axis, double from_m, double to_
     return count;
 }
 
-/* Returns true if the triangles that cross the gap end at several places on its far side: their corners there are more than within_m
-   apart. */
+/* Returns true if the triangles that cross the gap end at several places on its far side, that is, if their corners there are
+   more than within_m apart. */
 static bool reach_several_places(const struct gap_tri *tris, size_t count, int axis, double from_m, double to_m, bool above,
                                  double within_m)
 {

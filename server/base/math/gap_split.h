@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Separates the main part of a model or plant from stray pieces, such as a vertex left at the origin of survey coordinates.
    Rule: a gap is an interval along one axis that contains no corner of a triangle. Pieces beyond a gap are stray if the gap is
-   at least as long as the main part and all stray pieces together have at most 2 % of the area. Beyond a gap at least 100 times
-   as long they are stray whatever their area. A triangle that crosses such a gap is stray too, unless crossing triangles have
-   more than 2 % of the area and end at several places on the far side: such a long pipe belongs to the pieces that it connects.
-   The main part is the side with the larger area. A simpler rule, the box of 98 % of the area, would crop flare stacks, pipe
-   racks and tanks at the edge of a plant, which have less than 2 % of the area but stand next to the rest. It would also keep a
-   stray box 7,000 km away that has a third of the area of a small model. Thread: any. */
+   at least as long as the main part, provided that all stray pieces together have at most 2 % of the area. Beyond a gap at
+   least 100 times as long they are stray whatever their area. A triangle that crosses such a gap is stray too. Crossing
+   triangles are kept if they have more than 2 % of the area and end at several places on the far side: such a long pipe belongs
+   to the pieces that it connects. The main part is the side with the larger area. A simpler rule, the box of 98 % of the area,
+   would crop flare stacks, pipe racks and tanks at the edge of a plant. They have less than 2 % of the area but stand next to
+   the rest. It would also keep a stray box 7,000 km away that has a third of the area of a small model. Thread: any. */
 #ifndef BASE_MATH_GAP_SPLIT_H
 #define BASE_MATH_GAP_SPLIT_H
 #include <stddef.h>
@@ -16,7 +16,7 @@
 
 struct gap_tri {
     double at[3][3], area_m2;
-    uint32_t owner; /* value for the caller's use */
+    uint32_t owner; /* for the caller's use */
 };
 
 /* Moves the triangles of the main part to the front of the array. Returns their number; *main receives their extent. */

@@ -4,8 +4,8 @@
 #define BASE_MATH_ROUND_READING_H
 
 enum { READING_DIGITS = 15 }; /* number of significant digits with which to print a value returned by round_reading() */
-/* Rounds a finite reading to seven significant digits, but to no fewer than three decimals, so that large numbers such as
-   counters keep all digits that pages show. Never returns -0.0. */
+/* Rounds a finite reading to seven significant digits, but to no fewer than three decimals: large numbers such as counters keep
+   all digits that pages show. Never returns -0.0. */
 double round_reading(double value);
 
 #endif

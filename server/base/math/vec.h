@@ -35,7 +35,7 @@ static inline void vec_cross(const double a[3], const double b[3], double out[3]
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Computes (b - a) x (c - a). Its length is twice the area of triangle a, b, c; it points to the side from which a, b, c appear
+/* Computes (b - a) x (c - a). Its length is twice the area of triangle a, b, c; it points to the side from which a, b, c run
    counter-clockwise. */
 static inline void vec_normal(const double a[3], const double b[3], const double c[3], double out[3])
 {
@@ -59,8 +59,8 @@ static inline double vec_normalize(double v[3])
     return length;
 }
 
-/* Computes two unit vectors that are orthogonal to each other and to the unit vector `normal`: x, y, normal are right-handed; equal
-   input gives equal bits (Duff et al., Building an orthonormal basis, revisited, JCGT 2017). */
+/* Computes two unit vectors x, y orthogonal to each other and to the unit vector `normal`, so that x, y, normal are
+   right-handed. Equal input gives equal bits (Duff et al., Building an orthonormal basis, revisited, JCGT 2017). */
 static inline void vec_frame(const double normal[3], double x[3], double y[3])
 {
     double sign = copysign(1, normal[2]), a = -1 / (sign + normal[2]), b = normal[0] * normal[1] * a;
@@ -118,7 +118,7 @@ static inline float vecf_dot(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Like vec_normal(), for points in single precision; computes in double precision. */
+/* Like vec_normal(), for points in single precision; the result is computed in double precision. */
 static inline void vecf_normal(const float a[3], const float b[3], const float c[3], double out[3])
 {
     double ab[3], ac[3];

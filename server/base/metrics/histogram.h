@@ -7,7 +7,7 @@
 
 enum { HISTOGRAM_BUCKETS = 16 };
 struct histogram {
-    counter buckets[HISTOGRAM_BUCKETS + 1]; /* number of durations per bucket; the last element counts durations longer than all bounds */
+    counter buckets[HISTOGRAM_BUCKETS + 1]; /* number of durations per bucket; the last bucket is for durations longer than all bounds */
     counter sum_us;
 };
 

@@ -21,7 +21,7 @@ static bool read_stat(unsigned long long fields[STAT_LAST + 1])
     bool good = file && fgets(line, sizeof(line), file);
     if (file)
         fclose(file);
-    char *at = good ? strrchr(line, ')') : NULL; /* searches the last ')', because the program name before it may contain spaces */
+    char *at = good ? strrchr(line, ')') : NULL; /* uses the last ')': the program name in front may contain any characters */
     if (!at)
         return false;
     at = strchr(at, ' ');

@@ -19,7 +19,7 @@
 enum { REMOVE_TRIES = 50, REMOVE_PAUSE_MS = 20 };
 static const char daemon_name[] = "/daemon";
 
-/* Finds where cgroup v2 is mounted; cgroup v1 may be mounted next to it. */
+/* Finds the mount point of cgroup v2; cgroup v1 may be mounted as well. */
 static bool find_mount(char out[PATH_MAX])
 {
     char line[2 * PATH_MAX], kind[32];

@@ -12,7 +12,7 @@ struct clock_state {
 };
 
 struct clock_state clock_state_read(void);
-/* Interprets the result of adjtimex(2). `state`: what the call returned. */
+/* Interprets the result of adjtimex(2). `state`: the call's return value. */
 struct clock_state clock_state_of(const struct timex *timex, int state);
 /* Returns the maximum error rounded up to 1, 10, 100, 1000 ms and so on, so that clients need not be notified of small changes;
    0 if the error is 0. */

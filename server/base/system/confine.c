@@ -183,7 +183,7 @@ static void offer_to_oom_killer(void)
     int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
     if (file >= 0) {
         ssize_t written = write(file, "1000", 4);
-        (void)written; /* result ignored: if the kernel refuses the write, the OOM score keeps its default */
+        (void)written; /* ignores the result: if the kernel refuses the write, the OOM score keeps its default */
         close(file);
     }
 }

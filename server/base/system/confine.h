@@ -12,11 +12,11 @@
 enum confine_access {
     CONFINE_READ,
     CONFINE_EXECUTE, /* execute and read files */
-    CONFINE_WRITE    /* read and write; create, rename and remove regular files and folders below the path */
+    CONFINE_WRITE    /* read and write; also create, rename and remove regular files and folders below the path */
 };
 
 struct confine_path {
-    const char *path; /* a file, or a folder with everything below; skipped if it does not exist */
+    const char *path; /* a file, or a folder including everything below; skipped if it does not exist */
     enum confine_access access;
 };
 
@@ -43,11 +43,11 @@ bool confine_lacks(char out[CONFINE_LACKS_BYTES]);
 /* Like confine_lacks(), for a kernel with the given Landlock ABI (0: none), and with or without seccomp. Pure. */
 bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES]);
 
-/* The kernel's struct landlock_ruleset_attr: the kinds of access that a ruleset restricts. */
+/* Mirrors the kernel's struct landlock_ruleset_attr: the kinds of access that a ruleset restricts. */
 struct confine_ruleset {
     uint64_t files, tcp, scoped;
 };
-/* Returns every kind of access that this Landlock ABI can restrict; a kernel refuses newer flags. Pure. */
+/* Returns all kinds of access that this Landlock ABI can restrict, because a kernel refuses newer flags. Pure. */
 struct confine_ruleset confine_ruleset_of(int abi);
 
 /* Makes this process's memory, descriptors and environment unreadable to other processes of its user, and disables core dumps. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads memory use from the kernel's files and from malloc. */
+/* Reads memory usage from the kernel's files and from malloc. */
 #include "base/system/memory.h"
 
 #include <malloc.h>

@@ -10,11 +10,11 @@ size_t memory_machine_bytes(void);
 /* Returns the default memory limit in bytes: a quarter of memory_machine_bytes(), at most 2 GiB. */
 size_t memory_default_bytes(void);
 
-struct memory_use {             /* memory use of the process, in bytes */
+struct memory_use {             /* memory usage of the process, in bytes */
     size_t resident, anonymous; /* resident: bytes in RAM; anonymous: the part not mapped from files */
-    size_t allocated;           /* memory that malloc() has allocated */
+    size_t allocated;           /* bytes allocated by malloc() */
 };
-void memory_measure(struct memory_use *use); /* Fills *use with the current numbers. */
+void memory_measure(struct memory_use *use); /* Fills *use with the current values. */
 /* Returns free heap pages to the system. */
 void memory_trim(void);
 

@@ -35,7 +35,7 @@ static void *load(const char *name, char *why, size_t why_bytes)
     char *path = path_of(name, why, why_bytes);
     void *library = path ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
     if (path && !library) {
-        /* this text begins with the name of the file that could not be loaded, which may be a dependency of the module */
+        /* this text begins with the name of the file that failed to load, which may be a dependency of the module */
         const char *reason = dlerror();
         snprintf(why, why_bytes, "%s cannot be loaded: %s", path, reason ? reason : "no reason is given");
     }

@@ -8,7 +8,7 @@
 #include <stddef.h>
 
 struct module {
-    const char *name; /* file name; searched in the program's folder and in ../lib/plantcast */
+    const char *name; /* file name; looked up in the program's folder and in ../lib/plantcast */
     pthread_mutex_t lock;
     void *library; /* library handle, protected by `lock`; NULL: not loaded yet, or not loadable. A library is never unloaded */
 };

@@ -226,7 +226,7 @@ bool service_is_journal(int fd)
            st.st_ino == (ino_t)inode;
 }
 
-/* Appends a field: NAME=VALUE or, if the value has line breaks, NAME, the value's length in 8 bytes (little-endian), and the value. */
+/* Appends a field: NAME=VALUE or, if the value contains line breaks, NAME, the value's length as 8 bytes (little-endian), and the value. */
 static void add_field(struct text *text, const struct service_field *field)
 {
     size_t length = strlen(field->value);

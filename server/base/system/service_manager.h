@@ -14,9 +14,9 @@ bool service_notify(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
    this process); 0: no watchdog. */
 int64_t service_watchdog_ns(void);
 /* Starts a thread that covers long work before the service is ready: every few seconds it asks the manager to wait longer and
-   shows `status`. It stops asking while neither this process nor others of its session use CPU time, and once a status is older
-   than limit_s, so that the manager kills a hanging start. Returns NULL if there is no service manager; service_patience_end()
-   accepts that. `status` is copied. */
+   shows `status`. So that the manager kills a hanging start, it stops asking while no process of this session uses CPU time,
+   and once a status is older than limit_s. Returns NULL if there is no service manager; service_patience_end() accepts that.
+   `status` is copied. */
 struct service_patience;
 struct service_patience *service_patience_begin(const char *status, int limit_s);
 void service_patience_status(struct service_patience *patience, const char *status); /* Changes the status; a NULL patience is a no-op. */

@@ -158,7 +158,7 @@ static const struct wide_model wide_models[] = {
 struct narrow_model {
     const char *name, *lower, *upper, *rare; /* lower, upper: letters, most frequent first; rare: rare letters */
     double prior;
-    bool latin; /* true: words in this encoding mix its own letters with ASCII letters */
+    bool latin; /* true: Latin script: words mix the encoding's own letters with ASCII letters */
 };
 
 static const char signs[] = "°³²µ«»–—·±№§“”„…’™®½×Ø";
@@ -192,8 +192,8 @@ struct narrow_table {
 
 typedef void take_encoded(void *data, const unsigned char *bytes, size_t count, int rank);
 
-/* Calls each() for every character of a UTF-8 text that the encoder can convert, with the character's bytes in the encoding and
-   its index in the text (`rank`). */
+/* Calls each() for every character of a UTF-8 text that the encoder can convert, with its bytes in the encoding and its index
+   in the text (`rank`). */
 static void each_encoded(const char *utf8, struct charset_encoder *encoder, take_encoded *each, void *data)
 {
     for (int rank = 0; *utf8; rank++) {

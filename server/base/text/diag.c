@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints findings in the order of their positions in the files. */
+/* Prints findings, sorted by position in the files. */
 #include "base/text/diag.h"
 
 #include <stdarg.h>
@@ -40,7 +40,7 @@ static int by_place(const void *pa, const void *pb)
     if (order == 0)
         order = (a->column > b->column) - (a->column < b->column);
     if (order == 0)
-        order = (a > b) - (a < b); /* equal positions: keep the order in which the findings were added */
+        order = (a > b) - (a < b); /* equal positions: keep the order of insertion */
     return order;
 }
 

@@ -24,7 +24,7 @@ const char *text_cell_read(const char *cell);
 void text_add_escaped(struct text *text, const char *part);
 void text_finish(struct text *text); /* Frees the text and leaves an empty one. */
 
-/* Returns a pointer to the last component of a path, within `path`. */
+/* Returns a pointer to the last component of `path`, within the same string. */
 const char *text_base_name(const char *path);
 /* Reads a whole file of at most max_bytes. Returns its content, followed by a 0 byte (free with mem_free()), or NULL on
    failure, with errno (EFBIG: too large). */

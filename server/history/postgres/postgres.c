@@ -65,7 +65,7 @@ struct postgres {
     struct waiting_month *months;
     size_t month_count;
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
-    int64_t lost;                  /* number of points that were deleted unsent and are not logged yet */
+    int64_t lost;                  /* number of points deleted unsent but not yet logged */
     char said[POSTGRES_WHY_BYTES]; /* text of the last logged error; empty: no error */
     /* alone: this daemon holds the lock that makes it the only writer to the database; flushed: all points that an earlier run
        left in the outboxes have been sent */
@@ -321,7 +321,7 @@ static bool send_month(struct postgres *postgres, struct waiting_month *month, b
     return good;
 }
 
-/* On a standby: deletes from the outbox the points that the leader has sent to the database, OVERLAP_NS after they were recorded. */
+/* On a standby: OVERLAP_NS after points were recorded, deletes those that the leader has sent to the database from the outbox. */
 static void forget_sent(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
