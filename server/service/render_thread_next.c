@@ -67,8 +67,8 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* If one client waits for a refined frame and another for a snapshot over HTTP, keeps only the one to be served first. Both
-   kinds of frames are charged together. Otherwise the refined frames of an address, one after the other, would keep its
+/* If one client waits for a refined frame and another for a snapshot over HTTP, keeps only the one to be served first: both
+   kinds are charged together. Without this choice, the refined frames of an address, one after the other, would keep its
    snapshots waiting as long as another address's large frame is drawn. The caller holds the lock. */
 static void choose_long(struct render_client **first)
 {
