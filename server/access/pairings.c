@@ -295,8 +295,8 @@ static enum refusal_code keep(struct pairings *pairings, const struct pending_pa
     return kept_list_put(&pairings->kept, list);
 }
 
-/* Returns false if engineers have entered ten wrong sets of digits in this minute. With a million possible sets, guessing then
-   takes weeks. */
+/* Returns false if engineers have entered wrong digits ten times in this minute. At that rate, guessing one of the million
+   possible numbers takes weeks. */
 static bool may_try(struct pairings *pairings, int64_t now_ns)
 {
     if (now_ns - pairings->wrong_ns >= WRONG_NS)

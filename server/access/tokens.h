@@ -17,7 +17,7 @@ struct token_holder {
     uint8_t hash[TOKEN_HASH_BYTES]; /* SHA-256 of the token; all 0: no token */
     int64_t until_utc_ns;           /* time when the token expires (UTC); INT64_MAX: never */
     char plant[TOKEN_PLANT_BYTES];  /* name of the only plant for which the token is valid; empty: any plant */
-    /* comma-separated ids of the only saved views whose pictures the token grants; empty: not restricted */
+    /* comma-separated ids of saved views: the token gives access to their pictures only; empty: not restricted */
     char views[TOKEN_VIEWS_BYTES];
     bool unattended;                /* true: token of a wall or a program, which is not signed out for lack of user activity */
     bool signed_in;                 /* true: a user signed in through the identity provider; `hash` is the hash of the session cookie */

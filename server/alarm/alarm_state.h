@@ -33,7 +33,7 @@ struct alarm_state {     /* state of one alarm; all zero: normal */
 };
 
 struct alarm_rule {
-    bool acknowledges; /* true: operators must acknowledge the alarm; false: the alarm has no state but active and normal */
+    bool acknowledges; /* true: operators must acknowledge the alarm; false: the alarm is only ever active or normal */
     bool latches;
     bool forgets; /* true: the alarm becomes normal when its cause ends, even if unacknowledged */
     /* true: if the alarm is raised now, it is suppressed, because the device's alarm already reports the failure */

@@ -404,7 +404,7 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     follow_acknowledgement(alarms, index, at);
 }
 
-/* If a delay of the alarm is over, ends the delay; the change gets the time when it was over. */
+/* Ends the alarm's running delay if it is over. The resulting change is dated to the end of the delay, not to `now`. */
 static void advance(struct alarms *alarms, int index, struct instant now)
 {
     struct alarm *alarm = &alarms->list[index];

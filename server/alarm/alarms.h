@@ -113,7 +113,7 @@ void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alar
    matches every unit. */
 double alarm_value_in_unit(double value, const char *was, const char *is);
 /* Sets an alarm to a state that was saved in the journal. Calls the listener's of_tag() (the tag's most urgent alarm), but not
-   changed(). Drops parts of the state for which the plant's alarm settings no longer provide. */
+   changed(). Drops parts of the state that the plant's current alarm settings do not support. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);
 /* Sets alarms, found by name and kind, to the states of another daemon, in the order of `list`. whole: all alarms that are not in `list`
    become normal. Returns false if an alarm does not exist; then nothing changed. */

@@ -14,7 +14,7 @@ enum { PIXEL_CONFIGURED = 1, PIXEL_USABLE = 2, PIXEL_UNCERTAIN = 4, PIXEL_NO_LIM
 
 struct pixel_sensor {
     float place_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
-    float value;      /* value of the sensor in the sum */
+    float value;      /* the sensor's value in the sum */
     float strength, decay;
     uint32_t state; /* PIXEL_* bits; if neither PIXEL_USABLE nor PIXEL_NO_LIMITS is set, the sensor is lost */
 };

@@ -64,7 +64,7 @@ struct weights {
                                     distances */
     /* for prepared interpolations: factorised matrix from which lost sensors get values (influence_fill.h); NULL: no sensor is lost */
     struct influence_fill *fill;
-    /* for prepared interpolations with lost sensors: [sensor]: its value if all used sensors read 1; else NULL */
+    /* [sensor], for prepared interpolations with lost sensors: its value if all used sensors read 1; else NULL */
     double *ones;
     float decay_m; /* metres; for interpolation fin: the decay length; for gp: 1/k, with k as in preprocess/influence/gaussian.h */
     const float *deviations; /* [vertex], for interpolation gp: standard deviation of the field while all sensors are used; else NULL */
@@ -79,7 +79,7 @@ struct weights {
     float erring[WEIGHTS_ERRING];
     uint64_t measured_levels; /* bit mask of the levels of detail whose triangles are included in `errors` */
     unsigned errors_version;  /* number of changes of `errors` so far */
-    float *beyond_m;          /* for interpolations fin and gp: [vertex]: metres beyond the border of the area with data; else NULL */
+    float *beyond_m;          /* [vertex], for interpolations fin and gp: metres beyond the border of the area with data; else NULL */
     float *columns; /* cached weights of the first kept_blocks blocks, [block][member][KERNEL_BLOCK], or NULL; those of other blocks
                        are recomputed for each sum */
     uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interface between gl.c, which has the table of ways to create GL contexts, and these ways. */
+/* Interface that each way of creating GL contexts implements; gl.c lists the ways in a table. */
 #ifndef GPU_GL_IMPL_H
 #define GPU_GL_IMPL_H
 #include "base/text/text.h"

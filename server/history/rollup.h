@@ -37,8 +37,8 @@ bool rollup_put(struct rollup *rollup, const struct history_point *point, struct
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
 /* Merges bucket `b` into bucket `a`. `b` must come later, and both must lie within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
-/* Adds the line from the end of bucket `a` (at end_us) to the start of bucket `b`, which neither includes, to the bucket
-   `into`: the part between from_us and to_us. */
+/* Adds part of the line from the end of bucket `a` (at end_us) to the start of bucket `b` to the bucket `into`: the part
+   between from_us and to_us. Neither `a` nor `b` includes that line. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,
                    int64_t from_us, int64_t to_us);
 

@@ -12,7 +12,7 @@ static const double MAX_MISREAD = 0.03 * 256;
    extreme light is more common in frames than in these samples */
 static const double MIN_RIGHT_PART = 0.974;
 static const double MIN_SHADING = 2, UNSAFE_SHADING = 4, STEP = 0.5;
-/* amplitude, of 255, of the noise added to luma and chroma in turn: about that of JPEG at quality 80 */
+/* amplitude of the noise added to luma and chroma in turn, on a scale of 0..255: about that of JPEG at quality 80 */
 static const double NOISE_AMPLITUDE = 2.0;
 enum { SAMPLED = 5, STEPS = 4, NOISES = 6 };
 
