@@ -281,8 +281,7 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     /* refuses a new plant file without a tag list: only plantcast match, which needs a tag list, writes the data source into the new
        file */
     if (order->anew && *order->source.host && !find_tags(&exports))
-        why = mem_printf("the plant's data source %s would be lost, because no tag list has been uploaded; upload a tag list first",
-                         order->source.host);
+        why = mem_printf("upload a tag list first: without one, the plant would lose its data source %s", order->source.host);
     else if (order->models)
         why = read_models(job, order, &exports, &unread);
     remember(job, &job->read);

@@ -390,11 +390,11 @@ static const char *role_wrong(const struct server_params *params)
 {
     bool render = params->role == SERVER_RENDER;
     if (render && !params->core_count)
-        return "--role render needs --core URL";
+        return "--role render requires --core URL";
     if (params->role == SERVER_ALL && params->core_count)
-        return "--core URL needs --role render, or --role core if there is a second core";
+        return "--core URL requires --role render, or --role core if there is a second core";
     if (!params->core_count && (params->core_token || params->core_ca))
-        return "--core-token-file and --core-ca need --core URL";
+        return "--core-token-file and --core-ca require --core URL";
     if (render && params->imports)
         return "--import is not allowed with --role render: give --import to the core";
     return NULL;

@@ -34,8 +34,8 @@ static void warn_of_far_sensors(struct log *log, const struct scene *scene)
         log_warn(log, "%s: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)", scene->plant->files.tags_path,
                  scene->plant->tags[far[i].sensor->tag].name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
     if (count > 10)
-        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->files.tags_path,
-                 count - 10);
+        log_warn(log, "%s: %zu more sensors are far from the surface of their asset; plantcastd --check lists them",
+                 scene->plant->files.tags_path, count - 10);
     mem_free(far);
 }
 

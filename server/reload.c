@@ -60,7 +60,7 @@ void reload_count(struct counters *counters, const char *hash, bool in_force)
 {
     char *name = mem_printf("plantcast_configuration_info{hash=\"%s\"}", hash);
     counter_set(counters_add(counters, name, "gauge",
-                             "Always 1; the label is the hash of the active configuration (plant file and tag list)."),
+                             "Always 1; the label `hash` identifies the active configuration (plant file and tag list)."),
                 in_force);
     mem_free(name);
 }
@@ -239,7 +239,7 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
         plant_runtime_destroy(&after);
     } else {
         log_err(reload->context->log,
-                "reload: the new plant cannot be activated; the daemon exits, and loads the new plant at its next start");
+                "reload: the new plant cannot be activated; the daemon exits and loads the new plant at its next start");
         net_stop(reload->net);
         plant_runtime_destroy(&after);
     }
@@ -308,7 +308,7 @@ static bool reload_now(struct reload *reload)
     if (after && !why && !start_render_service(reload, after))
         why = "drawing the new plant failed; the log says why";
     if (after && !why && !wait_for_core(reload))
-        why = "the core has not activated its changed files; the core's log says why";
+        why = "the core has not activated its changed files; its log says why";
     bool good = after && !why;
     if (good) {
         plant_diff(before->plant, after->plant, &diff);
@@ -504,7 +504,8 @@ static void lead_now(struct reload *reload, int64_t begun_ns)
         log_info(reload->context->log, "core: this core now polls devices and owns the alarms, after %.1f s",
                  (double)(clock_mono_ns() - begun_ns) / 1e9);
     } else if (open) {
-        log_err(reload->context->log, "core: this core cannot lead; the daemon exits");
+        log_err(reload->context->log, "core: this core cannot take over: polling or the alarms could not be started (see the messages "
+                                      "above); the daemon exits");
         net_stop(reload->net);
     }
 }

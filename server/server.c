@@ -414,7 +414,7 @@ static bool make_keeper(struct server *server)
     if (server->params.role != SERVER_CORE || !server->params.core_count)
         return true;
     if (!plant->history.postgres.url || plant->history.off) {
-        log_err(server->log, "%s: two cores require `postgres` in `history`, because PostgreSQL stores the lease",
+        log_err(server->log, "%s: two cores require `postgres` in `history`, because PostgreSQL stores their lease",
                 server->params.plant_path);
         return false;
     }
@@ -582,8 +582,8 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
         for (size_t i = 0; i < count && i < SHOWN; i++)
             printf("%s:%d: warning: model %s: left out: %s\n", plant->files.path, asset->line, asset->model, entry->left_out[i]);
         if (count > SHOWN)
-            printf("%s:%d: warning: model %s: %zu more textures or glTF extensions are left out, too, and not listed\n",
-                   plant->files.path, asset->line, asset->model, count - SHOWN);
+            printf("%s:%d: warning: model %s: %zu more textures or glTF extensions are left out and not listed\n", plant->files.path,
+                   asset->line, asset->model, count - SHOWN);
     }
     manifest_finish(&manifest);
 }

@@ -90,7 +90,7 @@ static void say_status(struct supervision *supervision, size_t sessions, const c
     supervision->said_sessions = sessions;
     supervision->said_core = core;
     service_notify("STATUS=%s%s%zu session%s%s", core ? core : "", core ? "; " : "", sessions, sessions == 1 ? "" : "s",
-                   refused ? "; the last reload was refused, an older configuration is active" : "");
+                   refused ? "; the last reload was refused, so an older configuration is active" : "");
 }
 
 /* Sends the watchdog message from the event loop, but only while the render thread is alive. So the service manager restarts

@@ -153,7 +153,7 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
     if (memcmp(type, "avcC", 4) == 0 && !has_two_sets(content, count))
         return FAIL("box avcC has more than one sequence parameter set or picture parameter set");
     return !rules[rule].content || content_fits(walk, rules[rule].content, content, count) ||
-           FAIL("box %s differs from that in Plantcast's clips", name);
+           FAIL("box %s has contents that Plantcast never writes", name);
 }
 
 /* Reads the picture's size from the innermost box, avc1. All other boxes must agree with that size. */

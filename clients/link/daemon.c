@@ -22,7 +22,7 @@ static bool read_token(struct daemon_access *access)
     if (good)
         snprintf(access->authorization, sizeof(access->authorization), "Bearer %.*s", (int)n, text);
     else
-        fprintf(stderr, "plantcast: %s: %s\n", access->token_path, error ? strerror(error) : "its first line is not a token");
+        fprintf(stderr, "plantcast: %s: %s\n", access->token_path, error ? strerror(error) : "the first line of the file is not a token");
     secret_forget(text);
     return good;
 }

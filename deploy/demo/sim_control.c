@@ -33,7 +33,7 @@ static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, 
     if (end == text || *end)
         snprintf(reply, bytes, "error: %s is not a number", text);
     else if (!sim_image_set(&device->modbus.image, unit, config, value))
-        snprintf(reply, bytes, "error: the data type of tag %s cannot hold %s", config->name, text);
+        snprintf(reply, bytes, "error: tag %s: its data type cannot hold %s", config->name, text);
     else
         sim_values_force(sim->values, tag, value);
 }

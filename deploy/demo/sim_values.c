@@ -101,7 +101,7 @@ static struct process *make_process(const struct plant *plant, struct diag *diag
 static const struct series *find_series(struct sim_values *values, const struct sim_map *map, const struct sim_map_entry *entry,
                                             struct diag *diag)
 {
-    char why[200] = "no file of recorded series is given: add --values FILE";
+    char why[200] = "no recorded series to replay: add --values FILE";
     bool found = false;
     for (size_t i = 0; i < values->series_count; i++)
         if (!strcmp(values->series[i].name, entry->series))

@@ -87,7 +87,8 @@ void rvm_losses_say(struct rvm_losses *losses, const struct cad_model *model, co
         else if (primitives[i] > 0 && node->triangle_count + node->line_count == 0)
             text_add(
                 said,
-                "lost\t#%zu\t%s\tgroup\t\tall faces of the group lie on faces of neighbouring groups (--keep-covered keeps such faces)\n",
+                "lost\t#%zu\t%s\tgroup\t\tall faces of the group coincide with faces of neighbouring groups (--keep-covered keeps such "
+                "faces)\n",
                 i, node->name);
     }
     say_volumes(losses, RVM_OBSTRUCTION, "obstruction", model, said);

@@ -61,7 +61,7 @@ static void read_rows(struct readings_table *table, struct csv *csv, const char 
         }
         if (csv->diag->errors == 0 && table->instants < MIN_INSTANTS)
             diag_error(csv->diag, csv->path, 0, 0,
-                       "%zu lines have a value for every one of the %zu sensors, %zu lines do not; a fit needs at least %d complete lines",
+                       "%zu lines have a value for each of the %zu sensors, %zu lines do not; the fit needs at least %d complete lines",
                        table->instants, table->count, table->left_out, MIN_INSTANTS);
     }
     mem_free(columns);
@@ -321,7 +321,7 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
     const size_t n = data->table->count;
     struct gaussian_fit fit;
     if (n < PLANT_GP_FITTED) {
-        snprintf(why, 300, "%zu sensors on one asset, but a fit needs at least %d: set `range_m`, `noise` and `deviation` instead", n,
+        snprintf(why, 300, "the asset has %zu sensors, but a fit needs at least %d: set `range_m`, `noise` and `deviation` instead", n,
                  PLANT_GP_FITTED);
         return false;
     }
@@ -336,7 +336,7 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
     if (!good)
         snprintf(why, 300, "the fit of the Gaussian process (gp) to the readings failed: see the messages above");
     else if (!(fit.best.deviation > 0)) {
-        snprintf(why, 300, "the fit of the Gaussian process (gp) failed: the readings of sensors on one body never differ");
+        snprintf(why, 300, "the Gaussian process (gp) cannot be fitted: the readings of sensors on one body are always equal");
         good = false;
     } else
         *params = fit.best;

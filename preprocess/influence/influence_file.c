@@ -108,7 +108,8 @@ static bool find_params(struct influence_making *making, int group, const double
     *gp = (struct gaussian_params){ of->gp.range_m, of->gp.noise, of->gp.deviation };
     if (gp->range_m > LONGEST * size)
         log_warn(making->log,
-                 "asset %s, group %s: range_m %g of gp is far longer than the asset (%.3g m): using %.3g m, which gives the same values",
+                 "asset %s, group %s: range_m %g of the Gaussian process (gp) is far longer than the asset (%.3g m): using %.3g m, which "
+                 "gives the same values",
                  asset, of->id, gp->range_m, size, LONGEST * size);
     if (!isnan(gp->range_m) && !isnan(gp->noise) && !isnan(gp->deviation))
         return true;
@@ -144,8 +145,8 @@ static bool range_good(const struct influence_making *making, int group, const s
     if (mesh->longest_m * MIN_EDGES <= gp->range_m)
         return true;
     log_err(making->log,
-            "asset %s, group %s: range_m %.3g of gp is too short: the triangles between %zu points are up to %.3g m long, so "
-            "range_m must be at least %.3g",
+            "asset %s, group %s: range_m %.3g of the Gaussian process (gp) is too short: the triangles between %zu points are up to %.3g "
+            "m long, so range_m must be at least %.3g",
             asset_of(making->input)->id, making->input->plant->groups[group].id, gp->range_m, mesh->mesh.point_count, mesh->longest_m,
             mesh->longest_m * MIN_EDGES);
     return false;

@@ -153,7 +153,7 @@ bool method_name_within(const struct matcher *matcher, const struct match_subjec
         return false;
     const char *what = out->candidates.nodes[0] >= 0 ? node_name(matcher, &out->candidates) : id_of(matcher, &out->candidates);
     snprintf(out->reason, sizeof(out->reason), "the tag's %s contains '%.60s'%s", in_name ? "name" : "path", what,
-             out->confidence < 0.9 ? ", but without separators around this name" : "");
+             out->confidence < 0.9 ? ", but without separators around it" : "");
     return true;
 }
 

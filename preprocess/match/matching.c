@@ -78,7 +78,7 @@ static void print_list(const struct matching_run *run)
     if (list->same > 0)
         printf("%s: ignored %zu duplicate rows\n", path, list->same);
     if (list->differing > 0)
-        printf("%s: %zu rows repeat a tag with different contents: only the first row of each tag is used: %s%s\n", path, list->differing,
+        printf("%s: %zu rows repeat a tag, with other contents: only the first row of each tag is used: %s%s\n", path, list->differing,
                list->differing_lines, list->differing > 5 ? ", ..." : "");
     if (list->renamed > 0)
         printf("%s: %zu tags share their name with a tag in another folder of the control system: they are named FOLDER/TAG\n", path,
@@ -108,7 +108,7 @@ static bool choose_equipment(struct matching_run *run)
     int count = equipment_choose(&run->site, run->params->equipment, run->params->equipment_count, &lines, why);
     char *text = count < 0 ? NULL : plant_edit_replace(run->plant_text, "assets", lines.at);
     if (count >= 0 && !text)
-        snprintf(why, sizeof(why), "the list `assets` in the plant file needs one item a line");
+        snprintf(why, sizeof(why), "--equipment can edit the list `assets` in the plant file only if each item is on a line of its own");
     struct plant *plant = text ? plant_trial_load(run->plant, text, NULL, "plantcast match") : NULL;
     text_finish(&lines);
     if (!text)
@@ -319,7 +319,7 @@ static void add_group(const struct quantity *quantity, struct text *lines)
     text_add(lines, ", unit: ");
     plant_edit_add_quoted(lines, quantity->unit);
     text_add(lines, ", min: %.6g, max: %.6g } # %zu tags; ", known ? quantity->low : 0, known ? quantity->high : 100, quantity->tags);
-    text_add(lines, known ? "range: scaled limits of these tags" : "the range is a guess: no tag of the group has scaled limits");
+    text_add(lines, known ? "range: the scaled limits of these tags" : "the range is a guess: no tag of the group has scaled limits");
     if (quantity->blank > 0)
         text_add(lines, "; %zu tags have no unit", quantity->blank);
     text_add(lines, "\n");
@@ -328,7 +328,8 @@ static void add_group(const struct quantity *quantity, struct text *lines)
 static bool take_text(struct matching_run *run, char *text)
 {
     if (!text)
-        return fail_at(run->params->plant, "the lists `groups` and `sources` in the plant file need one item a line");
+        return fail_at(run->params->plant, "plantcast match can edit the lists `groups` and `sources` in the plant file only if each item "
+                                           "is on a line of its own");
     mem_free(run->new_text);
     run->new_text = text;
     return true;

@@ -228,7 +228,7 @@ static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XM
                  count < 0 ? "cannot be unpacked" : XML_ErrorString(XML_GetErrorCode(parser)));
     XML_ParserFree(parser);
     if (unzCloseCurrentFile(zip) == UNZ_CRCERROR && good == 1) {
-        snprintf(why, why_bytes, "%s is damaged: the checksum is wrong", part);
+        snprintf(why, why_bytes, "%s is damaged: its checksum is wrong", part);
         good = -1;
     }
     return good;

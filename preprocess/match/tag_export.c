@@ -396,7 +396,8 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
     if (good && list->count == 0) {
         /* adds the first remark to the error message, because it often tells why the file has no tags */
         size_t length = strcspn(list->remarks.at ? list->remarks.at : "", "\n");
-        snprintf(why, why_bytes, "no tags in it%s%.*s", length > 0 ? ": " : "", (int)length, length > 0 ? list->remarks.at : "");
+        snprintf(why, why_bytes, "the file contains no tags%s%.*s", length > 0 ? ": " : "", (int)length,
+                 length > 0 ? list->remarks.at : "");
         good = false;
     }
     if (good)

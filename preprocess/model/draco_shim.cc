@@ -64,7 +64,7 @@ bool claims_good(const char *bytes, size_t size, char *why)
     uint64_t triangles = edgebreaker ? second : first, vertices = edgebreaker ? first : second,
              most = FREE_TRIANGLES + TRIANGLES_PER_BYTE * size;
     if (triangles > most || vertices > 3 * most)
-        return wrong(why, "%zu bytes of Draco data cannot hold the stated %llu vertices and %llu triangles", size,
+        return wrong(why, "%zu bytes of Draco data cannot hold %llu vertices and %llu triangles, the numbers in the header", size,
                      static_cast<unsigned long long>(vertices), static_cast<unsigned long long>(triangles));
     return true;
 }
@@ -83,7 +83,7 @@ bool decode(draco_mesh *out, const char *bytes, size_t size, char *why)
     for (uint32_t f = 0; f < out->mesh->num_faces(); f++)
         for (draco::PointIndex v : out->mesh->face(draco::FaceIndex(f)))
             if (v.value() >= out->mesh->num_points())
-                return wrong(why, "triangle %u names vertex %u of %u", f, v.value(), out->mesh->num_points());
+                return wrong(why, "triangle %u refers to vertex %u, but there are only %u vertices", f, v.value(), out->mesh->num_points());
     return true;
 }
 

@@ -30,7 +30,7 @@ static bool load_buffer(struct document_work *work, size_t number, const json_t 
     } else if (number == 0 && work->binary.at && !standin) {
         bytes = (struct document_bytes){ .at = work->binary.at, .size = work->binary.size };
     } else if (!standin) {
-        return wrong(work->why, "the bytes of buffer %zu are missing: it names no file (uri), and this file has no binary chunk", number);
+        return wrong(work->why, "the bytes of buffer %zu are missing: the buffer has no uri, and this file has no binary chunk", number);
     }
     size_t has = bytes.size;
     if (length < has)

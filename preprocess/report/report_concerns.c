@@ -67,7 +67,7 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
         add_concern(
             concerns, asset, 10 * (1 + r->surface.heat_disagreement),
             mem_printf(
-                "two methods of measuring distances on the asset differ by %.1f %%: the surface may be torn or joined in wrong places",
+                "two methods of measuring distances on the asset differ by %.1f %%: its surface may be torn, or joined in wrong places",
                 100 * r->surface.heat_disagreement));
     const struct level_left *left = &r->levels[0].left[LEVEL_LIMIT_TRIANGLES];
     if (r->level_count && (double)left->steps > FIELD_SLACK)

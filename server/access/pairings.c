@@ -209,7 +209,7 @@ static bool make_room(struct pairings *pairings, size_t from)
     if (victim == pairings->count)
         return false;
     log_info(pairings->kept.log,
-             "pairing: all %d pairing codes are in use; dropped the newest waiting display of address %s, which had %zu waiting displays",
+             "pairing: all %d pairing codes are in use; cancelled the newest pairing request from %s, which had %zu requests waiting",
              PAIRINGS, pairings->waiting[victim].from, most);
     forget(pairings, victim);
     return true;

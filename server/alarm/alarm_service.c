@@ -92,7 +92,7 @@ static void take_events(struct alarm_service *service)
     service->taken = taken;
     if (taken.lost) {
         counter_inc(service->counters.lost, (int64_t)taken.lost);
-        log_err(service->params.log, "alarms: %zu samples were not evaluated: queue full", taken.lost);
+        log_err(service->params.log, "alarms: %zu samples were not checked for alarms: the queue is full", taken.lost);
     }
 }
 
@@ -214,16 +214,16 @@ static void add_counters(struct alarm_service *service)
             counters_add(c, name, "gauge", "Alarms shown in the alarm list, by priority; 1 is the most urgent.");
         mem_free(name);
     }
-    service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms in the alarm list whose cause persists.");
+    service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms in the alarm list that are still active.");
     service->counters.standing =
-        counters_add(c, "plantcast_alarms_standing", "gauge", "Alarms in the alarm list whose cause has persisted for more than a day.");
+        counters_add(c, "plantcast_alarms_standing", "gauge", "Alarms in the alarm list that have been active for more than a day.");
     service->counters.chattering =
         counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");
     service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Active alarms whose reading is Bad.");
     service->counters.rate = counters_add(c, "plantcast_alarms_recent", "gauge", "Alarms raised within the last ten minutes.");
     service->counters.raised = counters_add(c, "plantcast_alarms_raised_total", "counter", "Alarms raised.");
     service->counters.lost =
-        counters_add(c, "plantcast_alarm_samples_lost_total", "counter", "Samples dropped before alarm evaluation: queue full.");
+        counters_add(c, "plantcast_alarm_samples_lost_total", "counter", "Samples not checked for alarms because the queue was full.");
 }
 
 static bool start_journal(struct alarm_service *service)

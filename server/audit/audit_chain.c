@@ -80,7 +80,7 @@ bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count
     const size_t tail = strlen(HASH_KEY) + AUDIT_HASH_CHARS + strlen(END);
     char hash[AUDIT_HASH_CHARS + 1];
     if (count < tail || count >= AUDIT_LINE_BYTES || memcmp(line + count - tail, HASH_KEY, strlen(HASH_KEY)) != 0) {
-        *why = "the line is not a line of an audit trail";
+        *why = "not a line of an audit trail";
         return false;
     }
     const char *said = line + count - strlen(END) - AUDIT_HASH_CHARS;
@@ -89,8 +89,8 @@ bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count
     const char *prev = json_string_value(json_object_get(object, "prev"));
     json_int_t seq = json_integer_value(json_object_get(object, "seq"));
     *why = !object                                     ? "the line was changed: its hash differs"
-           : !prev || seq < 1                          ? "the line has no number (seq), or no hash of the preceding line (prev)"
-           : !first && (uint64_t)seq != chain->seq + 1 ? "lines before this line are missing or were inserted"
+           : !prev || seq < 1                          ? "the line has no line number (seq), or no hash of the preceding line (prev)"
+           : !first && (uint64_t)seq != chain->seq + 1 ? "lines before this line were removed or inserted"
            : !first && strcmp(prev, chain->hash) != 0
                ? "the line's hash of the preceding line (prev) differs: a line was changed, removed or inserted"
                : NULL;

@@ -122,7 +122,7 @@ static int look_at_path(struct audit_file *file, char **finding)
     if (open && found && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev)
         return 0;
     if (open && ours.st_nlink == 0 && !*finding)
-        *finding = mem_printf("%s: the audit file was removed; %zu bytes are lost", file->path, file->bytes);
+        *finding = mem_printf("%s: the audit file was removed by another program; %zu bytes are lost", file->path, file->bytes);
     if (open)
         close(file->fd);
     int error = open_fd(file);

@@ -113,7 +113,8 @@ void audit_file_verify(const char *path, const struct audit_chain *known, struct
                                      "emptied, or this is not an audit trail",
                                      path));
     if (report->good && !has_head)
-        set_fault(report, mem_printf("%s: the file is missing: without it, removed last lines cannot be detected", head_path));
+        set_fault(report,
+                  mem_printf("%s: the file is missing: without it, the removal of lines from the end cannot be detected", head_path));
     if (report->good && walk.head.seq > report->end.seq)
         set_fault(report, mem_printf("%s: ends at line %" PRIu64 "; the last %" PRIu64 " lines were removed (%s)", path, report->end.seq,
                                      walk.head.seq - report->end.seq, head_path));

@@ -252,7 +252,7 @@ static void on_links(struct core_link *link, const json_t *message)
     const json_t *up = json_object_get(message, "up");
     int64_t now_ns = clock_mono_ns();
     if (json_array_size(up) != link->params.plant->source_count) {
-        refuse(link, "the core's number of sources differs from this plant's");
+        refuse(link, "the core has another number of sources than this plant");
         return;
     }
     for (size_t i = 0; i < json_array_size(up); i++)
@@ -590,7 +590,7 @@ static bool resolve(struct core_link *link, const struct core_url *url, char add
         found = found->ai_next;
     bool good = status == 0 && getnameinfo(found->ai_addr, found->ai_addrlen, address, INET6_ADDRSTRLEN, NULL, 0, NI_NUMERICHOST) == 0;
     if (!good)
-        end(link, status == -ETIMEDOUT ? "the host name cannot be resolved" : "unknown host name");
+        end(link, status == -ETIMEDOUT ? "the host name could not be resolved" : "unknown host name");
     lookup_destroy(&lookup);
     return good;
 }
@@ -682,12 +682,10 @@ static void answer_waiting(struct core_link *link)
     for (size_t i = 0; i < CORE_ACTS; i++) {
         uint64_t client = take_waiting(link, link->waiting[i].id);
         if (client)
-            arrive(
-                link, client,
-                json_text(
-                    json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
-                              "the connection to the core was lost: after the connection is restored, check whether the action was done"),
-                    0));
+            arrive(link, client,
+                   json_text(json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
+                                       "the connection to the core was lost: once it is restored, check whether the action was done"),
+                             0));
     }
 }
 
@@ -777,7 +775,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to a core that delivered readings.");
     link->refused =
         counters_add(c, "plantcast_core_refused_total", "counter",
-                     "Connections to a core given up: the core differs in version, plant or configuration, or refuses this node.");
+                     "Connections to a core that were ended because the core differed in version, plant or configuration, or refused this "
+                     "node.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
                                         "Seconds by which the core's clock is ahead of this machine's.");
     /* lets libwebsockets log only errors and warnings; the link's own loop logs its connections */

@@ -257,7 +257,7 @@ static void tell_barred(struct lease_keeper *keeper, bool barred, char *refusal)
     if (barred && !keeper->told_barred)
         log_err(keeper->params.log,
                 "lease: no core leads, and this core does not take over, because the last leader refused this core (%s). To let this core "
-                "lead, copy the leader's plant file and tag list here, and reload this core",
+                "lead, copy the leader's plant file and tag list to this machine, and reload this core",
                 refusal);
     keeper->told_barred = barred;
     mem_free(refusal);
@@ -301,7 +301,7 @@ static void tell_maintenance(struct lease_keeper *keeper, bool alone)
 {
     if (alone && !keeper->told_alone)
         log_warn(keeper->params.log,
-                 "lease: standby: maintenance: this core leads alone, also without PostgreSQL; no other core takes over");
+                 "lease: standby: maintenance: this core leads alone, even without PostgreSQL; no other core takes over");
     if (!alone && keeper->told_alone)
         log_info(keeper->params.log, "lease: standby: normal: a standby that follows may take over");
     keeper->told_alone = alone;
@@ -394,7 +394,7 @@ static void tell(struct lease_keeper *keeper)
     }
     if (ends && !keeper->told_lost) {
         keeper->told_lost = true;
-        log_err(keeper->params.log, "lease: lost (%s); this core stops polling and exits now",
+        log_err(keeper->params.log, "lease: lost (%s); this core stops polling and exits",
                 lost ? "another core leads, or the row was edited" : "neither PostgreSQL nor a standby has confirmed the lease");
         keeper->params.lost(keeper->params.arg);
     }

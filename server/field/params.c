@@ -193,7 +193,7 @@ static const char *sensors_wrong(const struct plant *plant, const struct field_p
     if (params->show == SHOW_DISTANCE && params->sensor < 0)
         return "sensor: expected a sensor, because show is distance";
     if (!field_params_placed(plant, params))
-        return "sensors: a listed sensor belongs to another group, or has no place on an asset";
+        return "sensors: a listed sensor belongs to another group, or has no position on an asset";
     if (params->show == SHOW_DIFFERENCE && params->baseline == 0)
         return "baseline: expected a baseline, because show is difference";
     for (size_t i = 0; i < params->override_count; i++) {
@@ -212,11 +212,11 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
     if ((unsigned)params->interpolation >= INTERPOLATIONS)
         return "interpolation: expected shepard, paper, harmonic, fin or gp";
     if (interpolation_is_prepared(params->interpolation) && !plant_prepares(&plant->groups[params->group], params->interpolation))
-        return "interpolation: not prepared for the shown group; add the interpolation to the group's 'prepare' in the plant file";
+        return "interpolation: not prepared for the displayed group; add the interpolation to the group's 'prepare' in the plant file";
     if ((unsigned)params->distance >= DISTANCES)
         return "distance: expected geodesic, euclidean or heat";
     if (params->distance == DISTANCE_HEAT && !plant->groups[params->group].heat)
-        return "distance: heat is not prepared for the shown group; set 'geodesic: heat' for the group in the plant file";
+        return "distance: heat is not prepared for the displayed group; set 'geodesic: heat' for the group in the plant file";
     if (params->fill != FILL_NONE && params->fill != FILL_NEIGHBOURS)
         return "fill: expected none or neighbours";
     if ((unsigned)params->show > SHOW_BLIND)

@@ -31,7 +31,7 @@ static bool sync_file(struct log *log, const char *path)
     int cause = errno;
     if (fd >= 0)
         close(fd);
-    return good || failed(log, path, "cannot be synchronised to disk", strerror(cause));
+    return good || failed(log, path, "cannot be flushed to disk", strerror(cause));
 }
 
 /* --- checking and setting the owners of files -------------------------------------------------------------------------------- */

@@ -261,7 +261,7 @@ static void take_events(struct historian *historian, const struct now *now, int6
     counter_inc(historian->counters.samples, (int64_t)taken.count);
     counter_inc(historian->counters.lost, (int64_t)taken.lost);
     if (taken.lost)
-        log_err(historian->log, "history: %zu samples lost: queue full", taken.lost);
+        log_err(historian->log, "history: %zu samples lost: the queue is full", taken.lost);
     taken.count = taken.lost = 0;
     historian->taken = taken;
 }
@@ -619,7 +619,7 @@ static void spool(struct historian *historian)
                   strerror(-error));
     else
         log_event(historian->log, LOG_WARN, EVENT_HISTORY_UNWRITABLE,
-                  "history: %zu points could not be written; these points wait in the spool file %s for the next start",
+                  "history: %zu points could not be written; they wait in the spool file %s for the next start",
                   rows->kept.count + rows->held.count, *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
         unlink(historian->spool_path); /* deletes the old spool file, because the new one contains its rows */
@@ -672,7 +672,7 @@ static void add_counters(struct historian *historian, struct counters *counters)
     historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points waiting to be written.");
     historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
     historian->counters.bytes =
-        counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space in bytes that all history files take.");
+        counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space in bytes used by all history files.");
     historian->counters.free =
         counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free disk space in bytes in the history folder.");
     historian->counters.backup = counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge",

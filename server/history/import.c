@@ -257,7 +257,7 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     if (series->seen && point->t_us < series->last_us) {
         char text[TIMESTAMP_BYTES];
         timestamp_print(series->last_us, text);
-        csv_error(&import->csv, column, "tag %s: expected a time that is not before the tag's last sample, %s",
+        csv_error(&import->csv, column, "tag %s: expected a time not before the tag's previous sample, %s",
                   import->params->plant->tags[tag].name, text);
         return false;
     }

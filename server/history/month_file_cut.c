@@ -14,7 +14,7 @@ int month_file_size(struct month_file *file, struct month_file_size *size)
         size->shrinks = sqlite3_column_int(statement, 3) != 0;
     }
     sqlite3_reset(statement);
-    return database_fail(&file->db, code, "the size of the file cannot be read");
+    return database_fail(&file->db, code, "cannot determine the size of the file");
 }
 
 static bool remove_before(void *arg, struct history_points *points)

@@ -209,7 +209,7 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
 
 int month_file_use_outbox(struct month_file *file)
 {
-    int error = database_exec(&file->db, MONTH_OUTBOX_SCHEMA, "the outbox for PostgreSQL cannot be created");
+    int error = database_exec(&file->db, MONTH_OUTBOX_SCHEMA, "cannot create the outbox for PostgreSQL");
     file->has_outbox = !error;
     return error;
 }
@@ -533,7 +533,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
             *ended_us = rows[count - 1].point.t_us;
     }
     sqlite3_reset(held);
-    int error = database_fail(&file->db, code, "the newest sample of each tag cannot be read");
+    int error = database_fail(&file->db, code, "cannot read the newest sample of each tag");
     for (size_t i = 0, ends = count; i < ends; i++)
         if (rows[i].point.quality != gap_quality) {
             rows[count] = rows[i];
@@ -551,7 +551,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
 
 int month_file_clear_held(struct month_file *file)
 {
-    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "the newest samples of a past month cannot be deleted");
+    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot delete the newest samples of a past month");
 }
 
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)

@@ -147,7 +147,7 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         *unsent = 0; /* points left in an outbox by an earlier configuration do not count as lost, because no database is configured now */
     if (*unsent)
         log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
-                  "history: keep_gb: deleted %lld of the oldest points before PostgreSQL had received them", (long long)*unsent);
+                  "history: keep_gb: deleted %lld of the oldest points before they were sent to PostgreSQL", (long long)*unsent);
     for (size_t i = 0; i < count; i++)
         for (int part = 0; part < PARTS; part++)
             left += part_bytes(folder, months[i], part);

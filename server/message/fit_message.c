@@ -128,7 +128,8 @@ bool camera_parse(const json_t *o, struct camera *out, struct message_error *err
     if (projection == PROJECTION_ORTHOGRAPHIC && !need_number(o, "height_m", 1e-5, PLANT_MAX_M, &out->height_m, error))
         return false;
     if (!camera_valid(out)) {
-        message_fail(error, "bad_field", "eye, target, up: eye must differ from target, and up must not be parallel to the view");
+        message_fail(error, "bad_field",
+                     "eye, target, up: eye must differ from target, and up must not be parallel to the line from eye to target");
         return false;
     }
     return true;

@@ -140,7 +140,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     if (!tile_parse(plant, o, out, error) || !take_signed(o, "signed", out, &given, error))
         return false;
     if (out->hello.tile.display && !out->width_px) {
-        message_fail(error, "bad_field", "tile: needs the fields width and height");
+        message_fail(error, "bad_field", "tile: requires the fields width and height");
         return false;
     }
     out->hello.tokens = json_is_true(json_object_get(o, "tokens"));
@@ -224,7 +224,7 @@ static bool parse_lead(const struct plant *plant, const json_t *o, struct messag
 {
     if (parse_follow(plant, o, out, error) && out->follow)
         return true;
-    message_fail(error, "bad_field", "session: expected the number of a session");
+    message_fail(error, "bad_field", "session: expected a session number");
     return false;
 }
 

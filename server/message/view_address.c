@@ -141,7 +141,7 @@ static bool add_field(struct view_address *out, const char *name, char *value, s
     else
         known = false;
     if (!good || !known)
-        message_fail(error, "bad_field", "view address: %.40s: %s", name, known ? "the value is invalid" : "a picture cannot show this");
+        message_fail(error, "bad_field", "view address: %.40s: %s", name, known ? "the value is invalid" : "not available in a picture");
     return good && known;
 }
 

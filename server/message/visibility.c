@@ -23,8 +23,8 @@ static bool parse_set(const struct plant *plant, const json_t *o, const char *na
                 message_refuse_with(error, "bad_field", name, REFUSAL_NO_ASSET, "name=%s", said);
             else
                 message_fail(error, "bad_field",
-                             "%s: asset '%s': only the first %d assets in the plant file can be hidden, isolated or ghosts", name, said,
-                             ASSET_SET_MAX);
+                             "%s: asset '%s': only the first %d assets in the plant file can be hidden, isolated or shown as ghosts", name,
+                             said, ASSET_SET_MAX);
             return false;
         }
         asset_set_add(out, asset);

@@ -16,9 +16,9 @@ static const char SIGNED_IN[] = " (signed in)"; /* suffix of the name of a user 
                                                    the same name */
 
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n", REFUSAL_NONE };
-static const struct http_refusal WRONG_HOST = { 403, "the header Host has a name that this server does not accept; --host NAME allows it\n",
+static const struct http_refusal WRONG_HOST = { 403, "this server does not accept the name in the Host header; --host NAME allows it\n",
                                                 REFUSAL_NONE };
-static const struct http_refusal LOCAL_ONLY = { 403, "this server accepts only the hosts localhost, 127.0.0.1 and [::1]\n", REFUSAL_NONE };
+static const struct http_refusal LOCAL_ONLY = { 403, "this server accepts only localhost, 127.0.0.1 and [::1] as host\n", REFUSAL_NONE };
 static const struct http_refusal PROXY = { 403, "the request came through a proxy; start the server with --behind-proxy to allow this\n",
                                            REFUSAL_NONE };
 static const struct http_refusal IN_QUERY = { 400,
@@ -240,7 +240,7 @@ static void record_login(struct server_context *server, const struct connection 
                                      .how = way,
                                      .why = good                         ? NULL
                                             : known                      ? "the token has expired"
-                                            : login == LOGIN_WRONG_SLOWS ? "unknown token; further tokens of this address are delayed"
+                                            : login == LOGIN_WRONG_SLOWS ? "unknown token; further tokens from this address are delayed"
                                                                          : "unknown token" });
 }
 
@@ -264,8 +264,10 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
               connection->address, way, known ? holder->name : "(unknown)", role, known ? "the token has expired" : "the token is unknown",
               failures);
     if (login == LOGIN_WRONG_SLOWS)
-        log_warn(log, "login from %s: limited to one token in %d s until a minute passes without a wrong token", connection->address,
-                 LOGIN_WAIT_S);
+        log_warn(log,
+                 "login from %s: too many wrong tokens; only one attempt every %d s is accepted until a minute passes without a "
+                 "wrong token",
+                 connection->address, LOGIN_WAIT_S);
 }
 
 /* Checks a token. Returns NULL and sets connection->holder if the token is accepted; otherwise the refusal to send. */

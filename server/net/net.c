@@ -97,7 +97,7 @@ static void record_held(struct server_context *server, int64_t now_ns)
         return;
     record_sum(server, &server->logins.held, "tokens from rate-limited addresses were refused unchecked");
     record_sum(server, &server->logins.unasked,
-               "answers of the identity provider belonged to no sign-in, could not be checked, or were errors");
+               "answers of the identity provider were rejected: they belonged to no sign-in, could not be checked, or were errors");
     server->logins.held_ns = now_ns;
 }
 
@@ -177,7 +177,7 @@ static void tick(struct net *net, int64_t now_ns)
         streams_on_readings(&net->server, false, true);
     if (core_loss_on_tick(&net->server.life.core_loss, has_core(&net->server), now_ns))
         log_warn(net->server.params.log,
-                 "no connection to a core for %d s: moving sessions to the other nodes that the load balancer reports in use",
+                 "no connection to a core for %d s: moving sessions to the other nodes that the load balancer reports as available",
                  (int)((now_ns - net->server.life.core_loss.lost_ns) / NS_PER_S));
     streams_on_tick(&net->server);
     http_on_tick(&net->server, now_ns);
@@ -348,7 +348,7 @@ static void raise_file_limit(struct log *log, const struct quotas *quotas)
     if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
         return;
     if (limit.rlim_max != RLIM_INFINITY && limit.rlim_max < wanted) {
-        log_warn(log, "files: this process may open %llu files, and --limit connections=%lld needs %llu; raise ulimit -n or LimitNOFILE=",
+        log_warn(log, "files: this process may open %llu files, but --limit connections=%lld needs %llu; raise ulimit -n or LimitNOFILE=",
                  (unsigned long long)limit.rlim_max, (long long)quotas->at[QUOTA_CONNECTIONS], (unsigned long long)wanted);
         wanted = limit.rlim_max;
     }
@@ -393,7 +393,7 @@ static void add_counters(struct server_context *server)
     server->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
     server->counters.depth_bytes =
         counters_add(c, "plantcast_depth_bytes_total", "counter",
-                     "Bytes of depth data sent, with which pages move a picture before the next picture arrives.");
+                     "Bytes of depth data sent, with which pages move the current picture until the next one arrives.");
     server->counters.dropped =
         counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames replaced by a newer frame before they were sent.");
     server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames whose sending was abandoned.");

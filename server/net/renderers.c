@@ -416,8 +416,7 @@ static bool send_samples(const struct server_context *server, struct renderer_pe
     renderer->samples_sent = count < CORE_SAMPLES_AT_ONCE;
     if (count < 0)
         log_err(server->params.log,
-                "standby %s: disconnected: the standby read samples too slowly, and will read the missing samples from PostgreSQL",
-                renderer->name);
+                "standby %s: disconnected: it read samples too slowly; it will read the missing samples from PostgreSQL", renderer->name);
     return count < 0 ? false : count == 0 || send_out(renderer, LWS_WRITE_BINARY);
 }
 
@@ -541,7 +540,7 @@ static char *standby_refusal(const struct server_context *server, struct rendere
         if (other != one && (matches ? is_standby(other) : is_witness(other)))
             return mem_printf("%.63s is already the standby", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
-        return mem_printf("the standby %.63s sent no id, or an id that is too long", one->name);
+        return mem_printf("the standby %.63s sent no id, or one that is too long", one->name);
     return NULL;
 }
 
@@ -629,8 +628,8 @@ static const char *verify_person(const struct server_context *server, const stru
     *out = (struct token_holder){ .role = ROLE_NOBODY };
     if (token && server->logins.tokens)
         return !tokens_find(server->logins.tokens, token, clock_utc_ns(), out) ? "the core does not accept this token (its --tokens file)"
-               : role_is_node(out->role)                                ? "a token of a daemon does not allow user actions"
-                                                                        : NULL;
+               : role_is_node(out->role)                                       ? "a daemon's token does not permit user actions"
+                                                                               : NULL;
     if (id_token && server->logins.openid) {
         const char *why = openid_vouch(server->logins.openid, id_token, out);
         connection_tell_apart(server, out);
@@ -640,7 +639,7 @@ static const char *verify_person(const struct server_context *server, const stru
         out->role = ROLE_ENGINEER;
         return NULL;
     }
-    return id_token ? "the core cannot identify the signed-in user, because the core runs without --openid"
+    return id_token ? "the core cannot identify the signed-in user because it runs without --openid"
                     : "the core cannot verify the user: use a token, or sign in";
 }
 

@@ -217,7 +217,7 @@ static void log_silence(struct server_context *server, struct stream *stream, in
     stream->silent_ns = INT64_MAX;
     if (session->display.display > 0)
         snprintf(display, sizeof(display), ", display %d of wall %s", session->display.display, session->display.wall);
-    log_warn(server->params.log, "session %llu (%s%s): no picture acknowledged for %d s: the page hangs, or the network stalls",
+    log_warn(server->params.log, "session %llu (%s%s): no picture acknowledged for %d s: the page hangs, or the network is stalled",
              (unsigned long long)session->id, connection_of(stream->wsi)->address, display, SILENT_S + PACER_STALL_S);
 }
 
@@ -284,7 +284,7 @@ void streams_on_tick(struct server_context *server)
         session_on_tick(stream->session, now_ns);
         move_elsewhere(server, stream, now_ns);
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
-            session_close(stream->session, 1008, "an incomplete message timed out");
+            session_close(stream->session, 1008, "a message was not completed in time");
         count(server, stream);
         watch_stall(server, stream, now_ns);
         pump(server, stream);

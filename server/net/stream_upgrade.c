@@ -48,7 +48,7 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
     if (!connection_identify(server, wsi, &refusal))
         return refuse(server, wsi, refusal.status, refusal.text ? refusal.text : refusal_words(refusal.code));
     if (!origin_allowed(server, wsi))
-        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed; --origin URL allows an origin\n");
+        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed; --origin URL allows one\n");
     if (core && (why = renderers_refusal(server, wsi)))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, why);
     if (!core && role_is_node(connection_of(wsi)->role))

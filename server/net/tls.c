@@ -33,7 +33,7 @@ static const char *why(char out[200])
     if (code)
         ERR_error_string_n(code, out, 200);
     else
-        snprintf(out, 200, "%s", errno ? strerror(errno) : "no reason is given");
+        snprintf(out, 200, "%s", errno ? strerror(errno) : "no reason given");
     ERR_clear_error();
     return out;
 }
@@ -85,7 +85,7 @@ static void warn(struct tls *tls)
 {
     struct stat st;
     if (stat(tls->key_path, &st) == 0 && (st.st_mode & S_IROTH))
-        log_warn(tls->log, "%s: all users of this machine can read the private key: chmod 640 or stricter", tls->key_path);
+        log_warn(tls->log, "%s: all users of this machine can read this private key: run chmod 640 on the file", tls->key_path);
     warn_of_end(tls, time(NULL));
 }
 

@@ -38,7 +38,7 @@ struct delivery *delivery_create(struct log *log, const struct plant_notify *not
     delivery->notify = notify;
     delivery->transfers = mem_array(notify->recipient_count + 1, sizeof(*delivery->transfers));
     if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK || !(delivery->multi = curl_multi_init())) {
-        log_err(log, "notify: no messages can be sent: libcurl cannot be initialised");
+        log_err(log, "notify: messages cannot be sent: libcurl cannot be initialised");
         delivery_destroy(&delivery);
     }
     return delivery;
@@ -107,7 +107,7 @@ static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t c
     else if (type == CURLINFO_HEADER_OUT)
         transfer->mailbox[0] = 0;
     else if (type == CURLINFO_HEADER_IN && transfer->mailbox[0] && length > 0 && (bytes[0] == '4' || bytes[0] == '5'))
-        log_warn(transfer->log, "notify: %s: the mail server refuses %s: %.*s", transfer->name, transfer->mailbox, length, bytes);
+        log_warn(transfer->log, "notify: %s: the mail server refused %s: %.*s", transfer->name, transfer->mailbox, length, bytes);
     return 0;
 }
 

@@ -202,7 +202,7 @@ static void count(struct notifier *notifier)
         counter_set(notifier->counters[i].waiting, outbox_counts(notifier->outbox, i).waiting);
     int64_t lost = outbox_counts(notifier->outbox, 0).lost;
     if (lost > notifier->lost_before) {
-        log_err(notifier->params.log, "notify: %lld messages about alarms lost: not stored, or not delivered within a day",
+        log_err(notifier->params.log, "notify: %lld alarm messages lost: not stored, or not delivered within a day",
                 (long long)(lost - notifier->lost_before));
         counter_inc(notifier->lost, lost - notifier->lost_before);
     }

@@ -63,7 +63,7 @@ static bool publish(struct publisher *publisher, const char *topic, const char *
     int status = mqtt_client_publish(publisher->client, topic, text);
     counter_inc(publisher->messages, status == 0);
     if (status < 0 && status != -ENOTCONN)
-        log_warn(publisher->params.log, "publish: topic %s: the MQTT client refuses a message of %zu bytes, which is not sent", topic,
+        log_warn(publisher->params.log, "publish: topic %s: the MQTT client refused a message of %zu bytes; it is not sent", topic,
                  strlen(text));
     return status != -ENOTCONN;
 }

@@ -251,7 +251,7 @@ size_t sensor_suggest(const struct suggest_query *query, struct suggestion *out)
     for (size_t a = 0; a < query->scene->asset_count && good; a++)
         good = (query->asset >= 0 && query->asset != (int)a) || add_part(&suggesting, (int)a);
     if (!good)
-        log_err(query->log, "cannot suggest places for sensors: out of memory");
+        log_err(query->log, "cannot suggest positions for sensors: out of memory");
     while (good && suggesting.part_count > 0 && made < query->count && take_best(&suggesting, &out[made]))
         made++;
     for (size_t p = 0; p < suggesting.part_count; p++) {

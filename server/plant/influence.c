@@ -59,10 +59,9 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
     gp->deviation = isnan(gp->deviation) ? PLANT_GP_DEVIATION * (group->max - group->min) : gp->deviation;
     gp->noise = isnan(gp->noise) ? PLANT_GP_NOISE * (group->max - group->min) : gp->noise;
     if (plant_prepares(group, INTERPOLATION_GP) && isnan(gp->range_m))
-        yaml_error(
-            reader, yaml_map_place(map, "gp"),
-            "group %s: gp needs 'gp: { range_m: ... }' (correlation length in metres) or 'fit' (a file of readings)",
-            group->id ? group->id : "");
+        yaml_error(reader, yaml_map_place(map, "gp"),
+                   "group %s: gp requires 'gp: { range_m: ... }' (correlation length in metres) or 'fit' (a file of readings)",
+                   group->id ? group->id : "");
 }
 
 static int count_sensors(const struct plant *plant, int group, int asset)
@@ -99,12 +98,12 @@ void plant_influence_check(const struct plant *plant, struct diag *diag)
             continue;
         if (isnan(group->ambient))
             diag_error(diag, plant->files.path, group->line, 0,
-                       "group %s: fin needs 'ambient', the value around the assets, in %s: far from sensors, the wall takes this value",
+                       "group %s: fin requires 'ambient', the value around the assets, in %s: far from sensors, the wall takes this value",
                        group->id, *group->unit ? group->unit : "the group's unit");
         for (size_t a = 0; a < plant->asset_count; a++)
             if (plant->assets[a].thickness_m <= 0 && count_sensors(plant, (int)g, (int)a) > 0)
                 diag_error(diag, plant->files.path, plant->assets[a].line, 0,
-                           "asset %s: the interpolation fin of group %s needs 'thickness_m', the thickness of the asset's wall",
+                           "asset %s: group %s has 'interpolation: fin', which requires 'thickness_m', the thickness of the asset's wall",
                            plant->assets[a].id, group->id);
     }
 }

@@ -291,7 +291,7 @@ int plant_folder_lock(const struct plant_folder_params *params, char **why)
         remove_left(params->folder, params->own, true);
         status = finish_killed(params);
         if (status != 0)
-            *why = mem_printf("an import that was killed cannot be finished: %s", strerror(-status));
+            *why = mem_printf("an import was killed and cannot be completed: %s", strerror(-status));
     } else {
         *why = status == -EWOULDBLOCK ? say_holder(fd) : mem_strdup(strerror(-status));
     }
@@ -323,8 +323,8 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
         return true;
     }
     if (lock >= 0 && plant_folder_unsettled(params->folder)) {
-        *why = mem_strdup("an import in this folder was killed or still runs, and the folder cannot be locked: when it has ended, run "
-                          "plantcast import or match again");
+        *why = mem_strdup("an import in this folder was killed or still runs, and the folder cannot be locked: run plantcast import or "
+                          "match again when no import runs");
         return false;
     }
     return lock >= 0;

@@ -133,7 +133,7 @@ static bool read_readings(const json_t *told, const struct plant *plant, struct 
         int tag = name ? plant_find_tag(plant, name) : -1;
         if (tag < 0 || seen[tag]) {
             good = FAIL("reading %zu is for '%.60s', which %s", i + 1, name ? name : "",
-                        tag < 0 ? "is not a tag of the plant file" : "has an earlier reading already");
+                        tag < 0 ? "is not a tag of the plant file" : "already has a reading in this statement");
             break;
         }
         seen[tag] = true;

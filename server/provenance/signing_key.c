@@ -44,7 +44,7 @@ static struct signing_key *load(const char *path, bool is_private, char why[SIGN
     }
     struct signing_key *key = NULL;
     if (is_private && fstat(fileno(file), &info) == 0 && (info.st_mode & S_IROTH)) {
-        snprintf(why, SIGNING_KEY_WHY_BYTES, "%.180s: all users may read this private key; set chmod o-rwx", path);
+        snprintf(why, SIGNING_KEY_WHY_BYTES, "%.180s: all users can read this private key; run chmod o-rwx on the file", path);
     } else {
         key = mem_new(sizeof(*key));
         key->pair = (is_private ? PEM_read_PrivateKey : PEM_read_PUBKEY)(file, NULL, no_passphrase, NULL);

@@ -69,7 +69,8 @@ bool manifest_read(struct log *log, const char *folder, struct manifest *manifes
     json_t *root = load(log, manifest->path);
     bool good = root;
     if (good && json_integer_value(json_object_get(root, "format")) != MANIFEST_FORMAT) {
-        log_err(log, "%s: the prepared files have another format; this program needs format %d", manifest->path, MANIFEST_FORMAT);
+        log_err(log, "%s: the prepared files have another format than the format %d that this program needs", manifest->path,
+                MANIFEST_FORMAT);
         good = false;
     }
     const json_t *assets = json_object_get(root, "assets");

@@ -41,15 +41,15 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
 {
     const struct asset_view *view = &asset->file->view;
     if (view->header->sensor_count != count) {
-        log_err(log, "asset %s: the prepared file %s has %u sensors, the tag list has %zu", asset->plant->id, asset->file->path,
-                view->header->sensor_count, count);
+        log_err(log, "asset %s: the prepared file %s has %u sensors, but the tag list has %zu; prepare the plant again", asset->plant->id,
+                asset->file->path, view->header->sensor_count, count);
         return false;
     }
     for (size_t i = 0; i < count; i++) {
         if (same_place(view->header, &view->sensors[i], &sensors[i]))
             continue;
-        log_err(log, "asset %s: the position of sensor %s in the prepared file %s differs from the tag list", asset->plant->id,
-                plant->tags[sensors[i].tag].name, asset->file->path);
+        log_err(log, "asset %s: the tag list has another position for sensor %s than the prepared file %s; prepare the plant again",
+                asset->plant->id, plant->tags[sensors[i].tag].name, asset->file->path);
         return false;
     }
     return true;
@@ -104,7 +104,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
             if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
-            log_err(log, "asset %s: the influence of the sensors in group %s was prepared with a different tag list, disc_m, gp or wall",
+            log_err(log, "asset %s: the influence of the sensors in group %s was prepared with another tag list, disc_m, gp or wall",
                     asset->plant->id, group->id);
             return false;
         }
@@ -132,8 +132,10 @@ static bool recipe_fits(struct log *log, const struct plant *plant, uint64_t *ha
     }
     if (plant_recipe(asset, hashes[index]) == entry->recipe)
         return true;
-    log_err(log, "asset %s: the model %s, or the asset's nodes, units, scale or up, changed since the preparation", asset->id,
-            asset->model);
+    log_err(log,
+            "asset %s: the model %s, or the asset's 'nodes', 'units', 'scale' or 'up', has changed since the plant was prepared; "
+            "prepare the plant again",
+            asset->id, asset->model);
     return false;
 }
 
@@ -189,7 +191,7 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
    asset is not drawn and does not extend the plant's box. */
 static bool create_missing(struct log *log, struct scene_asset *asset, const struct manifest_entry *entry)
 {
-    log_warn(log, "asset %s is missing: %s; repair the model, then prepare the plant again", asset->plant->id, entry->missing);
+    log_warn(log, "asset %s cannot be shown: %s; repair its model, then prepare the plant again", asset->plant->id, entry->missing);
     asset->missing = mem_strdup(entry->missing);
     asset->file = asset_stand_in();
     if (asset->file)
@@ -343,7 +345,7 @@ static struct scene *create(struct log *log, const struct plant *plant, const ch
     bool good = create_assets(log, scene, &manifest);
     manifest_finish(&manifest);
     if (good && !bound_missing(scene)) {
-        log_err(log, "%s: every asset is missing", prepared_folder);
+        log_err(log, "%s: none of the assets can be shown", prepared_folder);
         good = false;
     }
     if (good) {

@@ -65,7 +65,7 @@ static void add_counters(struct encode_queue *queue)
         char *bytes = mem_printf("plantcast_encode_bytes_total{codec=\"%s\"}", name);
         queue->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded.");
         queue->encode_us[codec] = counters_add_seconds(counters, seconds, "counter", "Seconds spent encoding pictures.");
-        queue->bytes[codec] = counters_add(counters, bytes, "counter", "Bytes of all encoded pictures.");
+        queue->bytes[codec] = counters_add(counters, bytes, "counter", "Total size of all encoded pictures in bytes.");
         mem_free(encodes);
         mem_free(seconds);
         mem_free(bytes);

@@ -22,7 +22,7 @@ static counter *add_counter(struct render_service *service, const char *of)
 {
     char *name = mem_printf("plantcast_memory_bytes{of=\"%s\"}", of);
     counter *added = counters_add(service->params.counters, name, "gauge",
-                                  "Bytes of memory held for drawing, by purpose; all purposes but the models are caches.");
+                                  "Bytes of memory held for drawing, by purpose; everything except the models is a cache.");
     mem_free(name);
     return added;
 }
@@ -33,7 +33,7 @@ void render_thread_memory_init(struct thread_memory *memory, struct render_servi
     for (int i = 0; i < RENDER_STORES; i++)
         memory->stores[i] = add_counter(service, render_store_names[i]);
     memory->bound = counters_add(service->params.counters, "plantcast_memory_bound_bytes", "gauge",
-                                 "Limit in bytes of all caches together (--memory); the picture being drawn is not included.");
+                                 "Limit in bytes for all caches together (--memory); the picture being drawn is not included.");
 }
 
 /* Returns the recent peak of the process's memory besides models and caches, whose bytes are `counted`. If the memory is close

@@ -361,7 +361,7 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     struct message_error error = { 0 };
     if (session->rate.exceeded)
         return;
-    message_fail(&error, "too_fast", "%lld messages %swithin a second are too many: further messages are read a second later",
+    message_fail(&error, "too_fast", "more than %lld messages %swithin a second: further messages are read a second later",
                  (long long)count, whose);
     session->rate.exceeded = true;
     session_reply_error(session, &error);

@@ -184,7 +184,7 @@ void session_take_plant(struct session *session, const char *carried)
         mem_free(session->tile.told);
         session->tile.told = NULL;
         if (!session_tile_fit(session, &session->tile.place, layout->display_px[0], layout->display_px[1], &session->view, layout))
-            session_close(session, 1012, "the plant file no longer has the tile of this display");
+            session_close(session, 1012, "the plant file no longer has this display's tile");
     }
     session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
     session->owed.params = false;

@@ -89,7 +89,8 @@ static bool weld(struct surface *surface, const float (*positions)[3], const uin
     report->welded_vertices = surface->mesh.point_count;
     report->border_edges = border_edges(&surface->mesh);
     report->components = components_of(&surface->mesh);
-    return surface->mesh.tri_count > 0 || no_surface(surface, why, "none of %zu triangles has an area after points within %g m are merged",
+    return surface->mesh.tri_count > 0 || no_surface(surface, why,
+                                                     "none of %zu triangles has an area after merging points within %g m of each other",
                                                      triangle_count, size_m * WELD_OF_SIZE);
 }
 

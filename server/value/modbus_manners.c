@@ -95,11 +95,11 @@ static void learn_start(struct modbus_source *modbus)
     long long sent_ms = (sent_ns / NS_PER_MS + 99) / 100 * 100, answered_ms = answered_ns / NS_PER_MS;
     if (repeated)
         snprintf(found, sizeof(found),
-                 "answers no request that comes sooner than %lld ms after connecting: repeating the first request; set `connect_delay_ms: "
+                 "does not answer requests sent less than %lld ms after connecting: repeating the first request; set `connect_delay_ms: "
                  "%lld` to wait from the start",
                  sent_ms, sent_ms);
     else
-        snprintf(found, sizeof(found), "takes %lld ms for the first answer after connecting: waiting for it", answered_ms);
+        snprintf(found, sizeof(found), "needs %lld ms after connecting for its first answer: waiting for it", answered_ms);
     log_found(modbus, found);
 }
 
@@ -173,7 +173,7 @@ static void log_one_per_connection(struct modbus_source *modbus, int status)
     int64_t wait_ns = modbus->manners.first_wait_ns;
     char found[200];
     snprintf(found, sizeof(found),
-             "takes %lld ms for an answer, later than `timeout_ms: %d`: reading one block per connection; set `timeout_ms: %lld`",
+             "takes %lld ms to answer, longer than `timeout_ms: %d`: reading one block per connection; set `timeout_ms: %lld`",
              (long long)(wait_ns / 2 / NS_PER_MS), modbus->base.config->timeout_ms, enough_ms(wait_ns / 2));
     log_found(modbus, status == -ETIMEDOUT && wait_ns > 0
                           ? found

@@ -199,7 +199,7 @@ static void blame(struct modbus_source *modbus, size_t index)
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;
     }
-    modbus_note_refused(modbus, block, true, "the device does not answer, although it answers for other addresses");
+    modbus_note_refused(modbus, block, true, "the device does not answer for these addresses, although it answers for others");
     block->due_ns = now_ns + modbus_refused_pause_ns(block->silent_count++);
 }
 

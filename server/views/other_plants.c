@@ -141,7 +141,7 @@ static enum why judge(struct other *other, struct other_picture *about, char sai
     if (why != WHY_NONE) {
         snprintf(said, 160, "the server answered with HTTP status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
     } else if (!other_picture_read_header(other->header, about)) {
-        snprintf(said, 160, "the answer lacks the header with the age of readings: the server is not a Plantcast server");
+        snprintf(said, 160, "the answer has no header with the age of readings: the server is not a Plantcast server");
         why = WHY_NO_PICTURE;
     } else if (!other_picture_is_png((const uint8_t *)text, body->length, plant->width_px, plant->height_px)) {
         snprintf(said, 160, "the answer is not a PNG file of %d x %d", plant->width_px, plant->height_px);

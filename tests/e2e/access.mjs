@@ -135,7 +135,7 @@ walls:
         for (const query of ['view=left&group=pressure', 'view=left&hidden=', 'view=left&view=rest&camera=1,1,1,0,0,0', 'view=left&at=-1h'])
             await said(query, lobby, 400, /is not allowed together with view; allowed are width, height and language/);
         await said('view=gone', lobby, 400, /this plant has no view “gone”/);
-        await said('view=page', lobby, 400, /unknown: a picture cannot show this/);
+        await said('view=page', lobby, 400, /unknown: not available in a picture/);
         await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first view= argument counts
         for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/views', '/api/v1/alarms', '/metrics', '/api/v1/pick?x=1&y=1&view=left',
             '/api/v1/history?tags=TI-1&from=-1h', '/api/v1/notes', '/api/v1/alarms/journal', '/api/v1/proofs', '/api/v1/history/gaps'])
@@ -177,7 +177,7 @@ async function streamsOnlyItsViews(lobby, whole) {
         { type: 'look', seq: 5, named: 'rest' }, { type: 'look', seq: 5, named: 'left,flat' }])
         await refused(message, only);
     await refused({ type: 'look', seq: 6, named: 'gone' }, /this plant has no view “gone”/);
-    await refused({ type: 'look', seq: 6, named: 'page' }, /unknown: a picture cannot show this/);
+    await refused({ type: 'look', seq: 6, named: 'page' }, /unknown: not available in a picture/);
     client.say({ type: 'look', seq: 7, named: 'flat' });
     const shown = await client.text('camera');
     assert.deepEqual([shown.seq, shown.eye], [7, [0, -9, 2]]);

@@ -166,7 +166,7 @@ test('what is loaded when it is needed, and is missing or damaged, is named', { 
         assert.match(err, why);
     };
     refused(await runIn(bin, ...film(url)), /bin\/plantcast-film: No such file or directory: install the package plantcast-h264$/m);
-    const where = /h264: plantcast-h264\.so is missing: install the package plantcast-h264 \(looked next to \S+\/bin\/plantcast and in/;
+    const where = /h264: plantcast-h264\.so is missing: install the package plantcast-h264 \(searched next to \S+\/bin\/plantcast and in/;
     refused(await probe(), where);
     writeFileSync(join(modules, H264), 'no program');
     refused(await probe(), /lib\/plantcast\/plantcast-h264\.so cannot be loaded: .*(too short|invalid ELF)/);

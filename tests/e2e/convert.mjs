@@ -95,6 +95,6 @@ test('the plant file is checked', { skip }, () => withPlant(({ folder, write }) 
     write('true', '}\n  - { model: plate.glb, from: plate.glb, command: ""');
     const said = check();
     assert.match(said, /:4:\d+: error: .*command/);
-    assert.match(said, /from: expected a file other than that of model/);
+    assert.match(said, /from: expected another file than that of model/);
     assert.match(said, /model: '.*plate\.glb' is created twice \(first at line 3\)/);
 }));

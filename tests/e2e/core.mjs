@@ -172,8 +172,8 @@ test('another plant, another configuration, a wrong token and a daemon that is n
     await alone.stop();
     await core.program.line(/renderer .*: refused: configuration: the renderer has/);
     for (const [bad, said] of [[['--role', 'renderer'], /--role: expected all, core or render/],
-        [['--role', 'render'], /--role render needs --core URL/],
-        [['--core', 'ws://x:1'], /--core URL needs --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: expected wss/]])
+        [['--role', 'render'], /--role render requires --core URL/],
+        [['--core', 'ws://x:1'], /--core URL requires --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: expected wss/]])
         assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
 });
 

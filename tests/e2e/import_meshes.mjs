@@ -168,7 +168,7 @@ test('FBX: surfaces without place, with two places or without finite corners are
     const ring = read(folder, 'ring.fbx', withModels(model(201, 'Drum\t1\tA') + model(202, 'Tank'),
         ['C: "OO",201,202', 'C: "OO",202,201', 'C: "OO",100,201']));
     assert.deepEqual(ring.lost, [{ id: '201', name: 'Drum 1 A', class: 'model', guid: '',
-        why: 'no chain of parents connects the model with the scene' }]);
+        why: 'the model is not connected with the scene' }]);
     const shared = read(folder, 'shared.fbx', withModels(model(201, 'Drum'), ['C: "OO",201,200', 'C: "OO",201,0', 'C: "OO",100,201']));
     assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: the model is shown below each parent' });
     const twice = read(folder, 'twice.fbx', fbx().replace(/P: "Lcl Translation".*0,0,0/, (line) =>

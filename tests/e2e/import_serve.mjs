@@ -295,7 +295,7 @@ test('an import that fails or is cancelled once the new models are in place: the
             rmSync(wait);
             await served.post('/cancel');
             const { failed } = await served.idle(), after = files();
-            assert.match(failed, /^plantcast-prep was ended before it had finished$/);
+            assert.match(failed, /^plantcast-prep was ended before it finished$/);
             for (const name of ['plant.yaml', 'plant.glb', 'tags.csv'])
                 assert.equal(after[name], before[name], name);
             if (saves)
@@ -595,7 +595,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         assert.equal((await own.post('/remove?name=tags.csv')).status, 200);
         const sources = /^sources:\n(  .*\n)+/m.exec(own.read('plant.yaml'))[0];
         await own.post('/run?what=anew');
-        assert.match((await own.idle()).failed, /source 127\.0\.0\.1 would be lost, because no tag list has been uploaded/);
+        assert.match((await own.idle()).failed, /upload a tag list first: without one, the plant would lose its data source 127\.0\.0\.1/);
         assert.ok(own.read('plant.yaml').includes(sources));
         assert.equal((await own.post('/upload?name=tags.csv', list)).status, 200);
         // A line that the user wrote is kept.

@@ -152,7 +152,7 @@ test('parts in other files: names in other cases, of other folders, with escapes
         const { size, lost, errors, out } = imported(folder, 'line.stp');
         assert.match(out, /3 parts in 3 places/);
         assert.ok(near(size, [0.0234, 0.2902, 0.0902]), JSON.stringify(size));
-        assert.deepEqual(lost.map(({ name, why }) => [name, why]), [['Part 4', 'the part\'s shape is empty, or in a missing file']]);
+        assert.deepEqual(lost.map(({ name, why }) => [name, why]), [['Part 4', 'the part\'s shape is empty, or its file is missing']]);
         assert.deepEqual(errors, [{ count: 1, text: 'referenced file gone.stp is not in the model\'s folder' }]);
     }));
 

@@ -148,7 +148,7 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     await until('F1', { quality_name: 'Bad_TooManyMatches', value: null });
     await tell(['G.A1', 51]);
     await until('F1', { ...good, value: 51 });
-    await plant.daemon.line(/is named G\.A2, not like the tag; select it by name/);
+    await plant.daemon.line(/is named G\.A2, which is not the tag's name; select it by name/);
     await plant.daemon.line(/gateway: no message has had a value of tag /);
     const { out } = runProgram('plantcast', ['tags', `http://127.0.0.1:${plant.plant.port}/`]);
     assert.match(out, /F9.*NoMatch/i);
@@ -258,12 +258,12 @@ test('what cannot be is said of the plant file', options, async () => {
         assert.match(said('payload: json, topic: a', [`TI-1,#${path},,,,,,,,,,,,,`]),
             new RegExp(`tags\\.csv:2:6: error: Address: .*${why}`), path);
     assert.match(said('time: ts', TAGS.number), /time: allowed only with payload: json/);
-    assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*needs client_id/);
+    assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*requires client_id/);
     assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': wildcards \(\+ and #\) match many topics/);
     assert.match(said('topic: "plant/{name}"', TAGS.number), /expected \{tag\}, \{asset\}, \{group\} or \{address\}/);
     assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic here, or the key topic in the source/);
     assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path after # is not allowed with payload: number/);
     assert.match(said('topic: "a/{tag}", rebirth: yes', TAGS.number), /rebirth: allowed only with payload: sparkplug/);
     assert.match(said('payload: sparkplug', ['TI-1,U100#TI-1,,,,,,,,,,,,,']), /expected GROUP\/NODE#METRIC or GROUP\/NODE\/DEVICE#METRIC/);
-    assert.match(said('baud: 9600', TAGS.number), /baud: has no meaning for an mqtt source/);
+    assert.match(said('baud: 9600', TAGS.number), /baud: has no effect for an mqtt source/);
 });

@@ -306,7 +306,8 @@ test('foreign answers by thousands leave one line, and lock nobody out', { skip,
     };
     const [, , , , person] = await Promise.all([guess(), guess(), guess(), guess(), sleep(300).then(() => new Browser().signIn())]);
     assert.equal(person.status, 303);
-    await recorded('their sum', (line) => /^\d+ answers of the identity provider belonged to no sign-in/.test(line.what ?? ''));
+    await recorded('their sum', (line) =>
+        /^\d+ answers of the identity provider were rejected: they belonged to no sign-in/.test(line.what ?? ''));
     assert.ok(refusals() - lines <= sumsSince(began), String(refusals() - lines));
     const answer = await beginFrom('127.0.0.9');
     assert.equal((await answer('error=access_denied')).statusCode, 403, 'the address is not held');
@@ -322,7 +323,7 @@ test("a provider's own faults, and people who change their mind, slow nobody: th
             assert.equal((await (await beginFrom('127.0.0.7'))('code=x')).statusCode, 403, JSON.stringify(fault));
     }
     provider.fault = null;
-    assert.match(plant.daemon.said, /the provider refuses the request/);
+    assert.match(plant.daemon.said, /the provider refused to renew/);
     for (let i = 0; i < 20; i++)
         assert.equal((await (await beginFrom('127.0.0.7'))(`error=${errors[i % 2]}`)).statusCode, 403);
     assert.equal((await askFrom('127.0.0.7', '/api/v1/me', { Authorization: `Bearer ${token}` })).statusCode, 200);

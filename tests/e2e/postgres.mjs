@@ -307,7 +307,7 @@ test('too many points that wait: the oldest are dropped, and it says so; the fil
     const imported = runProgram('plantcast', ['history', 'import', plant.file, csv]);
     assert.equal(imported.code, 0, imported.err);
     await plant.startDaemon();
-    await plant.daemon.line(/the queue for PostgreSQL is full: \d+ points are only in the local files/);
+    await plant.daemon.line(/the queue for PostgreSQL is full: \d+ points remain only in the local files/);
     await until('the rest waits', async () => await metric('postgres_lost_total') >= 2000
         && await metric('postgres_waiting_points') <= 1000);
     const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=TI-1&from=${from}&to=${from + 5990}&points=20000`;
@@ -394,7 +394,8 @@ test('a password in the plant file, and a schema that is no name, are refused', 
     configure();
     const text = readFileSync(plant.file, 'utf8'), check = () => runProgram('plantcastd', ['--check', plant.file]);
     writeFileSync(plant.file, text.replace('postgresql://', 'postgresql://me:secret@'));
-    assert.match(check().err, /plant\.yaml:\d+:\d+: error: url: do not write a password here; name a file with it in `login`/);
+    assert.match(check().err,
+        /plant\.yaml:\d+:\d+: error: url: do not write a password here; write it to a file, and name the file in `login`/);
     writeFileSync(plant.file, text.replace('login: login', 'schema: "a b"'));
     assert.match(check().err, /schema: expected lower-case letters, digits and _, found 'a b'/);
     writeFileSync(plant.file, text.replace(/postgresql:/, 'mysql:'));

@@ -180,7 +180,7 @@ test('who waits too long for an answer is told so, and can ask again', options, 
         const late = await ask();
         assert.equal(late.status, 503);
         assert.equal(late.headers.get('retry-after'), '2');
-        assert.match(await late.text(), /^the answer was not ready within 1 s \(.*\); try again$/m);
+        assert.match(await late.text(), /^no answer within 1 s \(.*\); try again$/m);
         assert.equal((await fetch(`http://127.0.0.1:${other.port}/api/v1/plant`)).status, 200);
         const pipe = join(other.folder, 'pipe');
         renameSync(tags, pipe);

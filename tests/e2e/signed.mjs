@@ -500,7 +500,7 @@ test('who may see no readings is told none', { skip }, async () => {
 test('a key that is none, or that everybody may read, is refused', { skip }, () => {
     const start = (key) => runProgram('plantcastd', [plant.file, '--port', '0', '--signing-key', key]);
     writeFileSync(path('none.pem'), 'no key\n', { mode: 0o600 });
-    for (const [key, why] of [['none.pem', /none\.pem: not a private key/], ['server.pub', /all users may read this|not a private key/],
+    for (const [key, why] of [['none.pem', /none\.pem: not a private key/], ['server.pub', /all users can read this|not a private key/],
         ['away.pem', /away\.pem: No such file/]]) {
         const { code, err } = start(path(key));
         assert.notEqual(code, 0);
@@ -509,7 +509,7 @@ test('a key that is none, or that everybody may read, is refused', { skip }, () 
     chmodSync(path('server.pem'), 0o644);
     const { code, err } = start(path('server.pem'));
     assert.notEqual(code, 0);
-    assert.match(err, /all users may read this private key/);
+    assert.match(err, /all users can read this private key/);
 });
 
 // Returns the CPU time of each thread so far in ns, by thread id.

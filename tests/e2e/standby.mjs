@@ -163,7 +163,7 @@ test('history is whole: what the database has is what the API has, and the gaps 
     // [core, how often it must have read what it lacked]: twice for the core whose standby went away and came back
     for (const [one, often] of [[core, 2], [two.other(core), 1]])
         await until('what it lacked is read', () => one.program.said.split('polls devices and owns').pop()
-            .match(/read \d+ points from PostgreSQL, for \d+ s in which another core led/g)?.length >= often, 60);
+            .match(/read \d+ points from PostgreSQL, covering the \d+ s in which another core led/g)?.length >= often, 60);
     const to = Math.floor(Date.now() / 1000 - 3) * 1e6;
     const all = new Map(server.ask(`SELECT (extract(epoch FROM s.t) * 1000000)::bigint, s.v, s.q FROM plantcast.sample s
         JOIN plantcast.tag g ON g.id = s.tag WHERE g.name = 'TI-2'

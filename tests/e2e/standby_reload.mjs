@@ -9,7 +9,7 @@ import { long } from './support/promise.mjs';
 import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 }, CUT_S = 6, RETURNS = 5;
-const READ = /history: read \d+ points from PostgreSQL, for \d+ s in which another core led/g;
+const READ = /history: read \d+ points from PostgreSQL, covering the \d+ s in which another core led/g;
 let server, two;
 
 before(async () => {

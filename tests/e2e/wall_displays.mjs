@@ -207,7 +207,7 @@ test('a view that names what the plant does not have is not shown, and said', op
     const { list } = await (await fetch(new URL('api/v1/views', plant.url))).json();
     const wrong = Object.fromEntries(list.map(({ id, wrong: why }) => [id, why]));
     assert.match(wrong.gone, /group: this plant has no quantity “presure”/);
-    assert.match(wrong.odd, /show_only: a picture cannot show this/);
+    assert.match(wrong.odd, /show_only: not available in a picture/);
     assert.deepEqual([wrong.whole, wrong.above, wrong.since], [undefined, undefined, undefined]);
     const { stdout, status } = spawnSync(join(BIN, 'plantcastd'), ['--check', plant.file], { encoding: 'utf8' });
     assert.equal(status, 0, stdout);

@@ -112,7 +112,7 @@ TEST(test_lines_removed_and_moved)
     memcpy(copy, bytes, starts[2]);
     memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
     put(path, copy, count - (starts[3] - starts[2]));
-    expect_fault(path, NULL, ":3: lines before this line are missing");
+    expect_fault(path, NULL, ":3: lines before this line were removed or inserted");
     /* a file without its first line is valid, because older lines may be in another file; the report only mentions them */
     struct audit_chain known, none;
     struct audit_report report;
@@ -159,7 +159,7 @@ TEST(test_next_start)
     finding = write_lines(path, 1, 1 << 20);
     assert_non_null(strstr(finding, "lines were removed"));
     mem_free(finding);
-    expect_fault(path, NULL, ":4: lines before this line are missing");
+    expect_fault(path, NULL, ":4: lines before this line were removed or inserted");
     /* an incomplete last line at the end, as a crash leaves it */
     put(path, bytes, count - 10);
     char *head_path = test_printf("%s.head", path);
@@ -199,7 +199,7 @@ TEST(test_rotation)
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_non_null(strstr(later, "another program changed the file"));
     mem_free(later);
-    expect_fault(path, NULL, "lines before this line are missing");
+    expect_fault(path, NULL, "lines before this line were removed or inserted");
     /* another program removes the audit trail while the daemon has it open */
     unlink(path);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
@@ -209,7 +209,7 @@ TEST(test_rotation)
     /* removes a full, rotated file */
     unlink(full);
     unlink(moved);
-    expect_fault(path, NULL, "lines before this line are missing");
+    expect_fault(path, NULL, "lines before this line were removed or inserted");
     text_finish(&lines);
 }
 

@@ -176,7 +176,7 @@ CASE(what_is_no_table_is_said_once)
     char *path = temp_write_text(f->folder, "t.csv", latin.at);
     assert_true(csv_open(&csv, path, &diag));
     assert_int_equal(diag.errors, 11);
-    assert_non_null(strstr(diag.items[10].text, "300 lines in all have bytes that are not UTF-8 text"));
+    assert_non_null(strstr(diag.items[10].text, "300 lines contain bytes that are not UTF-8 text"));
     csv_close(&csv);
     diag_finish(&diag);
     text_finish(&latin);

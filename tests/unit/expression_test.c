@@ -232,7 +232,7 @@ TEST_WITH(rows_are_checked, plant_case_set_up, plant_case_tear_down)
                     "a,= [b] + 1,,\nb,= [c],,\nc,=[a]*2,,\nd,=[e],,\nf,=1+,,\ng,=2,plc,\nh,=3,,Linear\ni,=[i],,\n");
     FOUND(c, { "tags.csv", 2, 3, "'a' is computed from itself" }, { "tags.csv", 5, 3, "unknown tag 'e', at character 2" },
           { "tags.csv", 6, 3, "Address: '=1+': expected [TAG], a number, or one of" },
-          { "tags.csv", 7, 6, "Source: expected none, since the address is an expression" },
-          { "tags.csv", 8, 7, "Scaling: expected None, since the value is in engineering units already" },
+          { "tags.csv", 7, 6, "Source: must be empty, because the address is an expression" },
+          { "tags.csv", 8, 7, "Scaling: expected None, because the value is already in engineering units" },
           { "tags.csv", 8, 1, "Raw Low" }, { "tags.csv", 8, 1, "Scaled Low" });
 }

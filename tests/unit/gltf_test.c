@@ -419,7 +419,7 @@ CASE(what_cannot_be_cut_is_refused)
     static const struct {
         const char *json, *reason;
     } cases[] = {
-        { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}", "the scene of the model has no node" },
+        { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}", "the model's scene has no nodes" },
         { HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}",
           "none of the asset's 2 triangles has an area" },
         { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS "}",

@@ -139,7 +139,7 @@ CASE(everything_wrong_is_said_and_nothing_is_taken)
     } wanted[] = {
         { 3, 6, "expected a time such as 2026-11-20T10:00:00Z (without Z or offset: local time in UTC)" },
         { 4, 1, "the plant has no tag 'FT-2'" },
-        { 5, 27, "tag FT-1: expected a time that is not before the tag's last sample, 2026-10-25T00:00:00.000Z" },
+        { 5, 27, "tag FT-1: expected a time not before the tag's previous sample, 2026-10-25T00:00:00.000Z" },
         { 6, 27, "expected a number, or a word such as Bad or No Data, found 'hot'" },
     };
     assert_int_equal(s->diag.errors, 4);

@@ -674,7 +674,7 @@ CASE(test_gp_bad_input)
     write_model(c);
     write_plant(c, "", ", prepare: [gp]", 2);
     prep_case_expect(c, "$PLANT", 1);
-    prep_case_says(&c->err, "group temperature: gp needs 'gp: { range_m: ... }'");
+    prep_case_says(&c->err, "group temperature: gp requires 'gp: { range_m: ... }'");
     write_plant(c, "", ", prepare: [gp], gp: { range_m: 0, noise: -1 }", 2);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "range_m");
@@ -684,7 +684,7 @@ CASE(test_gp_bad_input)
     prep_case_says(&c->err, "nothing.csv: cannot be read");
     write_plant(c, "", ", prepare: [gp], gp: { range_m: 0.001 }", 3);
     prep_case_expect(c, "$PLANT", 1);
-    prep_case_says(&c->err, "range_m 0.001 of gp is too short");
+    prep_case_says(&c->err, "range_m 0.001 of the Gaussian process (gp) is too short");
     write_plant(c, "", ", prepare: [gp], gp: { range_m: 100000, noise: 0 }", 3);
     prep_case_expect(c, "$PLANT", 0);
     assert_true(use(&u, c));
@@ -749,8 +749,8 @@ CASE(test_what_is_missing_is_said)
     write_model(c);
     write_plant(c, "", ", prepare: [harmonic, fin]", 2);
     prep_case_expect(c, "$PLANT", 1);
-    prep_case_says(&c->err, "group temperature: fin needs 'ambient', the value around the assets, in K");
-    prep_case_says(&c->err, "asset S: the interpolation fin of group temperature needs 'thickness_m'");
+    prep_case_says(&c->err, "group temperature: fin requires 'ambient', the value around the assets, in K");
+    prep_case_says(&c->err, "asset S: group temperature has 'interpolation: fin', which requires 'thickness_m'");
     write_plant(c, "", ", prepare: [kriging]", 2);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "prepare: expected harmonic, fin or gp");

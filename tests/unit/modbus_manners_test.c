@@ -233,7 +233,7 @@ CASE(a_slow_first_answer)
     s->device.first_late_ms = 1000;
     start(s);
     expect_steady(s, 20, 15);
-    await_line("for the first answer after connecting: waiting for it", 5);
+    await_line("after connecting for its first answer: waiting for it", 5);
 }
 
 /* Each answer of the device comes later than timeout_ms: the log says which timeout would do. */
@@ -288,7 +288,7 @@ CASE(an_address_that_is_never_answered_leaves_the_others_alone)
     plant_by_hand_tag(s->plant, "mute neighbour", TABLE_HOLDING, 501, DATA_INT16);
     s->device.mute_register = 501;
     modbus_case_serve(s);
-    await_line("mute neighbour (1 from address 501): the device does not answer, although it answers for other addresses", 30);
+    await_line("mute neighbour (1 from address 501): the device does not answer for these addresses, although it answers for others", 30);
     expect_steady(s, 10, 40);
     assert_true(quality_is_bad(modbus_case_look(s, BLOCKS)->quality));
     s->device.mute_register = 0;
@@ -347,7 +347,7 @@ CASE(a_dead_unit_that_blocks_its_gateway)
     await_line("unit 7 does not answer", 20);
     expect_two_units_live(s);
     assert_int_equal(lines_with("no readings"), 0);
-    assert_int_equal(lines_with("for the first answer after connecting"), 0);
+    assert_int_equal(lines_with("after connecting for its first answer"), 0);
     assert_int_equal(lines_with("unit 1 does not answer"), 0);
 }
 

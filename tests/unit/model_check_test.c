@@ -65,7 +65,8 @@ CASE(what_is_no_model_is_said_so)
     temp_write_text(c->folder, "o.obj", "v 0 0 0\nv 1 0 0\n");
     temp_write(c->folder, "cut.glb", "glTF\2\0\0\0\0\1\0\0\0\1\0\0JSON{", 21);
     check(c, "  - { id: A, model: s.step }\n  - { id: B, model: o.obj }\n  - { id: C, model: cut.glb }\n", "[]", "Tag Name\n", NULL);
-    FOUND(c, { "plant.yaml", 3, 0, "s.step' is a STEP file; expected glTF 2.0 (.glb or .gltf): export it as such, or convert it" },
+    FOUND(c, { "plant.yaml", 3, 0,
+               "s.step' is a STEP file; expected glTF 2.0 (.glb or .gltf): export the model in this format, or convert it" },
           { "plant.yaml", 4, 0, "o.obj' is not a glTF model; expected glTF 2.0 (.glb or .gltf)" },
           { "plant.yaml", 5, 0, "cut.glb' is truncated: its JSON should have 256 bytes" });
 }
@@ -166,7 +167,7 @@ CASE(sensors_tell_units_and_axes)
     } cases[] = {
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm }", NULL },
         { "{ id: A, model: m.gltf, nodes: '#1', units: mm }",
-          "3 of the 3 sensors with X, Y, Z are away from the asset; with `units: cm` in the plant file, they would be on it" },
+          "3 of the 3 sensors with X, Y, Z are far from the asset; with `units: cm` in the plant file, they would be on it" },
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm, up: z }", "with `up: y` in the plant file, they would be on it" },
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm, placement: { translate: [99, 0, 0] } }",
           "check units, up, placement and sensor_frame" },

@@ -69,12 +69,13 @@ CASE(what_is_wrong_is_said_at_its_place)
             "  rules:\n  - { id: r, to: [b], days: [mon-foo], hours: 6-14 }\n"
             "  - { id: r, to: a, priority: 5, escalate: [{ after_min: 9, to: c }, { after_min: 9, to: c }] }\n  - { id: s }");
     FOUND(c, { "plant.yaml", 6, 13, "gather_s: expected" }, { "plant.yaml", 8, 21, "email: expected an address" },
-          { "plant.yaml", 8, 21, "`mail` must name a server" }, { "plant.yaml", 9, 23, "begins with a wrong scheme" },
+          { "plant.yaml", 8, 21, "requires a server in the key `mail`" }, { "plant.yaml", 9, 23, "begins with an unsupported scheme" },
           { "plant.yaml", 9, 11, "'a' is listed twice (first at line 8)" },
           { "plant.yaml", 10, 5, "expected exactly one of email, webhook" },
           { "plant.yaml", 12, 18, "unknown recipient 'b'" }, { "plant.yaml", 12, 30, "or a span such as mon-fri" },
           { "plant.yaml", 12, 47, "a span such as 06:00-14:00" }, { "plant.yaml", 13, 31, "priority: expected" },
-          { "plant.yaml", 13, 83, "expected a number greater than the preceding 9" }, { "plant.yaml", 13, 11, "rule 'r' is listed twice" },
+          { "plant.yaml", 13, 83, "expected a number greater than the previous one (9)" },
+          { "plant.yaml", 13, 11, "rule 'r' is listed twice" },
           { "plant.yaml", 14, 5, "a rule needs the key 'to'" });
 }
 

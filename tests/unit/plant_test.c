@@ -385,7 +385,7 @@ CASE(missing_keys_are_named)
     load_with(f, 3, "groups:\n- id: temp\n  unit: K");
     FOUND(f, { "plant.yaml", 4, 3, "a group needs the key 'min'" }, { "plant.yaml", 4, 3, "a group needs the key 'max'" });
     load_with(f, 4, "sources: [{ id: plc, type: modbus, host: }]");
-    FOUND(f, { "plant.yaml", 4, 42, "a source needs the key 'host'" });
+    FOUND(f, { "plant.yaml", 4, 42, "a source requires the key 'host'" });
     load_with(f, 2, "assets: []");
     FOUND(f, { "plant.yaml", 2, 9, "assets: expected at least one" });
 }
@@ -417,7 +417,7 @@ CASE(wrong_types_are_named)
           { "plant.yaml", 3, 66, "limits: expected a mapping" });
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, breaks: [0.1, x, 0.5, 0.3], isolines: 5, scale: log }]");
     FOUND(f, { "plant.yaml", 3, 58, "breaks: expected a number, found 'x'" },
-          { "plant.yaml", 3, 66, "breaks: expected a number greater than the preceding 0.5, found 0.3" },
+          { "plant.yaml", 3, 66, "breaks: expected a number greater than the previous one (0.5), found 0.3" },
           { "plant.yaml", 3, 82, "isolines: expected a list" },
           { "plant.yaml", 3, 92, "scale: a logarithmic scale needs min above 0, found 0" });
 }
@@ -499,10 +499,10 @@ CASE(keys_without_meaning_are_errors)
                   "- { id: g, type: modbus, transport: rtu, device: /dev/a }\n"
                   "- { id: h, type: replay, file: tags.csv, heartbeat: { longest_s: 0 } }",
                   "Tag Name,Address,Source\nA,40001,a\n");
-    FOUND(f, { "plant.yaml", 5, 41, "baud: has no meaning for a modbus source over TCP" }, { "plant.yaml", 5, 53, "file: has no meaning" },
-          { "plant.yaml", 5, 53, "cannot be read" }, { "plant.yaml", 6, 48, "host: has no meaning for transport rtu" },
-          { "plant.yaml", 6, 3, "a source needs the key 'device'" }, { "plant.yaml", 7, 32, "no.csv' cannot be read" },
-          { "plant.yaml", 7, 46, "port: has no meaning for a replay" }, { "plant.yaml", 8, 42, "hosts: expected host or hosts, not both" },
+    FOUND(f, { "plant.yaml", 5, 41, "baud: has no effect for a modbus source over TCP" }, { "plant.yaml", 5, 53, "file: has no effect" },
+          { "plant.yaml", 5, 53, "cannot be read" }, { "plant.yaml", 6, 48, "host: has no effect for transport rtu" },
+          { "plant.yaml", 6, 3, "a source requires the key 'device'" }, { "plant.yaml", 7, 32, "no.csv' cannot be read" },
+          { "plant.yaml", 7, 46, "port: has no effect for a replay" }, { "plant.yaml", 8, 42, "hosts: expected host or hosts, not both" },
           { "plant.yaml", 8, 3, "h:502 is also used by source a: the device gets two connections" },
           { "plant.yaml", 8, 3, "h:502 is also used by source b" }, { "plant.yaml", 9, 33, "hosts: expected 1 to 4, found 5" },
           { "plant.yaml", 11, 50, "device: '/dev/a' is already used by source f" },

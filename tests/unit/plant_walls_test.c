@@ -106,7 +106,7 @@ CASE(wrong_other_plants_are_said_at_their_place)
     load(c, "other_plants:\n- { id: a, url: \"ftp://h/\" }\n- { id: b, url: \"http://h/\", token_file: t }\n"
             "- { id: b, url: \"https://u:p@h/\" }\n- { id: c, url: \"https://h/?x\", every_s: 1, width: 100 }\n"
             "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
-    FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with a wrong scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
+    FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with an unsupported scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
           { "plant.yaml", 8, 42, "token_file: a token is sent only over https" },
           { "plant.yaml", 9, 17, "do not write a password in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
           { "plant.yaml", 10, 17, "without '?' and '#'" }, { "plant.yaml", 10, 42, "every_s" }, { "plant.yaml", 10, 52, "width" },
@@ -134,8 +134,8 @@ CASE(wrong_tiles_are_said_at_their_place)
             "- { id: h, tile: { columns: 2, rows: 2, tour: [x, y] } }\n- { id: i, tile: { columns: 2.5, rows: 2, tour: x } }");
     FOUND(c, { "plant.yaml", 8, 18, "tile: expected 2 to 16 displays, found 1 columns and 1 rows" },
           { "plant.yaml", 9, 18, "tile: expected 2 to 16 displays, found 5 columns and 4 rows" },
-          { "plant.yaml", 10, 18, "tile: expected either views or a tour" }, { "plant.yaml", 11, 51, "bezel_mm" },
-          { "plant.yaml", 12, 51, "bezel_mm: expected one number, or two" }, { "plant.yaml", 13, 3, "expected displays, or a tile" },
+          { "plant.yaml", 10, 18, "tile: expected views or a tour, not both" }, { "plant.yaml", 11, 51, "bezel_mm" },
+          { "plant.yaml", 12, 51, "bezel_mm: expected one number, or two" }, { "plant.yaml", 13, 3, "expected displays, a tile" },
           { "plant.yaml", 14, 18, "`tile` defines 16 and `displays` lists 1" },
           { "plant.yaml", 15, 47, "tour: expected one item, found 2" },
           { "plant.yaml", 16, 29, "columns" });
@@ -162,7 +162,7 @@ CASE(what_is_wrong_is_said_at_its_place)
           { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "the names of panes' areas" },
           { "plant.yaml", 18, 13, "must have exactly one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no area 'b'" },
           { "plant.yaml", 20, 13, "must have exactly one of views" }, { "plant.yaml", 20, 55, "'b' is used by two panes" },
-          { "plant.yaml", 20, 102, "allowed only in a pane that has `views`" }, { "plant.yaml", 20, 78, "the grid has no area 'z'" },
+          { "plant.yaml", 20, 102, "allowed only for a pane with `views`" }, { "plant.yaml", 20, 78, "the grid has no area 'z'" },
           { "plant.yaml", 20, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 20, 115, "'b' is used by two panes" },
           { "plant.yaml", 13, 7, "wall 'r' is listed twice" });
 }
@@ -195,7 +195,7 @@ CASE(what_tours_name_must_be_there)
     FOUND(c, { "plant.yaml", 8, 7, "id: expected letters" }, { "plant.yaml", 9, 32, "dwell_s" },
           { "plant.yaml", 11, 10, "stops: expected at least one" }, { "plant.yaml", 13, 11, "view" },
           { "plant.yaml", 14, 7, "tour 'u' is listed twice (first at line 12)" },
-          { "plant.yaml", 20, 68, "every_s: allowed only in a pane that has `views`" },
+          { "plant.yaml", 20, 68, "every_s: allowed only for a pane with `views`" },
           { "plant.yaml", 20, 90, "tour: expected one item, found 2" });
     load(c, "views: [{ id: all, view: x }]\ntours: [{ id: round, stops: [{ view: al }, { view: none }] }]\n"
             "walls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, tour: raund }]");

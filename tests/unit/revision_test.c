@@ -279,7 +279,7 @@ TEST(the_plant_file_stays_as_people_wrote_it)
                              "tags: tags.csv\n");
     mem_free(out);
     assert_null(asset_edit_apply("assets: [{ id: a }]\n", &(struct asset_edit){ .removed = true }, 1, NULL, why));
-    assert_string_equal(why, "the lists `assets` and `nodes` in the plant file need one item a line");
+    assert_string_equal(why, "import can edit the lists `assets` and `nodes` in the plant file only if each item is on a line of its own");
     mem_free(pump[1]);
     mem_free(vessel[0]);
     mem_free(vessel[1]);

@@ -212,11 +212,11 @@ CASE(other_sensors_are_refused)
     assert_non_null(scene);
     scene_destroy(&scene);
     write_asset(f, "1.asset", 1.0003, "TI-2", 2);
-    assert_refused(f, "asset A: the position of sensor a1 in");
+    assert_refused(f, "asset A: the tag list has another position for sensor a1 than the prepared file");
     write_asset(f, "1.asset", 1, "TI-3", 2);
-    assert_refused(f, "asset B: the position of sensor b2 in");
+    assert_refused(f, "asset B: the tag list has another position for sensor b2 than the prepared file");
     write_asset(f, "1.asset", 1, "TI-2", 1);
-    assert_refused(f, "1.asset has 1 sensors, the tag list has 2");
+    assert_refused(f, "1.asset has 1 sensors, but the tag list has 2");
 }
 
 CASE(broken_files_are_refused)
@@ -236,12 +236,12 @@ CASE(broken_manifests_are_refused)
 {
     static const char *const cases[][2] = {
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B is not in" },
-        { "{\"format\": 1, \"assets\": []}", "this program needs format 2" },
+        { "{\"format\": 1, \"assets\": []}", "another format than the format 2 that this program needs" },
         { "{\"format\": 2}", "expected a list of assets" },
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected the members id, file and recipe" },
         { "{\"format\": 2, \"assets\": [{\"file\": \"1.asset\"}]}", "expected the members id, file and recipe" },
         { "{\"format\": 2,\n \"assets\": [}", "manifest.json:2:" },
-        { "[]", "this program needs format 2" },
+        { "[]", "another format than the format 2 that this program needs" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_manifest(f, cases[i][0]);
@@ -260,7 +260,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "asset B: ");
     asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
     asset->unit_m = 0.001;
-    assert_refused(f, "units, scale or up, changed since the preparation");
+    assert_refused(f, "'units', 'scale' or 'up', has changed since the plant was prepared");
     asset->unit_m = 1;
     asset->nodes = mem_strdup("E-*");
     assert_refused(f, "asset B: ");
@@ -270,7 +270,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_non_null(scene);
     scene_destroy(&scene);
     temp_write_text(f->folder, "m.glb", "glTG");
-    assert_refused(f, "m.glb, or the asset's nodes");
+    assert_refused(f, "m.glb, or the asset's 'nodes'");
 }
 
 /* If the manifest states why one asset is missing, the other assets are loaded. */
@@ -300,7 +300,7 @@ CASE(a_missing_asset_does_not_keep_the_others_away)
     write_manifest(f, "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"a\"},"
                       "{\"id\": \"B\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"b\"},"
                       "{\"id\": \"C\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"c\"}]}");
-    assert_refused(f, "every asset is missing");
+    assert_refused(f, "none of the assets can be shown");
     write_good_manifest(f);
 }
 

@@ -267,7 +267,7 @@ CASE(control_says_what_is_wrong)
     start(s);
     assert_string_equal(control(s, "set nobody 1"), "error: unknown tag nobody");
     assert_string_equal(control(s, "set int16 much"), "error: much is not a number");
-    assert_string_equal(control(s, "set int16 nan"), "error: the data type of tag int16 cannot hold nan");
+    assert_string_equal(control(s, "set int16 nan"), "error: tag int16: its data type cannot hold nan");
     assert_string_equal(control(s, "dance"), "error: unknown command dance");
     assert_string_equal(control(s, "set bit 3 0"), "ok"); /* a blank in the name */
     assert_string_equal(control(s, "get bit 3"), "ok 0");

@@ -184,11 +184,11 @@ TEST(test_udt_kinds)
           "1 instances have a type that is not in the export; export the folder of types too: A/P (Pump)" },
         { "a type within itself", PROVIDER(TYPE("L", "'tags':[" INSTANCE("I", "L", "") "," MEMBER("T", "") "]"), INSTANCE("P", "L", "")),
           "A/P/T",
-          "", "", "", 1, "1 instances have a type that contains itself: the inner copies are left out: A/P/I (L)" },
+          "", "", "", 1, "1 instances have a type that contains itself: its inner copies are left out: A/P/I (L)" },
         { "types that are each other's parents",
           PROVIDER(TYPE("X", "'typeId':'Y','tags':[" MEMBER("T", ",'engUnit':'bar'") "]") "," TYPE("Y", "'typeId':'X'"), INSTANCE("P",
             "X", "")),
-          "A/P/T", "bar", "", "", 1, "contains itself: the inner copies are left out: A/P (X)" },
+          "A/P/T", "bar", "", "", 1, "contains itself: its inner copies are left out: A/P (X)" },
         { "types and instances in a list", "[" PUMP "," INSTANCE("P", "Pump", "") "]", "P/T", "°C", "120", "[PLC1]HR0", 1, NULL },
         { "arithmetic with precedence",
           PROVIDER(TYPE("Pump", "'parameters':{'N':{'value':3}},'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("{N*10+2} {2+N*10} "
@@ -541,7 +541,7 @@ TEST(test_checksum)
     assert_int_equal(fwrite(bytes, 1, length, file), length);
     fclose(file);
     assert_false(tag_export_read(&list, path, NULL, why, sizeof(why)));
-    assert_non_null(strstr(why, "sheet1.xml is damaged: the checksum is wrong"));
+    assert_non_null(strstr(why, "sheet1.xml is damaged: its checksum is wrong"));
     mem_free(bytes);
 }
 
@@ -618,7 +618,8 @@ TEST(test_refused)
         { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save the sheet as .xlsx" },
         { "[1, 2]", "no tags" },
         { "<Tags><Tag name=\"T1\"/></Tags>", "XML is not supported" },
-        { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}", "no tags in it: 1 instances have a type" },
+        { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}",
+          "the file contains no tags: 1 instances have a type" },
     };
     struct tag_export list;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {

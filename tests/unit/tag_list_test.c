@@ -88,10 +88,10 @@ CASE(byte_orders_are_resolved)
     assert_int_equal(c->plant->tags[1].signal.register_index, 1); /* address_base 0 */
     plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type,Byte Order\nA,hr:0,Float,\nB,ir:2,Double,\nC,400007,Word,\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 2, 14, "Byte Order: float32 has 32 bits, so a byte order is needed: ABCD, CDAB, BADC or DCBA" },
+    FOUND(c, { "tags.csv", 2, 14, "Byte Order: float32 has 32 bits, so a byte order is required: ABCD, CDAB, BADC or DCBA" },
           { "tags.csv", 3, 15, "float64 has 64 bits" });
     plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type\nA,hr:0,Float\n");
-    FOUND(c, { "tags.csv", 2, 8, "float32 has 32 bits, so a byte order is needed" });
+    FOUND(c, { "tags.csv", 2, 8, "float32 has 32 bits, so a byte order is required" });
     plant_case_load(c, yaml, "Tag Name,Address,Data Type,Byte Order\nA,400001,Float,big\nB,400001#BB,Float,ABCD\n");
     FOUND(c, { "tags.csv", 2, 16, "Byte Order: expected ABCD, CDAB, BADC or DCBA, found 'big'" },
           { "tags.csv", 3, 19, "Byte Order: 'ABCD' contradicts the address '400001#BB'" });
@@ -245,9 +245,9 @@ CASE(addresses_and_types_are_checked)
           { "tags.csv", 3, 3, "Address: expected the address of a register, such as 400001 or hr:0" },
           { "tags.csv", 4, 9, "Data Type: unknown type 'String'; expected one of: bool, int16" },
           { "tags.csv", 5, 9, "Data Type: unknown type 'Flot'; did you mean 'float'?" },
-          { "tags.csv", 6, 3, "Address: expected a bit such as 40001.0, since the type is Boolean" },
-          { "tags.csv", 7, 9, "Data Type: expected Boolean, since '00001' is one bit, found 'Word'" },
-          { "tags.csv", 8, 11, "Data Type: expected Boolean, since '40001.3' is one bit, found 'Short'" },
+          { "tags.csv", 6, 3, "Address: expected a bit such as 40001.0, because the type is Boolean" },
+          { "tags.csv", 7, 9, "Data Type: expected Boolean, because '00001' is a single bit, found 'Word'" },
+          { "tags.csv", 8, 11, "Data Type: expected Boolean, because '40001.3' is a single bit, found 'Short'" },
           { "tags.csv", 9, 3, "int32 needs 2 registers, but the last register is 65535" },
           { "tags.csv", 10, 3, "float64 needs 4 registers" });
     plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
@@ -272,7 +272,7 @@ CASE(places_are_whole)
                     "I,40001,,E-101,,,,\n");
     assert_null(c->plant);
     FOUND(c, { "tags.csv", 2, 20, "'A' has a group and an asset but no place: expected Node, or X, Y and Z, or Place: equipment" },
-          { "tags.csv", 3, 23, "Y: expected a number, since a position needs X, Y and Z" },
+          { "tags.csv", 3, 23, "Y: expected a number, because a position needs X, Y and Z" },
           { "tags.csv", 4, 23, "Y: expected a finite number, found 'nan'" }, { "tags.csv", 5, 25, "Z: expected a number, found 'abc'" },
           { "tags.csv", 6, 25, "Z: expected a number with a decimal point, found '3,5'" },
           { "tags.csv", 7, 25, "Z: expected a number from -10000000 to 10000000, found '2e7'" },
@@ -296,7 +296,7 @@ CASE(scaling_is_whole)
     FOUND(c, { "tags.csv", 2, 9, "Scaling: expected None, Linear or Square Root, found 'Cubic'" },
           { "tags.csv", 3, 20, "Scaled Low: expected less than Scaled High, which is 5, found 5" },
           { "tags.csv", 4, 16, "Raw Low: expected less than Raw High, which is 1, found 2" },
-          { "tags.csv", 5, 21, "Raw Low: expected a number, since Scaling is Square Root" },
+          { "tags.csv", 5, 21, "Raw Low: expected a number, because Scaling is Square Root" },
           { "tags.csv", 5, 26, "Scaled High: expected a finite number, found 'inf'" },
           { "tags.csv", 6, 24, "Negate Value: expected 0 or 1, found 'maybe'" },
           { "tags.csv", 7, 10, "Scaling is blank, so the raw range has no effect" }, { "tags.csv", 7, 19, "Clamp Low has no effect" });

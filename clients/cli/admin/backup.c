@@ -240,7 +240,7 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
     bool good = false;
     job->folder = part;
     if (is_ours(tags) || !strcmp(tags, PLANT_FILE) || !strcmp(tags, MANIFEST))
-        say(plant->files.tags_path, "a backup contains another file with the name of this tag list: rename the tag list");
+        say(plant->files.tags_path, "the backup already contains a file with the name of this tag list: rename the tag list");
     else if (access(out, F_OK) == 0)
         say(out, "this folder exists already: choose another folder for the backup with -o");
     else if (mkdir(part, 0700) != 0)
@@ -284,7 +284,7 @@ static json_t *read_manifest(const char *folder)
     bool good =
         json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
-        say(path, text ? "this file is not the file list of a backup, or has a version that this program cannot read" : strerror(errno));
+        say(path, text ? "not the file list of a backup, or a version that this program cannot read" : strerror(errno));
     good = good && is_known_version(path, json_string_value(json_object_get(manifest, "plantcast")));
     if (!good && manifest) {
         json_decref(manifest);

@@ -74,7 +74,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     if (!offline_renderer_open_history(offline, &where))
         return false;
     if (us < offline->first_us || us > offline->last_us) {
-        printf("  DIFFERS: history folder %s has no readings from the picture's time\n", options->history);
+        printf("  NOT CHECKED: history folder %s has no readings from the picture's time\n", options->history);
         return false;
     }
     struct snapshot *then = snapshot_create(offline->plant->tag_count);
@@ -88,7 +88,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     snapshot_destroy(&then);
     printf("  %s%zu of %zu readings agree with the recorded history\n", same == count ? "" : "DIFFERS: ", same, count);
     if (first)
-        printf("  the first reading that differs: tag %s\n", offline->plant->tags[first - 1].name);
+        printf("  first reading that differs: tag %s\n", offline->plant->tags[first - 1].name);
     return same == count;
 }
 

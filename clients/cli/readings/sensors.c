@@ -137,7 +137,7 @@ int cmd_sensors(int argc, char **argv)
     }
     if (argc - optind != 2 || strcmp(argv[optind], "suggest") != 0 || taken.count < 1 || taken.count > MAX_ADDED) {
         if (argc - optind == 2 && !strcmp(argv[optind], "suggest"))
-            fprintf(stderr, "plantcast: --add: 1 to %d expected\n", MAX_ADDED);
+            fprintf(stderr, "plantcast: --add: expected 1 to %d\n", MAX_ADDED);
         print_usage(stderr);
         return 2;
     }

@@ -93,7 +93,7 @@ static char *wrong_version(const struct plant *plant, const char *before, const 
     if (!strcmp(before, after)) {
         why = mem_strdup("this version equals the present tag list");
     } else if (!now || !then) {
-        why = mem_strdup("this version does not contain the same tags as the present tag list");
+        why = mem_strdup("this version does not list the same tags as the present tag list");
     } else if (strcmp(now, then) != 0) {
         tag_lines(now, then, &lines);
         why = mem_printf(
@@ -167,7 +167,7 @@ static bool number_of(const char *name, const char *text, double most, double *o
     *out = strtod(text, &end);
     if (end != text && !*end && *out >= 0 && *out <= most)
         return true;
-    fprintf(stderr, "plantcast: %s: 0 to %g expected, found '%s'\n", name, most, text);
+    fprintf(stderr, "plantcast: %s: expected 0 to %g, found '%s'\n", name, most, text);
     return false;
 }
 

@@ -59,7 +59,7 @@ static bool take_unit(const struct csv *csv, const struct csv_row *row, const st
     struct unit_change change = tag->scale.change;
     if (*unit && units_compare(unit, tag->unit, &change) > UNITS_CONVERT) {
         diag_error(csv->diag, csv->path, row->cells[columns->unit].line, row->cells[columns->unit].column,
-                   "unit '%s' cannot be converted to '%s', the unit in which tag %s is shown", unit, tag->unit, tag->name);
+                   "unit '%s' cannot be converted to '%s', the unit in which tag %s is displayed", unit, tag->unit, tag->name);
         return false;
     }
     *value = unit_change_value(&change, *value);

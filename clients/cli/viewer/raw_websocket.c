@@ -138,7 +138,7 @@ static int read_head(struct raw_websocket *raw, const char **why)
     }
     if (raw->head.length < 4 || memcmp(raw->head.at + raw->head.length - 4, "\r\n\r\n", 4) != 0)
         return raw->head.length > MAX_HEAD_BYTES
-                   ? (*why = "the server accepts no WebSocket at this URL: the header of its answer is too long", -1)
+                   ? (*why = "the server does not accept WebSockets at this URL: its response header is too long", -1)
                    : 0;
     if (strncmp(raw->head.at, "HTTP/1.1 101", 12) != 0 || !strstr(raw->head.at, ACCEPT)) {
         raw->head.at[strcspn(raw->head.at, "\r\n")] = 0;
@@ -195,7 +195,7 @@ static ssize_t read_payload(struct raw_websocket *raw, const char **why)
                   : into->length < RAW_WEBSOCKET_KEPT_BYTES ? RAW_WEBSOCKET_KEPT_BYTES - into->length
                                                             : 0;
     if (into->length + keep > MAX_TEXT_BYTES) {
-        *why = "the daemon sent a message longer than the limit";
+        *why = "the daemon sent a message of more than 64 MiB, the most that this program accepts";
         return -1;
     }
     size_t count = keep > 0 && keep < raw->left ? keep : raw->left;

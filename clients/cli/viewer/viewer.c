@@ -224,7 +224,7 @@ void viewer_on_message(struct viewer *viewer, bool binary)
 static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes, size_t count)
 {
     if (viewer->in.length + count > MAX_MESSAGE_BYTES) {
-        viewer_fail(viewer, "the daemon sent a message longer than the limit");
+        viewer_fail(viewer, "the daemon sent a message of more than 64 MiB, the most that this program accepts");
         return -1;
     }
     text_add_bytes(&viewer->in, bytes, count);

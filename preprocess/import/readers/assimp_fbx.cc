@@ -110,7 +110,7 @@ void say_graph(const fbx_graph &graph)
     for (const auto &[id, name] : graph.models) {
         auto parents = graph.parents.find(id);
         if (graph.shown.count(id) > 0 && reached.count(id) == 0)
-            printf("lost\t%s\t%s\tmodel\t\tno chain of parents connects the model with the scene\n", id.c_str(), name.c_str());
+            printf("lost\t%s\t%s\tmodel\t\tthe model is not connected with the scene\n", id.c_str(), name.c_str());
         else if (parents != graph.parents.end() && parents->second > 1)
             printf("error\t1\tmodel %s has %zu parents: the model is shown below each parent\n", name.c_str(), parents->second);
     }

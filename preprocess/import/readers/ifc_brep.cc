@@ -154,7 +154,7 @@ class step_writer
         if (profile.type.find("ARBITRARY") == std::string::npos)
             throw unsupported("unsupported: a swept surface with profile " + profile.type);
         if (!surface[1].absent() && placement_of(in, surface[1]).Form() != gp_Identity)
-            throw unsupported("unsupported: a swept surface with a placement of its own");
+            throw unsupported("unsupported: a swept surface with its own placement");
         return text_of(profile[2]);
     }
 

@@ -127,7 +127,7 @@ relative_placement in_grid(const ifc_model &in, const entity &from)
         x = gp_Vec(origin.at, crossing_of(in, from[at + 1]).at);
     x.SetZ(0);
     if (x.Magnitude() < NEAR_MM)
-        throw unsupported("a grid placement without a direction");
+        throw unsupported("a grid placement has no direction");
     out.place.SetTransformation(gp_Ax3(origin.at, gp::DZ(), gp_Dir(x)), gp_Ax3(gp::XOY()));
     return out;
 }

@@ -94,7 +94,7 @@ gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
     part->curve->D1(parameter_at(*part, left_mm), origin, ahead);
     gp_Vec level(back ? -ahead.X() : ahead.X(), back ? -ahead.Y() : ahead.Y(), 0);
     if (level.Magnitude() < 1e-9)
-        throw unsupported("a section on a vertical curve");
+        throw unsupported("unsupported: a section on a vertical curve");
     gp_Dir forward(level), left = gp::DZ().Crossed(forward);
     origin.Translate(gp_Vec(left) * at.offset.X() + gp_Vec(gp::DZ()) * at.offset.Y() + gp_Vec(forward) * at.offset.Z());
     gp_Trsf out;

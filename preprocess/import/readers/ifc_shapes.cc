@@ -341,7 +341,7 @@ void add_placements(ifc_writer *w)
         attempt(w, id, [&] {
             long long unused = last + 1LL + 4 * static_cast<long long>(statements.size());
             if (unused > INT_MAX - 3)
-                throw unsupported("the file has no free statement number for this grid placement");
+                throw unsupported("the file has no unused statement number for this grid placement");
             statements[id] = as_local_placement(w->in, w->in.statements.get(id), static_cast<int>(unused));
         });
     });

@@ -204,7 +204,7 @@ std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape
     if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_VERTEX).More())
         return "";
     bool missing = std::any_of(r->externals.begin(), r->externals.end(), [](const auto &each) { return !each.second.found; });
-    return missing ? "the part's shape is empty, or in a missing file" : "the part's shape is empty";
+    return missing ? "the part's shape is empty, or its file is missing" : "the part's shape is empty";
 }
 
 /* Prints a line of the reader's output about a part that lost some or all of its faces. */

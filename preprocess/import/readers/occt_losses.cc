@@ -225,7 +225,7 @@ void say_lost_places(const file_losses &of)
         if (product.IsNull() || has_shape(of, place) || !has_shape(of, product))
             continue;
         Handle(TCollection_HAsciiString) name = place->Name().IsNull() || place->Name()->IsEmpty() ? place->Id() : place->Name();
-        printf("lost\t%s\t%s%s\tplace\t\tthe file has no placement for the part, or an unsupported form of placement\n",
+        printf("lost\t%s\t%s%s\tplace\t\tthe file gives no placement for the part, or an unsupported kind of placement\n",
                id_of(of, place).c_str(), of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
     }
 }

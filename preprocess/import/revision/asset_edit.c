@@ -85,7 +85,7 @@ static bool remove_item(struct editor *editor, const yaml_node_t *item)
     size_t begin = line_begin(text, byte_at(editor, item->start_mark)), indent = strspn(text + begin, " "), end = line_end(text, begin),
            limit = byte_at(editor, item->end_mark);
     if (text[begin + indent] != '-')
-        return fail(editor, "the lists `assets` and `nodes` in the plant file need one item a line");
+        return fail(editor, "import can edit the lists `assets` and `nodes` in the plant file only if each item is on a line of its own");
     for (size_t line = end; text[line]; line = line_end(text, line)) {
         size_t spaces = strspn(text + line, " ");
         char first = text[line + spaces];
@@ -240,7 +240,7 @@ char *asset_edit_apply(const char *text, const struct asset_edit *edits, size_t 
     if (out && added) {
         char *longer = plant_edit_append(out, "assets", "", added);
         if (!longer)
-            fail(&editor, "the list `assets` in the plant file needs one item a line");
+            fail(&editor, "import can edit the list `assets` in the plant file only if each item is on a line of its own");
         mem_free(out);
         out = longer;
     }

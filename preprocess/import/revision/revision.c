@@ -248,7 +248,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
         /* rename the asset's tag only if it still equals the node's name in the old model */
         if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name)
             edit->tag = mem_strdup(without_slash(name));
-        say(p, REVISION_ASSET, "renamed", asset->id, "now %s; the id of the asset stays", name);
+        say(p, REVISION_ASSET, "renamed", asset->id, "now %s; the asset keeps its id", name);
     }
     double moved_m = motion->moved * asset->unit_m;
     if (motion->change == STATES_CHANGED)

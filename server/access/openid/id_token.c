@@ -124,7 +124,7 @@ static const char *fault_of(const json_t *claims, const struct id_token_expected
         (nbf && !(json_number_value(nbf) <= now_s + ID_TOKEN_SKEW_S)))
         return "the time of issue of the ID token is implausible; check the clocks of this machine and of the provider";
     if (expected->nonce && (!nonce || strcmp(nonce, expected->nonce) != 0))
-        return "the ID token belongs to another log-in (nonce)";
+        return "the ID token was issued for another sign-in (nonce)";
     return NULL;
 }
 

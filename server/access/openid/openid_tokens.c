@@ -143,7 +143,7 @@ static enum openid_rights take_claims(struct openid *openid, struct person *pers
         return RIGHTS_UNKNOWN;
     }
     person->holder.role = id_token_role(openid->config, claims);
-    *why = "none of the user's groups has a role any longer";
+    *why = "none of the user's groups has a role any more";
     return person->holder.role == ROLE_NOBODY ? RIGHTS_GONE : RIGHTS_SAME;
 }
 
@@ -164,7 +164,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     *why = "the provider does not answer";
     if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
         /* the provider rejects this server, not the user: the client secret may have expired */
-        *why = "the provider refuses the request to renew the sign-in";
+        *why = "the provider refused to renew the sign-in";
     } else if (answered && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
         *why = "the provider ended the user's sign-in";

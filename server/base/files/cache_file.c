@@ -57,9 +57,9 @@ static enum file_state check(const struct cache_file *file, const char *magic, u
 {
     const struct cache_head *head = file->map;
     if (file->map_bytes < sizeof(*head))
-        return found(why, FILE_DAMAGED, "truncated: %zu bytes, the header alone has %zu", file->map_bytes, sizeof(*head));
+        return found(why, FILE_DAMAGED, "truncated: %zu bytes, but the header alone takes %zu", file->map_bytes, sizeof(*head));
     if (memcmp(head->magic, magic, sizeof(head->magic)) != 0)
-        return found(why, FILE_OTHER, "of another version, or not a file of this kind (it does not begin with %.8s)", magic);
+        return found(why, FILE_OTHER, "of another version, or not a cache file of this kind (it does not begin with %.8s)", magic);
     if (head->key != key)
         return found(why, FILE_OTHER, "made from other input (key %016" PRIx64 ", expected %016" PRIx64 ")", head->key, key);
     if (head->count != file->map_bytes - sizeof(*head))

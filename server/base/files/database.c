@@ -151,7 +151,7 @@ static bool is_newer(struct database *database, int version)
 {
     int known = database->format->version;
     if (version > known)
-        log_err(database->log, "%s: this file of version %d was written by a newer Plantcast; this program supports version %d",
+        log_err(database->log, "%s: version %d of this file was written by a newer Plantcast; this program supports version %d",
                 database->path, version, known);
     return version > known;
 }

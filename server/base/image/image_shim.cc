@@ -123,7 +123,7 @@ bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, ch
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
     /* WebP files are exempt, because WebP stores single-colour images in a few bytes */
     if (strcmp(format, "webp") != 0 && values > IMAGE_FREE_VALUES + uint64_t{ IMAGE_VALUES_PER_BYTE } * size)
-        return refuse(why, "%zu bytes cannot hold %d x %d pixels", size, spec.width, spec.height);
+        return refuse(why, "%zu bytes cannot hold a picture of %d x %d pixels", size, spec.width, spec.height);
     return true;
 }
 

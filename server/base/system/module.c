@@ -25,7 +25,7 @@ static char *path_of(const char *name, char *why, size_t why_bytes)
             return path;
         mem_free(path);
     }
-    snprintf(why, why_bytes, "%s is missing: install the package %.*s (looked next to %s and in ../lib/plantcast)", name,
+    snprintf(why, why_bytes, "%s is missing: install the package %.*s (searched next to %s and in ../lib/plantcast)", name,
              (int)strcspn(name, "."), name, end ? program : "the program");
     return NULL;
 }
@@ -37,7 +37,7 @@ static void *load(const char *name, char *why, size_t why_bytes)
     if (path && !library) {
         /* this text begins with the name of the file that failed to load, which may be a dependency of the module */
         const char *reason = dlerror();
-        snprintf(why, why_bytes, "%s cannot be loaded: %s", path, reason ? reason : "no reason is given");
+        snprintf(why, why_bytes, "%s cannot be loaded: %s", path, reason ? reason : "no reason given");
     }
     mem_free(path);
     return library;
@@ -52,7 +52,7 @@ bool module_find(struct module *module, const char *name, void *function, char *
     pthread_mutex_unlock(&module->lock);
     if (library && !symbol)
         snprintf(why, why_bytes,
-                 "%s is of another version than this program: the function %s is missing; install the same version of all packages",
+                 "%s has another version than this program: the function %s is missing; install the same version of all packages",
                  module->name, name);
     memcpy(function, &symbol, sizeof(symbol));
     return symbol != NULL;

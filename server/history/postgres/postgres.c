@@ -209,8 +209,8 @@ static void fill(struct postgres *postgres)
     memmove(postgres->owed.spans, postgres->owed.spans + 1, --postgres->owed.span_count * sizeof(span));
     pthread_mutex_unlock(&postgres->lock);
     counter_inc(postgres->counters.restored, points);
-    log_info(log_of(postgres), "history: read %lld points from PostgreSQL, for %.0f s in which another core led", (long long)points,
-             (double)(span.to_us - span.from_us) / 1e6);
+    log_info(log_of(postgres), "history: read %lld points from PostgreSQL, covering the %.0f s in which another core led",
+             (long long)points, (double)(span.to_us - span.from_us) / 1e6);
     postgres->params.restored(postgres->params.arg);
 }
 
@@ -276,7 +276,7 @@ static void drop_oldest(struct postgres *postgres)
     postgres->lost += lost;
     if (postgres->lost && clock_mono_ns() >= postgres->say_lost_ns) {
         log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_LOST,
-                  "history: the queue for PostgreSQL is full: %lld points are only in the local files", (long long)postgres->lost);
+                  "history: the queue for PostgreSQL is full: %lld points remain only in the local files", (long long)postgres->lost);
         postgres->say_lost_ns = clock_mono_ns() + SAY_LOST_NS;
         postgres->lost = 0;
     }
@@ -415,7 +415,7 @@ static void add_counters(struct postgres *postgres, struct counters *counters)
     postgres->counters.waiting =
         counters_add(counters, "plantcast_postgres_waiting_points", "gauge", "Recorded points waiting on disk for PostgreSQL.");
     postgres->counters.lost = counters_add(counters, "plantcast_postgres_lost_total", "counter",
-                                           "Points never sent to PostgreSQL: too many were waiting or keep_gb was reached.");
+                                           "Points never sent to PostgreSQL because the queue was full or keep_gb was reached.");
     postgres->counters.restored =
         counters_add(counters, "plantcast_postgres_restored_total", "counter", "Points restored from PostgreSQL into history.");
 }

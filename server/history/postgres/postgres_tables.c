@@ -60,7 +60,7 @@ static bool check_version(struct postgres_link *link, const char *schema, char w
     int64_t version = there ? ask_number(link, "SELECT coalesce(max(version), 0)::bigint FROM version", NULL) : 0;
     if (version != POSTGRES_VERSION && version >= 0)
         snprintf(why, POSTGRES_WHY_BYTES,
-                 "the tables in schema %s have version %lld, %s than version %d of this program; the tables are not used", schema,
+                 "the tables in schema %s have version %lld, which is %s than version %d of this program; the tables are not used", schema,
                  (long long)version, version < POSTGRES_VERSION ? "older" : "newer", POSTGRES_VERSION);
     return version == POSTGRES_VERSION;
 }

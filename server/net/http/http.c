@@ -74,7 +74,7 @@ static void log_without_upgrade(struct server_context *server, struct lws *wsi, 
         return;
     bool named = lws_hdr_copy(wsi, via, sizeof(via), WSI_TOKEN_HTTP_VIA) > 0;
     log_warn(server->params.log, "stream: a request from %s came without Upgrade: websocket%s%s%s%s; nginx needs: %s%s",
-             connection_of(wsi)->address, handshake ? ", although it is a WebSocket handshake: a proxy on the way removed the header" : "",
+             connection_of(wsi)->address, handshake ? ", although it is a WebSocket handshake: a proxy in between removed the header" : "",
              named ? " (Via: " : "", named ? quoted(via, shown) : "", named ? ")" : "", NGINX_LINES, more);
 }
 

@@ -274,7 +274,7 @@ void http_on_tick(struct server_context *server, int64_t now_ns)
             continue;
         request_forget(server, request);
         request->reloads = false;
-        char *text = mem_printf("the answer was not ready within %d s (the first picture of a large plant takes longest); try again\n",
+        char *text = mem_printf("no answer within %d s (the first picture of a large plant takes longest); try again\n",
                                 (int)server->room.quotas->at[QUOTA_ANSWER_WAIT_S]);
         request_answered(request, request_answer_later(request, text));
         mem_free(text);

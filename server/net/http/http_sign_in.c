@@ -66,7 +66,7 @@ static int refuse_held(struct server_context *server, struct http_exchange *requ
 {
     server->logins.held++;
     counter_inc(server->counters.logins_held, 1);
-    return request_answer_text(request, 429, "too many wrong answers came from this address; try again later\n");
+    return request_answer_text(request, 429, "too many wrong answers from this address; try again later\n");
 }
 
 int ask_login_callback(struct server_context *server, struct http_exchange *request)
@@ -110,8 +110,8 @@ static void count_refused(struct server_context *server, const struct openid_ans
     counter_inc(server->counters.logins_wrong, 1);
     if (login_throttle_fail(server->logins.throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
         log_warn(server->params.log,
-                 "login by OpenID Connect: an address fails to sign in; it is limited to one attempt in %d s until a minute passes without "
-                 "a failure",
+                 "login by OpenID Connect: an address had too many failed sign-ins; it may try once every %d s until a minute passes "
+                 "without a failure",
                  LOGIN_WAIT_S);
 }
 

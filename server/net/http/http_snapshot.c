@@ -106,7 +106,7 @@ static bool may_ask(struct server_context *server, struct http_exchange *request
     const char *why = server->http.pictures >= server->room.quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being drawn; try again\n"
                       : address_limits_may_draw(server->room.addresses, connection_of(request->wsi)->client)
                           ? NULL
-                          : "this address has reached its limit of pictures in progress; try again\n";
+                          : "too many pictures for this address are in progress; try again later\n";
     if (why)
         *result = request_answer_later(request, why);
     return !why;

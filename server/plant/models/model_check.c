@@ -108,12 +108,12 @@ static void check_places(struct plant_models_check *check, size_t asset_index, c
         if (find_better(asset, box, sensors, count, within, better, sizeof(better)))
             diag_warning(
                 check->diag, check->plant->files.path, asset->line, 0,
-                "asset %s: %zu of the %zu sensors with X, Y, Z are away from the asset; with %s in the plant file, they would be on it",
+                "asset %s: %zu of the %zu sensors with X, Y, Z are far from the asset; with %s in the plant file, they would be on it",
                 asset->id, placed - within, placed, better);
         else
             diag_warning(
                 check->diag, check->plant->files.path, asset->line, 0,
-                "asset %s: %zu of the %zu sensors with X, Y, Z are away from the asset: check units, up, placement and sensor_frame",
+                "asset %s: %zu of the %zu sensors with X, Y, Z are far from the asset: check units, up, placement and sensor_frame",
                 asset->id, placed - within, placed);
     }
     mem_free(sensors);
@@ -260,8 +260,8 @@ static bool check_memory(const struct plant_models_check *check, size_t machine)
     if (check->triangles <= most)
         return true;
     diag_error(check->diag, check->plant->files.path, 0, 0,
-               "%.2f million triangles are too many: %.2f GB of memory hold %.2f million. Leave parts of the plant "
-               "out, or import it with a larger --chord",
+               "%.2f million triangles are too many: %.2f GB of memory hold at most %.2f million. Leave parts of the plant out, or import "
+               "it with a larger --chord",
                (double)check->triangles / 1e6, (double)machine / 1e9, (double)most / 1e6);
     return false;
 }

@@ -61,7 +61,7 @@ static bool is_glb(FILE *file)
 
 static json_t *read_json(const char *path, char *why, size_t why_bytes)
 {
-    static const char wanted[] = "expected glTF 2.0 (.glb or .gltf): export it as such, or convert it";
+    static const char wanted[] = "expected glTF 2.0 (.glb or .gltf): export the model in this format, or convert it";
     const char *kind = file_kind_of(path);
     size_t count = 0;
     json_error_t error;

@@ -44,7 +44,7 @@ static bool check_characters(char *text, size_t bytes, const char *path, struct 
         i += count;
     }
     if (reported > REPORTED_LINES)
-        diag_error(diag, path, reported_line, 0, "%d lines in all have bytes that are not UTF-8 text; this line is the last", reported);
+        diag_error(diag, path, reported_line, 0, "%d lines contain bytes that are not UTF-8 text; this is the last of them", reported);
     return true;
 }
 

@@ -98,7 +98,7 @@ void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, str
     keep_reference(columns, plant, COL_SUPPRESSED_BY, references);
     keep_reference(columns, plant, COL_MIRRORS, references);
     if (cell_given(columns, COL_MIRRORS) && plant->alarms != ALARMS_MIRROR)
-        cell_warning(columns, COL_MIRRORS, "Mirrors has no effect, because the plant file lacks `alarms: mirror`");
+        cell_warning(columns, COL_MIRRORS, "Mirrors has no effect, because the plant file has no `alarms: mirror`");
 }
 
 /* --- references between rows ------------------------------------------------------------------------------------------------ */

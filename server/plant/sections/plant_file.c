@@ -267,7 +267,7 @@ static void read_numbers(struct yaml_reader *reader, yaml_node_t *node, const ch
         if (!yaml_number(reader, item, name, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, &number))
             continue;
         if (*count > 0 && number <= numbers[*count - 1])
-            yaml_error(reader, yaml_place(item), "%s: expected a number greater than the preceding %.9g, found %.9g", name,
+            yaml_error(reader, yaml_place(item), "%s: expected a number greater than the previous one (%.9g), found %.9g", name,
                        numbers[*count - 1], number);
         else
             numbers[(*count)++] = number;

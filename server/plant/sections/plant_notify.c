@@ -136,11 +136,11 @@ static void read_recipient(struct yaml_reader *reader, yaml_node_t *node, struct
     if (yaml_map_has(&map, "email") + yaml_map_has(&map, "webhook") + yaml_map_has(&map, "alertmanager") != 1)
         yaml_error(reader, map.place, "a recipient: expected exactly one of email, webhook and alertmanager");
     else if (recipient->kind == NOTIFY_EMAIL && !plant->notify->mail.server)
-        yaml_error(reader, yaml_map_place(&map, "email"), "email: the key `mail` must name a server");
+        yaml_error(reader, yaml_map_place(&map, "email"), "email: requires a server in the key `mail`");
     else if (recipient->kind != NOTIFY_EMAIL)
         url_check(reader, &map, recipient->kind == NOTIFY_WEBHOOK ? "webhook" : "alertmanager", recipient->url, "http://", "https://");
     if (recipient->id && strcspn(recipient->id, "\"\\\n") != strlen(recipient->id))
-        yaml_error(reader, yaml_map_place(&map, "id"), "id: remove the quote or backslash");
+        yaml_error(reader, yaml_map_place(&map, "id"), "id: must not contain quotes or backslashes");
     check_token(reader, &map, recipient);
     plant_list_check_id(reader, &map, "recipient", plant->notify->recipients, plant->notify->recipient_count, sizeof(*recipient),
                         offsetof(struct notify_recipient, line));
@@ -216,7 +216,7 @@ static void read_escalation(struct yaml_reader *reader, yaml_node_t *node, void 
         bool good = yaml_map_read(reader, yaml_list_item(reader, node, i), "a step", keys, &step, &map) && yaml_map_good(&map, "after_min");
         if (good && i > 0 && step.step.after_min <= rule->rule.steps[i].after_min)
             yaml_error(reader, yaml_map_place(&map, "after_min"),
-                       "after_min: expected a number greater than the preceding %.9g, found %.9g", rule->rule.steps[i].after_min,
+                       "after_min: expected a number greater than the previous one (%.9g), found %.9g", rule->rule.steps[i].after_min,
                        step.step.after_min);
         rule->rule.steps[1 + i] = step.step;
         rule->rule.step_count = (size_t)i + 2;

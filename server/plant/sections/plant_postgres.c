@@ -30,7 +30,7 @@ static void check_url(struct yaml_reader *reader, const struct yaml_map *map, co
     if (strncmp(url, "postgresql://", 13) != 0 && strncmp(url, "postgres://", 11) != 0)
         yaml_error(reader, place, "url: expected postgresql://HOST/DATABASE, found '%.60s'", url);
     else if (has_password(url))
-        yaml_error(reader, place, "url: do not write a password here; name a file with it in `login`");
+        yaml_error(reader, place, "url: do not write a password here; write it to a file, and name the file in `login`");
 }
 
 void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *record)

@@ -202,8 +202,8 @@ static bool read_index(const char **at, long *out)
 static const char *refusal_in_bracket(const char *at)
 {
     switch (*at) {
-    case '*': return "wildcards select several values; expected a path to one value";
-    case ':': return "slices select several values; expected a path to one value";
+    case '*': return "a wildcard selects several values; expected a path to one value";
+    case ':': return "a slice selects several values; expected a path to one value";
     case ',': return "several selectors in one bracket select several values; expected a path to one value";
     case '|': return "|| is not supported in filters";
     default: return "expected a path such as data.temperature, items[0].value or [\"odd name\"], and ]";

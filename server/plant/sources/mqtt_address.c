@@ -80,7 +80,7 @@ static bool is_sparkplug(const char *topic)
 static bool check_topic(const char *topic, bool sparkplug, char why[200])
 {
     if (!*topic)
-        snprintf(why, 200, "expected a topic here, or the key topic in the source");
+        snprintf(why, 200, "expected a topic here, or the key `topic` in the source");
     else if (strlen(topic) > MQTT_TOPIC_BYTES)
         snprintf(why, 200, "the topic has %zu bytes; expected at most %d", strlen(topic), MQTT_TOPIC_BYTES);
     else if (strpbrk(topic, "+#"))

@@ -65,10 +65,11 @@ static void check_session(struct yaml_reader *reader, const struct yaml_map *map
 {
     if (mqtt->persistent && !mqtt->time)
         yaml_error(reader, yaml_map_place(map, "session"),
-                   "session: persistent needs payload: json and the key time, otherwise messages stored by the broker would look fresh");
+                   "session: persistent requires payload: json and the key `time`, otherwise messages stored by the broker would look "
+                   "fresh");
     if (mqtt->persistent && !mqtt->client_id)
         yaml_error(reader, yaml_map_place(map, "session"),
-                   "session: persistent needs client_id, which identifies the session to the broker");
+                   "session: persistent requires client_id, which identifies the session to the broker");
 }
 
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source)

@@ -158,7 +158,7 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
     const char *what = whats[way_of(source)];
     for (size_t i = 0; i < sizeof(belongs) / sizeof(*belongs); i++)
         if (yaml_map_good(map, belongs[i].key) && !(belongs[i].ways & way_of(source)))
-            yaml_error(reader, yaml_map_place(map, belongs[i].key), "%s: has no meaning for %s", belongs[i].key, what);
+            yaml_error(reader, yaml_map_place(map, belongs[i].key), "%s: has no effect for %s", belongs[i].key, what);
 }
 
 /* Reports missing keys that the source's kind (Modbus, MQTT and so on) requires. */
@@ -173,7 +173,7 @@ static void check_way(struct yaml_reader *reader, const struct yaml_map *map, co
     if (way_of(source) == REPLAY && !source->file)
         missing = "file";
     if (missing)
-        yaml_error(reader, yaml_map_place(map, missing), "a source needs the key '%s'", missing);
+        yaml_error(reader, yaml_map_place(map, missing), "a source requires the key '%s'", missing);
     if (has_host && has_hosts)
         yaml_error(reader, yaml_map_place(map, "hosts"), "hosts: expected host or hosts, not both");
     if (source->file && access(source->file, R_OK) != 0)
@@ -192,7 +192,7 @@ static void check_alone(struct yaml_reader *reader, const struct yaml_map *map, 
     for (const struct plant_source *other = plant->sources; other < source; other++) {
         if (same_text(other->device, source->device))
             yaml_error(reader, yaml_map_place(map, "device"),
-                       "device: '%s' is already used by source %s; a single source must read all units on one line", source->device,
+                       "device: '%s' is already used by source %s; use one source for all units on a serial line", source->device,
                        other->id ? other->id : "?");
         for (int i = 0; i < source->host_count && way_of(source) == BY_SOCKET; i++)
             for (int k = 0; k < other->host_count; k++)

@@ -26,13 +26,13 @@ static const char *wrong_with(const char *url, const char *plain, const char *se
 {
     size_t plain_length = strlen(plain), secure_length = strlen(secure);
     if (strncmp(url, secure, secure_length) != 0 && strncmp(url, plain, plain_length) != 0)
-        return "the address begins with a wrong scheme";
+        return "the address begins with an unsupported scheme";
     const char *host = host_of(url);
     size_t host_length = strcspn(host, "/?#");
     if (host_length == 0)
         return "the address names no server";
     if (memchr(host, '@', host_length))
-        return "do not write a password in the plant file; let password_file or token_file name a file with it";
+        return "do not write a password in the plant file; write it to a file, and name the file in password_file or token_file";
     for (const char *at = url; *at; at++)
         if ((unsigned char)*at <= ' ' || *at == 127)
             return "white space is not allowed";

@@ -31,7 +31,7 @@ static void read_source(struct tag_list *list)
     const struct plant *plant = list->plant;
     list->tag->source = cell_reference(&list->columns, COL_SOURCE, "source", plant->sources, plant->source_count, sizeof(*plant->sources));
     if (cell_given(&list->columns, COL_SOURCE) && tag_is_derived(&list->columns)) {
-        cell_error(&list->columns, COL_SOURCE, "Source: expected none, since the address is an expression");
+        cell_error(&list->columns, COL_SOURCE, "Source: must be empty, because the address is an expression");
         list->tag->source = -1;
     }
     if (cell_given(&list->columns, COL_SOURCE) || tag_is_derived(&list->columns))
@@ -78,7 +78,7 @@ static void read_position(struct tag_list *list)
     tag->place.has_position = good == 3;
     for (int i = 0; i < 3 && given > 0; i++)
         if (!cell_given(&list->columns, axes[i]))
-            cell_error(&list->columns, axes[i], "%s: expected a number, since a position needs X, Y and Z", tag_column_name(axes[i]));
+            cell_error(&list->columns, axes[i], "%s: expected a number, because a position needs X, Y and Z", tag_column_name(axes[i]));
 }
 
 static void read_place(struct tag_list *list)

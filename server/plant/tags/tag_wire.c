@@ -55,7 +55,7 @@ static void read_byte_order(struct tag_wire *wire, const struct modbus_address *
         return;
     enum tag_column column = wire->columns->at[COL_BYTE_ORDER] >= 0 ? COL_BYTE_ORDER : COL_DATA_TYPE;
     cell_error(wire->columns, column,
-               "Byte Order: %s has %d bits, so a byte order is needed: ABCD, CDAB, BADC or DCBA here, or byte_order in the tag's source",
+               "Byte Order: %s has %d bits, so a byte order is required: ABCD, CDAB, BADC or DCBA here, or byte_order in the tag's source",
                data_type_name(tag->signal.type), registers * 16);
 }
 
@@ -77,10 +77,11 @@ static bool read_type(struct tag_wire *wire, const struct modbus_address *addres
         return false;
     }
     if (one_bit && tag->signal.type != DATA_BIT)
-        cell_error(wire->columns, COL_DATA_TYPE, "Data Type: expected Boolean, since '%.60s' is one bit, found '%s'", tag->signal.address,
-                   text);
+        cell_error(wire->columns, COL_DATA_TYPE, "Data Type: expected Boolean, because '%.60s' is a single bit, found '%s'",
+                   tag->signal.address, text);
     else if (!one_bit && tag->signal.type == DATA_BIT)
-        cell_error(wire->columns, COL_ADDRESS, "Address: expected a bit such as %.60s.0, since the type is %s", tag->signal.address, text);
+        cell_error(wire->columns, COL_ADDRESS, "Address: expected a bit such as %.60s.0, because the type is %s", tag->signal.address,
+                   text);
     return one_bit == (tag->signal.type == DATA_BIT);
 }
 
@@ -181,7 +182,7 @@ static void read_range(struct tag_wire *wire, enum tag_column low, enum tag_colu
         return;
     enum tag_column missing = has_low ? high : low;
     if (!has_low || !has_high)
-        cell_error(wire->columns, missing, "%s: expected a number, since Scaling is %s", tag_column_name(missing),
+        cell_error(wire->columns, missing, "%s: expected a number, because Scaling is %s", tag_column_name(missing),
                    cell_text(wire->columns, COL_SCALING));
     else if (*out_low >= *out_high)
         cell_error(wire->columns, low, "%s: expected less than %s, which is %.9g, found %.9g", tag_column_name(low), tag_column_name(high),
@@ -199,7 +200,7 @@ static void read_scaling(struct tag_wire *wire)
     else if (*text && strcasecmp(text, "None") != 0)
         cell_error(wire->columns, COL_SCALING, "Scaling: expected None, Linear or Square Root, found '%.60s'", text);
     if (tag->scale.kind != SCALING_NONE && is_number(wire))
-        cell_error(wire->columns, COL_SCALING, "Scaling: expected None, since the value is in engineering units already");
+        cell_error(wire->columns, COL_SCALING, "Scaling: expected None, because the value is already in engineering units");
     tag->scale.has_range =
         tag->scale.kind != SCALING_NONE || (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
     if (tag->scale.kind != SCALING_NONE)

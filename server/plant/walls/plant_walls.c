@@ -173,9 +173,9 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
         yaml_error(reader, yaml_map_place(&map, pane_kind_names[pane->kind]), "%s: expected one item, found %zu",
                    pane_kind_names[pane->kind], pane->item_count);
     else if (pane->on_alarm && pane->kind != PANE_VIEWS && pane->kind != PANE_TOUR)
-        yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: allowed only in a pane that has `views`");
+        yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: allowed only for a pane with `views`");
     else if (pane->kind != PANE_VIEWS && yaml_map_has(&map, "every_s"))
-        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: allowed only in a pane that has `views`");
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: allowed only for a pane with `views`");
     if (!pane->area)
         return;
     if (!grid_has(display, pane->area))
@@ -264,13 +264,13 @@ static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *recor
         good = false;
     }
     if (good && yaml_map_has(&map, "views") == yaml_map_has(&map, "tour")) {
-        yaml_error(reader, map.place, "tile: expected either views or a tour");
+        yaml_error(reader, map.place, "tile: expected views or a tour, not both");
         good = false;
     }
     if (good && tile->pane.kind == PANE_TOUR && tile->pane.item_count > 1)
         yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one item, found %zu", tile->pane.item_count);
     if (good && tile->pane.kind == PANE_TOUR && yaml_map_has(&map, "every_s"))
-        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: not allowed with a tour, whose stops have their own times");
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: not allowed with a tour, because each stop has its own time");
     if (!good)
         tile->columns = tile->rows = 0;
 }
@@ -355,7 +355,7 @@ void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
         if (wall->id && !named_view_id_valid(wall->id))
             yaml_error(reader, yaml_map_place(&map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", wall->id);
         if (!yaml_map_has(&map, "displays") && !yaml_map_has(&map, "tile"))
-            yaml_error(reader, map.place, "a wall: expected displays, or a tile, or both");
+            yaml_error(reader, map.place, "a wall: expected displays, a tile, or both");
         add_tiles(reader, &map, wall);
         plant_list_check_id(reader, &map, "wall", plant->screens.walls, plant->screens.wall_count, sizeof(*wall),
                             offsetof(struct wall, line));
@@ -387,7 +387,7 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
                 continue;
             near = suggest_nearest(name, plant->screens.views, plant->screens.view_count, sizeof(*plant->screens.views));
             diag_warning(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i],
-                         "views: `views` has no view '%.60s' (the id of a view saved in the page is also possible)%s%s%s", name,
+                         "views: `views` has no view '%.60s' (the id of a view saved on the page is also possible)%s%s%s", name,
                          near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_SNAPSHOT && other_plant_find(plant, name) < 0) {
             near =

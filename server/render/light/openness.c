@@ -124,7 +124,7 @@ static void *openness_main(void *arg)
     const struct atomic_file_part part = { writer->bytes, writer->count };
     int status = cache_file_write_parts(writer->path, magic, writer->key, &part, 1);
     if (status != 0)
-        log_info(writer->log, "%s: cannot be written (%s); the baked light is computed again at each start", writer->path,
+        log_info(writer->log, "%s: cannot be written (%s); the baked light will be computed again at each start", writer->path,
                  strerror(-status));
     return NULL;
 }

@@ -46,7 +46,7 @@ static bool read_view(const struct session *session, const char *id, struct view
     if (!address || !view_named_read(&params, address, view->width_px, view->height_px, &read, error))
         return false;
     if (read.at_us) {
-        message_fail(error, "bad_field", "named: view '%.48s' shows a past time; a stream shows only the present", id);
+        message_fail(error, "bad_field", "named: view '%.48s' shows a past time, but a stream shows only the present", id);
         return false;
     }
     const struct view before = *view;

@@ -105,7 +105,7 @@ bool session_on_time(struct session *session, const struct time_request *request
         return false;
     }
     if (!request->has_at && here_us == 0) {
-        message_fail(error, "bad_field", "speed: allowed only for a past time; give the start in at_us");
+        message_fail(error, "bad_field", "speed: allowed only for a past time; give the start time in at_us");
         return false;
     }
     int64_t at_us = request->has_at ? request->at_us : here_us;

@@ -158,7 +158,7 @@ static bool use_tls(struct mqtt_client *client, char why[200])
     int status =
         mosquitto_tls_set(client->library, mqtt->ca, mqtt->ca ? NULL : SYSTEM_CERTIFICATES, mqtt->certificate, mqtt->key, no_passphrase);
     if (status != MOSQ_ERR_SUCCESS)
-        snprintf(why, 200, "tls: the files of certificates and key cannot be used: %s", mosquitto_strerror(status));
+        snprintf(why, 200, "tls: the certificate or key files cannot be used: %s", mosquitto_strerror(status));
     return status == MOSQ_ERR_SUCCESS;
 }
 

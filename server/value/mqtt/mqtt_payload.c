@@ -143,8 +143,9 @@ static enum mqtt_found refuse_selection(const struct json_selected *found, const
     char number[32];
     snprintf(number, sizeof(number), "%.15g", json_number_value(found->foreign));
     const char *name = json_is_string(found->foreign) ? json_string_value(found->foreign) : number;
-    snprintf(why, 200, "%.35s: the list item at %.35s is named %.35s, not like the tag; select it by name, such as [?@.id=='...']", tag,
-             path, name);
+    snprintf(why, 200,
+             "%.35s: the list item at %.35s is named %.35s, which is not the tag's name; select it by name, such as [?@.id=='...']",
+             tag, path, name);
     return refuse(out, QUALITY_BAD_NO_MATCH);
 }
 

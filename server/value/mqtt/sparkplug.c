@@ -321,7 +321,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
     }
     if (missing > 0)
         log_warn(sparkplug->params.log, "source %s: %s: the birth certificate has no metric '%.60s'%s", sparkplug->params.source, of->name,
-                 sparkplug->params.plant->tags[first].signal.path, missing > 1 ? ", nor the metrics of some other tags" : "");
+                 sparkplug->params.plant->tags[first].signal.path, missing > 1 ? ", nor metrics of other tags" : "");
     return good;
 }
 

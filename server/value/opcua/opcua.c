@@ -124,7 +124,7 @@ static void link_up(struct opcua_source *opcua, const struct opcua_client *clien
     counter_set(opcua->host, 1 + opcua->turn.index);
     counter_set(opcua->refused, (int64_t)opcua_client_refused(client));
     store_link_up(opcua->base.store, opcua->base.index, clock_mono_ns());
-    log_info(opcua->base.log, "source %s: %s:%d: reading %zu nodes, %zu refused", config->id, config->hosts[opcua->turn.index],
+    log_info(opcua->base.log, "source %s: %s:%d: reading %zu nodes; the server refused %zu", config->id, config->hosts[opcua->turn.index],
              config->port, opcua->nodes.count - opcua_client_refused(client), opcua_client_refused(client));
     if (opcua_client_publishing_ms(client) > 0)
         log_warn(opcua->base.log, "source %s: the server publishes changes every %.0f ms instead of every %d ms", config->id,
@@ -140,8 +140,7 @@ static int make_up(struct opcua_source *opcua, struct opcua_client *client, int6
         return 0;
     *next_ns = now_ns + READ_NS;
     if (log_pace_take(&opcua->missed_pace, now_ns, more))
-        log_warn(opcua->base.log, "source %s: notifications from the server are missing: reading all nodes%s", opcua->base.config->id,
-                 more);
+        log_warn(opcua->base.log, "source %s: notifications from the server were lost: reading all nodes%s", opcua->base.config->id, more);
     return opcua_client_read(client, opcua->base.stop_fd, now_ns + SUBSCRIBE_NS, why);
 }
 

@@ -218,7 +218,7 @@ static int discover_at(struct opcua_client *client, const struct addrinfo *at, i
     bool is_6 = at->ai_family == AF_INET6;
     const char *path = client->source->opcua.path ? client->source->opcua.path : "";
     if (getnameinfo(at->ai_addr, at->ai_addrlen, address, sizeof(address), NULL, 0, NI_NUMERICHOST) != 0) {
-        snprintf(why, 200, "no address of %.100s can be used", client->host);
+        snprintf(why, 200, "none of the addresses of %.100s can be used", client->host);
         return -EHOSTUNREACH;
     }
     mem_free(client->numeric_url);

@@ -91,7 +91,7 @@ static bool read_pair(const char *certificate_path, const char *key_path, UA_Byt
     *key = taken(der, bytes);
     bool fits = pair && X509_check_private_key(*out, pair) == 1;
     if (!pair)
-        snprintf(why, 200, "%.120s has no private key, or one with a passphrase", key_path);
+        snprintf(why, 200, "%.120s has no private key, or one protected by a passphrase", key_path);
     else if (!fits)
         snprintf(why, 200, "%.80s is not the key of %.80s", key_path, certificate_path);
     EVP_PKEY_free(pair);
@@ -121,7 +121,7 @@ static bool trust_file(struct opcua_security *security, const char *path, char w
     X509_CRL *crl = file && !certificate && BIO_reset(file) == 0 ? read_crl(file) : NULL;
     bool good = certificate || crl;
     if (file && !good)
-        snprintf(why, 200, "%.120s has neither a certificate nor a revocation list", path);
+        snprintf(why, 200, "%.120s contains neither a certificate nor a revocation list", path);
     if (certificate)
         X509_STORE_add_cert(security->trusted, certificate);
     if (crl) {
@@ -161,7 +161,7 @@ static bool trust_folder(struct opcua_security *security, const char *path, char
         mem_free(file);
     }
     if (good && count == 0)
-        snprintf(why, 200, "%.120s has no certificate: no server is trusted", path);
+        snprintf(why, 200, "%.120s contains no certificate: no server is trusted", path);
     if (folder)
         closedir(folder);
     return good && count > 0;

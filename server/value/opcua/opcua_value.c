@@ -44,7 +44,7 @@ static bool read_number(const UA_Variant *variant, int element, struct stamped_v
     else if (is_scalar != (element < 0))
         snprintf(why, 200,
                  is_scalar ? "the value is not an array; remove the element in brackets from the address"
-                           : "the value is an array; add an element to the address, such as [0] in front");
+                           : "the value is an array; write the number of an element in brackets in front of the address, such as [0]");
     else if (!is_scalar && (size_t)element >= variant->arrayLength)
         snprintf(why, 200, "the array has %zu elements", variant->arrayLength);
     else if (!number_of(variant->type, (const char *)variant->data + (is_scalar ? 0 : (size_t)element) * variant->type->memSize,

@@ -157,8 +157,8 @@ test('--undo takes only versions of that list which differ in Place alone, and n
         write('other.csv.1', original);
         writeFileSync(join(other, 'tags.csv.1'), original);
         for (const [version, why] of [['tags.csv.90', /in more than `Place` \(line \d+\)/],
-            ['tags.csv.91', /does not contain the same tags/],
-            ['tags.csv.92', /equals the present tag list/], ['tags.csv.93', /does not contain the same tags/],
+            ['tags.csv.91', /does not list the same tags/],
+            ['tags.csv.92', /equals the present tag list/], ['tags.csv.93', /does not list the same tags/],
             ['other.csv.1', /not an earlier version of/], ['tags.csv', /not an earlier version of/],
             [plant.file, /not an earlier version of/],
             [join(other, 'tags.csv.1'), /not an earlier version of/]]) {

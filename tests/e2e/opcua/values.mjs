@@ -96,7 +96,7 @@ test('a notification that is lost is noticed, and all nodes are read', options, 
     await server.set('TI-2', 62);
     await until('TI-2', { ...good, value: 62 });
     await until('TI-1', { ...good, value: 61 });
-    await said(/source plc: notifications from the server are missing: reading all nodes/);
+    await said(/source plc: notifications from the server were lost: reading all nodes/);
     assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
 });
 
@@ -216,7 +216,7 @@ test('what cannot be is said of the plant file', options, () => {
     assert.match(refused('security: open'), /security: expected none, or a mapping/);
     assert.match(refused('security: none, login: x'), /not allowed with security: none, because the password would be readable/);
     assert.match(refused('security: none, deadband: 1, deadband_percent: 1'), /expected deadband or deadband_percent/);
-    assert.match(refused('security: none, topic: x'), /topic: has no meaning for an opcua source/);
+    assert.match(refused('security: none, topic: x'), /topic: has no effect for an opcua source/);
     assert.match(refused('security: none', 'A,ns=2;s=X,,,,,,,,,,,,,'), /namespace numbers can change/);
     assert.match(refused('security: none', 'A,s=X,,,,,,,,,,,,,'), /or the key namespace in the source/);
     assert.match(refused('security: none, namespace: urn:x', 'A,q=X,,,,,,,,,,,,,'),
