@@ -97,7 +97,7 @@ TEST(where_a_daemon_may_listen)
     params = (struct access_params){ .behind_proxy = true };
     assert_false(access_allowed_at(&params, true, &why));
     params.tokens_path = "tokens";
-    /* refused: behind a proxy, the host names under which pages are served must be listed, and none is yet */
+    /* refused: behind a proxy, the host names that serve the pages must be listed, and the list is still empty */
     assert_false(access_allowed_at(&params, true, &why));
     params.host_count = 1;
     assert_true(access_allowed_at(&params, true, &why));
@@ -225,7 +225,7 @@ TEST(only_the_named_networks_are_proxies)
         if (access_is_proxy(&params, others[i]))
             fail_msg("a proxy: %s", others[i]);
     assert_false(params.behind_proxy);
-    /* a proxy on this machine: from now on, requests from local addresses may come from anybody and are not trusted */
+    /* a proxy on this machine: from now on, local requests may carry anybody's traffic and are not trusted */
     assert_true(access_add_proxy(&params, "127.0.0.1") && params.behind_proxy);
     while (params.proxy_count < ACCESS_MAX_NAMES)
         assert_true(access_add_proxy(&params, "10.0.0.10"));

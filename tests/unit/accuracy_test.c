@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances along surfaces compared with an exact polyhedral solver, on shapes without a formula (shapes with one: surface_test.c). Each
-   shape is tested clean and with every fault of CAD exports. The truth is the solver's result on the clean shape, or on the union of
-   interpenetrating pipes. */
+/* Distances along surfaces, compared with an exact polyhedral solver on shapes that have no formula (surface_test.c has those
+   with one). Each shape is tested clean and with every fault of CAD exports. The reference is the solver's result on the clean
+   shape, or on the union of interpenetrating pipes. */
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
@@ -27,15 +27,15 @@ static struct oracle_mesh mesh_of(const struct cad *cad, size_t first_vertex, si
                                  triangle_count };
 }
 
-/* Source 0 is a vertex, source 1 lies inside a triangle. With PLANTCAST_LONG=1 both are tried, by default one of them, alternating by
-   shape. */
+/* Source 0 is a vertex, source 1 lies inside a triangle. PLANTCAST_LONG=1 tests both; the default run tests one of them,
+   alternating by shape. */
 static bool is_source_tried(int row, int source)
 {
     return sweep_takes(row, source, SOURCES);
 }
 
-/* Returns the number of grid cells per direction: `whole` with PLANTCAST_LONG=1, half of it by default, which makes the solver five times
-   faster. */
+/* Returns the number of grid cells per direction: `whole` with PLANTCAST_LONG=1, otherwise half of it, which makes the solver
+   five times faster. */
 static int cells(int whole)
 {
     return sweep(whole, whole / 2);
@@ -94,7 +94,7 @@ static void score(const char *name, int fault, int source, const struct distance
     assert_true(worst <= WORST_MAX);
 }
 
-/* Tests the clean shape and each fault. The default run takes one fault per shape, a different one for each shape. */
+/* Tests the clean shape and each fault. The default run tests only one fault per shape, a different one for each shape. */
 static void test_faults(const char *name, int row, const struct cad *clean, const struct oracle_mesh *outer)
 {
     struct distance_truth truth = { 0 };

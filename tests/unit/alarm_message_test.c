@@ -233,7 +233,7 @@ CASE(the_journal_is_read_by_pages)
     text_finish(&out);
 }
 
-/* Starts the alarm service again after a change of the first tag's unit and limit; NULL: the unit stays. */
+/* Restarts the alarm service after a change of the first tag's limit and unit; NULL keeps the unit. */
 static void restart_in(struct alarm_message_setup *s, const char *unit, double limit)
 {
     alarm_service_stop(&s->alarm_service);
@@ -246,7 +246,7 @@ static void restart_in(struct alarm_message_setup *s, const char *unit, double l
         .log = s->log, .counters = test_counters(), .plant = s->plant, .store = s->store, .folder = s->folder, .keep_days = 400 });
 }
 
-/* Asserts limit and unit of the journal's oldest row, and the value with which the present alarm H was raised. */
+/* Asserts the limit and unit in the journal's oldest row, and the value at which the current alarm H was raised. */
 static void expect_row(struct alarm_message_setup *s, double limit, const char *unit, double value)
 {
     struct alarm_query q;
@@ -282,7 +282,7 @@ static void make_older(struct alarm_message_setup *s)
     sqlite3_close(db);
 }
 
-/* The unit of a tag changes: what the journal has in the old unit is converted, or keeps its unit, and never appears in the new one. */
+/* The unit of a tag changes: old journal rows are converted or keep their unit, and an old value never appears with the new unit. */
 CASE(the_journal_keeps_the_unit_of_the_time)
 {
     s->plant->tags[0].alarms.limits[LIMIT_HH] = NAN;

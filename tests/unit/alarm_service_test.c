@@ -278,8 +278,8 @@ static void mirror(void *arg, const struct journal_entry *row)
     alarm_service_mirror_row(arg, row);
 }
 
-/* The clock was an hour ahead when the journal's second row was written, the last one that the standby has: rows written later have earlier
-   times, and must still be sent. */
+/* The clock was an hour ahead when the journal's second row was written, the last one that the standby has. Later rows
+   therefore have earlier times, and must still be sent. */
 CASE(a_returning_standby_gets_each_row_that_it_lacks_once)
 {
     int64_t now_ns = clock_utc_ns() / 1000 * 1000;

@@ -9,8 +9,8 @@
 
 /* --- the table -------------------------------------------------------------------------------------------------------------- */
 
-/* Names of the states of a local alarm: the status, "+a" if the cause is active although the status does not show it, "+l" if latched,
-   and any further reasons for which the alarm is set aside. */
+/* Names of the states of a local alarm: the status, "+a" if the cause is active although the status does not show it, "+l" if
+   latched, and any further reasons why the alarm is set aside. */
 static const struct {
     const char *name, *word;
     struct alarm_state state;
@@ -37,7 +37,7 @@ static const struct {
 };
 enum { STATE_COUNT = sizeof(states) / sizeof(states[0]), ROWS = 18 };
 
-/* Transition table of an alarm that does not latch. Columns follow enum alarm_event. "=": the state stays; "-": the event is refused. */
+/* Transition table of an alarm that does not latch. Columns follow enum alarm_event. "=": no change; "-": the event is refused. */
 static const char *const table[ROWS][1 + ALARM_EVENTS] = {
     /* columns: from state; raise, clear, acknowledge, reset, shelve, unshelve, suppress, unsuppress, take out of service, return to
        service, carry, call */
@@ -147,11 +147,11 @@ TEST(a_deadband_lies_inside_its_limit)
     assert_int_equal(condition_side(ALARM_L, 0, 1, 1), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_LL, 0, 1, 1.001), CONDITION_CLEAR);
     assert_int_equal(condition_side(ALARM_LL, -5, 0, -4.999), CONDITION_CLEAR);
-    /* equal to the limit in the device, but not in 64 bits: a 32-bit float, and a scaled count */
+    /* equals the limit in the device but not as a double: a 32-bit float, and a scaled count */
     assert_int_equal(condition_side(ALARM_H, 0.7, 0, (double)0.7F), CONDITION_BEYOND);
     assert_int_equal(condition_side(ALARM_L, 55.5, 0, 0.555 * 100), CONDITION_BEYOND);
     assert_int_equal(condition_side(ALARM_H, 0.7, 0, 0.699999), CONDITION_CLEAR);
-    /* a limit of 60 °F with a deadband of 10 °F, and a value of 50 °F, all converted to °C */
+    /* a limit of 60 °F, a deadband of 10 °F and a value of 50 °F, all converted to °C */
     const double factor = 5 / 9.0, offset = 459.67 * 5 / 9 - 273.15;
     assert_int_equal(condition_side(ALARM_H, 60 * factor + offset, 10 * factor, 50 * factor + offset), CONDITION_BETWEEN);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms of a plant: driven by samples, time and operators; in all three alarm modes; after a restart and after a reload. */
+/* Alarms of a plant, driven by samples, time and operators, in all three alarm modes, and after a restart or a reload. */
 #include "tests/support/test.h"
 
 #include "alarm/alarms.h"
@@ -144,12 +144,12 @@ TEST(delays_are_monotonic_and_exact)
     begin(&s, ALARMS_LOCAL);
     hear(&s, 9, 0, 50, QUALITY_GOOD);
     hear(&s, 10, 1, 6, QUALITY_GOOD);
-    /* the wall clock jumps forward by an hour, which must not count as time that the limit was exceeded */
+    /* the wall clock jumps forward by an hour; this hour must not count towards the delay */
     s.snapshot->taken_utc_ns = UTC + 4000 * S;
     s.snapshot->taken_mono_ns = 11 * S;
     alarms_tick(s.alarms, s.snapshot);
     assert_told(&s, "");
-    tick(&s, 30); /* the next tick comes late: the alarm gets the time at which its delay of 2 s ended, not the time of the tick */
+    tick(&s, 30); /* the next tick comes late: the alarm carries the time at which its 2 s delay ended, not the time of the tick */
     assert_told(&s, "12 PT.H raise: normal > unacknowledged\n");
     end(&s);
 }
@@ -163,7 +163,7 @@ TEST(what_is_bad_is_held_and_says_so)
     s.log[0] = 0;
     hear(&s, 2, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     assert_told(&s, "2 TT.BAD raise: normal > unacknowledged\n");
-    /* the device still answers for another tag, so the failed sensor's tag has an alarm of its own and keeps its limit alarm */
+    /* the device still answers for another tag, so the failed sensor's tag gets its own alarm and keeps its limit alarm */
     hear(&s, 2, 2, 0, QUALITY_GOOD);
     assert_string_equal(word(&s, 0, ALARM_H), "acknowledged");
     assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
@@ -174,7 +174,7 @@ TEST(what_is_bad_is_held_and_says_so)
     s.snapshot->readings[0].quality = QUALITY_BAD_COMMUNICATION_ERROR; /* the reading went stale without an event */
     tick(&s, 9);
     assert_told(&s, "9 TT.BAD raise: returned > unacknowledged\n");
-    /* A tag that never had a reading has no alarm at first; it gets one once its stale time has passed. */
+    /* A tag that never had a reading has no alarm at first. It gets one when its stale time has passed. */
     tick(&s, 10);
     assert_told(&s, "");
     tick(&s, 14);
@@ -386,8 +386,8 @@ TEST(what_is_there_stands_before_what_has_gone)
     end(&s);
 }
 
-/* Random event sequences: each reported transition starts from the state in which the previous one ended, and the highest alarm is
-   always the gravest one. */
+/* Random event sequences: each reported transition starts from the state in which the previous one ended, and the alarm
+   reported as highest is always the most severe one. */
 TEST(no_sequence_tells_a_contradiction)
 {
     static const uint32_t bad[12] = {
@@ -473,13 +473,13 @@ TEST(a_lost_device_is_one_alarm)
                     "20 TT.BAD clear: suppressed > normal\n");
     tick(&s, 24);
     assert_told(&s, "");
-    tick(&s, 25); /* PT has an alarm of its own: its device answers, but PT got no reading within its stale time */
+    tick(&s, 25); /* PT gets its own alarm: its device answers, but PT got no reading within its stale time */
     assert_told(&s, "25 PT.BAD call: suppressed > unacknowledged\n");
     assert_int_equal(s.told[1], ALARM_BAD);
     end(&s);
 }
 
-/* Tags go stale one after the other: the first tag's alarm is merged into the device's alarm, unless somebody has already seen it. */
+/* Tags go stale one after another: the first tag's alarm is merged into the device's alarm unless somebody has already acknowledged it. */
 TEST(those_that_went_before_are_carried_too)
 {
     for (int seen = 0; seen < 2; seen++) {
@@ -499,8 +499,7 @@ TEST(those_that_went_before_are_carried_too)
     }
 }
 
-/* A gateway that keeps answering for a stopped controller raises one alarm; a sensor that fails while all others are read raises its
-   own. */
+/* A gateway that still answers for a stopped controller raises one alarm. A sensor that fails while all others are read raises its own. */
 TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
 {
     struct stage s;
@@ -510,7 +509,7 @@ TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
     hear(&s, 3, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     s.log[0] = 0;
     set_all(&s, QUALITY_BAD_DEVICE_FAILURE);
-    /* when the device fails, this reading keeps the reason for Bad that it already had: its sensor had failed before */
+    /* when the device fails, this reading stays Bad for its earlier reason, a failed sensor */
     s.snapshot->readings[0].quality = QUALITY_BAD_SENSOR_FAILURE;
     tick(&s, 4);
     tick(&s, 9);
@@ -540,8 +539,7 @@ TEST(units_are_devices_of_their_own)
     end(&s);
 }
 
-/* A restart and a reload while a device is lost: no alarm is raised again, and the alarms that the device's alarm carried are still
-   carried. */
+/* A restart and a reload while a device is lost: no alarm is raised again, and the device's alarm still covers the same tag alarms. */
 TEST(what_a_device_carries_outlives_us)
 {
     struct stage s, next;
@@ -583,7 +581,7 @@ TEST(info_bits_do_not_hide_a_quality)
     assert_int_equal(device_status_of(QUALITY_UNCERTAIN_UNITS_EXCEEDED | 0x0500), DEVICE_USABLE);
 }
 
-/* A device whose tags have no limits still gets an alarm when it is lost: nothing else would report the loss. */
+/* Losing a device raises an alarm even if its tags have no limits: nothing else would report the loss. */
 TEST(a_device_without_limits_has_an_alarm)
 {
     struct stage s = { .plant = NULL };
@@ -611,7 +609,7 @@ TEST(a_device_without_limits_has_an_alarm)
     end(&s);
 }
 
-/* A broker or server that sends changes only: its tags keep their last values while it is gone, so the source itself needs an alarm. */
+/* A broker or server that sends only changes: its tags keep their last values while it is gone, so the source itself needs an alarm. */
 TEST(a_lost_source_that_never_gets_stale_has_an_alarm)
 {
     struct stage s = { .plant = NULL };

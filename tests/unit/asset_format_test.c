@@ -112,7 +112,7 @@ static void refused_sealed(struct asset_bytes *f, const char *reason)
     refused(f, f->size, reason);
 }
 
-/* Asserts that the good file is refused after a change of a section, which has elements of `type`, or of the header. */
+/* Asserts that the valid file is refused after a change to the header, or to a section whose elements are of `type`. */
 #define REFUSED(section, type, change, reason)                                                                                             \
     do {                                                                                                                                   \
         struct asset_bytes changed = build(&good);                                                                                         \
@@ -202,7 +202,7 @@ TEST(the_layout_is_pinned)
     assert_int_equal(ASSET_SECTION_COUNT, 15);
     struct asset_bytes f = build(&good);
     assert_memory_equal(f.bytes, "PLCASSET\6\0\0\0\x68\1\0\0", 16);
-    /* hash of the file without its header: if it changes, the format has changed and needs a new version */
+    /* hash of the file without its header: if it changes, the format has changed and its version must be raised */
     assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full);
     free(f.bytes);
 }
@@ -329,7 +329,7 @@ static float unit(uint32_t *seed)
     return (float)(*seed >> 8) / 16777216.0f;
 }
 
-/* Reference: whether all triangles of a cluster face away from the eye; each triangle is tested in doubles. */
+/* Reference: returns whether all triangles of a cluster face away from the eye, computed per triangle in doubles. */
 static bool backs_only(const float (*p)[3], const uint32_t *v, uint32_t count, const float eye[3])
 {
     for (uint32_t i = 0; i < count; i += 3) {
@@ -407,8 +407,8 @@ TEST(wrong_sensors_are_refused)
     REFUSED(ASSET_SENSORS, struct asset_sensor, [1].nearest_vertex = 4, "sensor 1: nearest vertex 4 of 4");
 }
 
-/* Every code decodes to a larger distance than the code before, and each distance gets the nearest code, up to half-way to the
-   neighbours. */
+/* Each code decodes to a larger distance than the code before. Each distance gets the nearest code, up to half-way to the
+   neighbouring codes. */
 TEST(distances_have_16_bits)
 {
     assert_true(asset_distance_of(0) == 0 && asset_distance_of(ASSET_DISTANCE_NONE) == INFINITY);
@@ -427,7 +427,7 @@ TEST(distances_have_16_bits)
 
 enum { MANY = 70, FAR = 600, BLOCKS = 3 }; /* number of sensors; of vertices; of blocks of vertices */
 
-/* Returns an asset of FAR vertices along a line and of sensors without distances. FAR is more than one block of distances holds. */
+/* Returns an asset with FAR vertices along a line, and with sensors but no distances. FAR exceeds one block of distances. */
 static struct asset_parts long_line(uint32_t sensor_count)
 {
     static float at[FAR][3], up[FAR][3];
@@ -484,7 +484,8 @@ struct packed_file {
     uint64_t offsets[BLOCKS + 1];
 };
 
-/* Makes distances that grow along a line, with an even error, and jumps unless error_m is 0. Some vertices have no path to sensors 3, 9. */
+/* Makes distances that grow along a line with a uniform error, and with jumps unless error_m is 0. Some vertices have no path
+   to sensors 3 and 9. */
 static void make_codes(struct packed_file *packed, double error_m)
 {
     for (size_t s = 0; s < MANY; s++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the asset file fuzzer and random mutations of them. `asset_fuzz_test --write FOLDER` writes the seeds again,
-   which a new version of the format requires. */
+/* Replays the seeds of the asset file fuzzer and random mutations of them. A new version of the format needs new seeds:
+   `asset_fuzz_test --write FOLDER` writes them. */
 #include "tests/fuzz/asset_fuzz.c"
 
 #include "tests/support/test.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Atomic replacement of files: what readers see meanwhile, what a failure leaves, and that existing files and links are never written
-   through. */
+/* Atomic replacement of files: what readers see during it, what a failure leaves behind, and that it never writes through
+   existing files and links. */
 #include "base/files/atomic_file.h"
 
 #include "tests/support/test.h"

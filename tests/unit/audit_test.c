@@ -14,7 +14,7 @@
 static const int64_t AT_US = INT64_C(1795000000000000);
 static const struct audit_entry ENTRY = { .event = "alarm", .result = "done", .who = "Kim \"A\"", .what = "acknowledge TT-101 HH" };
 
-/* Appends `count` lines as one run of a daemon does. Returns the finding about the existing file, or NULL; free with mem_free. */
+/* Appends `count` lines as one run of a daemon would. Returns the finding about the existing file, or NULL; free with mem_free. */
 static char *write_lines(const char *path, int count, size_t most_bytes)
 {
     struct audit_file file;
@@ -113,7 +113,7 @@ TEST(test_lines_removed_and_moved)
     memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
     put(path, copy, count - (starts[3] - starts[2]));
     expect_fault(path, NULL, ":3: lines before this line were removed or inserted");
-    /* a file without its first line is valid, because older lines may be in another file; the report only mentions them */
+    /* a file without its first line is valid, because earlier lines may be in another file; the report only mentions them */
     struct audit_chain known, none;
     struct audit_report report;
     audit_chain_init(&none);
@@ -145,7 +145,7 @@ TEST(test_lines_removed_and_moved)
     mem_free(bytes);
 }
 
-/* A daemon that starts with a truncated trail reports the gap, and the gap stays visible in the chain. */
+/* A daemon that starts with a truncated audit trail reports the gap, and the hash chain keeps showing it. */
 TEST(test_next_start)
 {
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *finding;
@@ -180,7 +180,7 @@ TEST(test_rotation)
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *full = test_printf("%s.000000000004", path), *later;
     struct text lines = { 0 };
     struct audit_file file;
-    /* lines of some 280 bytes in files of at most 1,000 bytes, so the trail goes on in new files */
+    /* lines of about 280 bytes in files of at most 1,000 bytes, so that the trail continues in new files */
     assert_null(write_lines(path, 10, 1000));
     assert_int_equal(access(full, F_OK), 0);
     expect_good(path, 3, 10);
@@ -213,7 +213,7 @@ TEST(test_rotation)
     text_finish(&lines);
 }
 
-/* If the file may not grow, no part of a line is written; once it may grow again, no line is missing. */
+/* While the file cannot grow, no partial line is written; once it can grow again, no line is missing. */
 TEST(test_full_disk)
 {
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *later;
@@ -240,8 +240,8 @@ TEST(test_full_disk)
     text_finish(&lines);
 }
 
-/* Writing a row fails and the next succeeds, as on a disk that is full for a moment: the caller waiting for the second row must still
-   get the error. */
+/* One row cannot be written and the next can, as on a disk that is full for a moment: the caller waiting for the second row
+   must still get the error. */
 TEST(test_an_error_outlasts_the_next_success)
 {
     struct settling settling = { .queued = 0 };

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models and sensors that are difficult for the field, prepared by plantcast-prep. For any readings the finest level must be true to one
-   colour step (1/255 of the range), or the report must name the asset and its error. All shapes are plates, where a formula gives the
-   truth. Plates and points are random, by default from one seed; of 61 other seeds, 114 and 139 exceeded a bound slightly. */
+/* Models and sensors that are difficult for the field, prepared by plantcast-prep. For any readings, the finest level must be
+   within one colour step (1/255 of the range), or the report must name the asset and its error. All shapes are plates, whose
+   exact values have a formula. Plates and points are random, by default from one seed; of 61 other seeds, 114 and 139 exceeded
+   a bound slightly. */
 #include "tests/support/test.h"
 #include <jansson.h>
 
@@ -16,7 +17,7 @@
 #define FEW_AT_RIMS 1000  /* where reaches end, */
 #define MOST_STEPS 4.0    /* largest allowed error of any point, in colour steps */
 #define ROUNDING 1.1      /* allowance in steps, because distances are floats */
-/* the error that the preparation's report names was found at sample points; between them the error may be this many times as large */
+/* the report's error is measured at sample points; between them the error may be this many times as large */
 #define NAMED 2.0
 #define LEAST_M 1e-5      /* metres; a sensor nearer than this has all the weight, see server/field */
 #define RIM_OF_REACH 0.05 /* points this near to where the data ends are not compared; a share of that distance */
@@ -126,14 +127,14 @@ static void write_plant(const struct awkward *a)
 
 /* errors of an asset's finest level that the preparation's report names, in colour steps; 0: not named */
 struct named {
-    /* worth_a_look: error in the report's text; beside_rims: error in the report's table, which includes edges too short to cut and places
-       where the data ends */
+    /* worth_a_look: error in the report's text; beside_rims: error in the report's table, which includes edges too short to cut
+       and edges of the data */
     double worth_a_look, beside_rims;
     double by_power;                  /* error along the surface with a high power of distances */
 };
 
-/* Returns the error in colour steps that the preparation's report names for an asset with a high power of distances along the surface; 0:
-   none named. */
+/* Returns the error in colour steps that the report names for a field that raises distances along the surface to a high power;
+   0: none named. */
 static double steps_by_power(const json_t *look_at)
 {
     size_t i;
@@ -177,7 +178,7 @@ static double nearest_m(const struct awkward *a, const double *distance_m)
     return near_m;
 }
 
-/* Shepard weights by distance, as server/field defines them. If no sensor reaches the point, the nearest has all the weight. */
+/* Shepard weights by distance, as server/field defines them. If no sensor reaches the point, the nearest sensor gets all the weight. */
 static void weights_of(const struct awkward *a, const double *distance_m, double *weights)
 {
     double near_m = fmax(nearest_m(a, distance_m), LEAST_M), sum = 0;
@@ -244,7 +245,7 @@ static const uint32_t *triangle_somewhere(const struct asset_view *view, const d
     return view->indices + finest(view)->first_index + 3 * low;
 }
 
-/* Returns the largest error for any readings at a random point of the triangle; 0 where there is no data, or almost none. */
+/* Returns the largest error that any readings can cause at a random point of the triangle; 0 where there is no data, or almost none. */
 static double error_in(const struct awkward *a, const struct asset_view *view, const uint32_t v[3], bool geodesic)
 {
     static double at_corner[MOST], weights[MOST], shown[MOST], truth[MOST];
@@ -389,7 +390,7 @@ TEST_WITH(hundreds_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tea
     assert_true(assert_true_or_named(&a).worth_a_look > 1);
 }
 
-/* Far more sensors than triangles: too many to compare each with the truth, but the report must name the asset. */
+/* Far too many sensors for nine triangles: comparing all of them would take too long, but the report must name the asset. */
 TEST_WITH(thousands_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };

@@ -124,7 +124,7 @@ TEST(findings_come_in_the_order_of_the_text)
     assert_int_equal(diag.count, 0);
 }
 
-/* 64 equal warnings about 64 tags are printed as one line; a warning that occurs three times and every error stay separate. */
+/* 64 equal warnings about 64 tags are printed as one line. A warning that occurs only three times, and every error, is printed in full. */
 TEST(many_warnings_alike_are_one)
 {
     struct diag diag = { 0 };

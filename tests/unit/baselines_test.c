@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baselines: which are kept, replaced and forgotten, and that a reader's baseline stays valid while it is held. */
+/* Baselines: which ones are kept, replaced and deleted, and that a reader's baseline stays valid while it is held. */
 #include "value/baselines.h"
 
 #include "tests/support/test.h"

@@ -7,7 +7,7 @@
 #include "tests/support/surface_case.h"
 
 #define POINTS 400
-/* points count as equally near if their distances differ by less than this share of the coordinates, because rounding decides */
+/* distances that differ by less than this fraction of the coordinates count as equal, because rounding decides */
 #define FAR 1e-9
 
 /* Makes a mesh of triangles on a lattice of points, many of which share a corner or an edge, and loose triangles of all sizes and
@@ -56,7 +56,7 @@ static double distance_to_edge(const double p[3], const double a[3], const doubl
     return vec_distance(p, at);
 }
 
-/* Returns the distance from p to a triangle: to each of its three edges, and to its plane if p projects inside. */
+/* Reference: returns the distance from p to a triangle, from its three edges and, if p projects inside, from its plane. */
 static double distance_plainly(const double p[3], const double at[3][3])
 {
     double n[3], found_m = INFINITY, ap[3];
@@ -74,7 +74,7 @@ static double distance_plainly(const double p[3], const double at[3][3])
     return inside ? fmin(found_m, fabs(vec_dot(ap, n)) / vec_length(n)) : found_m;
 }
 
-/* Triangles from well shaped to 10,000 times as long as high, blunt and acute; points from close by to a hundred sizes away. */
+/* Triangles from well shaped to 10,000 times as long as high, obtuse and acute; points from close by to a hundred triangle sizes away. */
 TEST(test_nearest_of_a_triangle)
 {
     for (int i = 0; i < 200000; i++) {
@@ -114,7 +114,8 @@ static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], c
     return best;
 }
 
-/* Checks that bvh finds a triangle if one exists within the limit, whichever is tried first, and never one that is too far or excluded. */
+/* Checks that the BVH finds a triangle within the limit if one exists, in any search order, and never one that is too far away
+   or excluded. */
 static void check_any(const struct trimesh *mesh, const struct bvh *bvh, const double point[3], const uint32_t *third, double limit_m,
                       size_t first, bool any)
 {
@@ -168,8 +169,8 @@ static void mark_hit(void *arg, uint32_t tri, double t)
     mark(arg, tri);
 }
 
-/* Ray against triangle by Cramer's rule. Returns 0 or 1 if the ray is clearly outside or inside; -1: so near to an edge or to the origin
-   that rounding decides. */
+/* Reference: intersects a ray with a triangle by Cramer's rule. Returns 1: hit; 0: miss; -1: so near to an edge or to the ray's
+   origin that rounding decides. */
 static int meets_slowly(const struct trimesh *mesh, uint32_t tri, const double from[3], const double way[3])
 {
     const uint32_t *v = mesh->tris[tri];
@@ -244,7 +245,7 @@ TEST(test_what_rays_and_boxes_meet)
     assert_true(met[0] > 100000 && met[1] > 1000);
 }
 
-/* Triangle counts that just fill, just do not fill and just exceed the nodes; meshes far from the origin, where floats are coarse;
+/* Triangle counts that exactly fill the nodes, or are one less or more; meshes far from the origin, where floats are coarse;
    points far away, on corners and on planes. */
 TEST(test_finds_the_nearest)
 {
@@ -330,7 +331,7 @@ TEST(test_equally_near_ones_go_by_number)
     trimesh_finish(&mesh);
 }
 
-/* Segments along a side of a triangle: in exact arithmetic they never cross the triangle, but rounding moves them either way. */
+/* Segments parallel to a side of a triangle: in exact arithmetic they never cross the triangle, but rounding moves them either way. */
 TEST(test_a_parallel_segment_crosses_nothing)
 {
     size_t crossed = 0;

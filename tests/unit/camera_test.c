@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cameras: which parameters they refuse, how they fit a box, and their matrices compared with projection by hand. */
+/* Cameras: which parameters they refuse, how they fit a box, and their matrices compared with a projection by hand. */
 #include "scene/camera.h"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Detection of the encoding of short texts in tag lists and drawings: counts how many of each kind are recognised. */
+/* Detection of the encoding of short texts in tag lists and drawings; counts the correctly recognised texts of each encoding. */
 #include "base/text/charset.h"
 
 #include "tests/support/test.h"
@@ -152,8 +152,8 @@ TEST(test_unsure)
     mem_free(said);
 }
 
-/* Encodings that write an accent after its letter hold the last letter back until the end. Losing it would turn PT-10A into PT-10,
-   another tag. */
+/* Where an encoding stores an accent after its letter, the decoder holds the last letter back until the end. Losing it would
+   turn PT-10A into PT-10, another tag. */
 TEST(test_last_letter)
 {
     static const struct {

@@ -250,8 +250,8 @@ static bool finds_memory(void)
     return opens(path, O_RDONLY);
 }
 
-/* Bits that say which attempts of a confined process succeeded: reading a forbidden file, emptying one, sending a signal to its parent,
-   changing other forbidden files or folders, and every access that its confinement allows. */
+/* Bits for what a confined process managed to do: read a forbidden file, empty one, signal its parent, change other forbidden
+   files or folders, and everything that it is allowed to do. */
 enum { READ_SECRET = 1, EMPTY_SECRET = 2, SIGNAL = 4, ALTER = 8, ALLOWED = 16 };
 
 static int attempt_all(void)
@@ -298,8 +298,8 @@ static void lay_out(const char *folder)
     assert_true((mkdir(own, 0700) == 0 || errno == EEXIST) && (mkdir(away, 0700) == 0 || errno == EEXIST));
 }
 
-/* With each version (ABI) of Landlock, a confined process that only reads can do nothing forbidden. A confined command can do what that
-   version cannot forbid and the log names, and no more. */
+/* With each version (ABI) of Landlock: a confined process that only reads can do nothing forbidden. A confined command can do
+   only what that version cannot prevent, and the log names it. */
 TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
 {
     char lacks[CONFINE_LACKS_BYTES], *folder = temp_folder();
@@ -319,7 +319,7 @@ TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
         skip();
 }
 
-/* Returns the folder of a new cgroup, delegated as systemd does it; NULL if this machine has no cgroup v2 with memory limits. */
+/* Returns the folder of a new cgroup, delegated as by systemd; NULL if this machine has no cgroup v2 with memory limits. */
 static const char *delegated_cgroup(void)
 {
     static const char *const mounts[] = { "/sys/fs/cgroup", "/sys/fs/cgroup/unified" };
@@ -348,7 +348,7 @@ static int use_cgroup(const char *service)
     if (!(procs = fopen(name, "w")) || fprintf(procs, "0") != 1 || fclose(procs) != 0)
         return 1;
     if (!cgroup_create("reader", room, 8, &path) || path)
-        return 2; /* a group for child processes is refused as long as the daemon has not moved itself into a group of its own */
+        return 2; /* a cgroup for child processes is refused until the daemon has moved itself into a cgroup of its own */
     if (!cgroup_divide() || !cgroup_divide() || !cgroup_create("reader", (size_t)64 << 20, 8, &path) || !path)
         return 3;
     if (cgroup_add(path, 1 << 30) || errno != ESRCH)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances by the heat method on a point cloud, compared with formulas for spheres, tubes and plates; also shows where the method errs. */
+/* Distances by the heat method on a point cloud, compared with formulas for spheres, tubes and plates; also shows the method's errors. */
 #include "tests/support/test.h"
 
 #include "preprocess/influence/cloud_heat.h"
@@ -87,7 +87,7 @@ TEST(test_tube)
     finish(&made);
 }
 
-/* Two plates that do not touch. If they are closer than the cloud resolves, heat passes between them, which the mesh prevents. */
+/* Two plates that do not touch. If their gap is smaller than the cloud resolves, heat passes between them, which the mesh prevents. */
 static void add_plate(struct cad *cad, double z_m)
 {
     uint32_t first = (uint32_t)cad->vertex_count;
@@ -123,7 +123,7 @@ TEST(test_reaches_through_what_is_thin)
     }
 }
 
-/* A ribbon folded to and fro: the distance along it is far longer than its bounding box, and the heat must not be lost on the way. */
+/* A ribbon folded back and forth: the distance along it far exceeds its bounding box, and the heat must not vanish on the way. */
 TEST(test_serpentine)
 {
     struct made made = { 0 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clusters of a torus with two materials: no triangle is lost, clusters are small, and views from outside cull about the expected
-   number. */
+/* Clusters of a torus with two materials: no triangle is lost, clusters are small, and the expected number is culled in views
+   from outside. */
 #include "preprocess/levels/clusters.h"
 
 #include "tests/support/test.h"

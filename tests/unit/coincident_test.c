@@ -39,7 +39,7 @@ TEST(those_with_sensors_are_seen)
     toy_destroy(&toy);
 }
 
-/* Assets side by side on one plane, intersecting, or close before each other do not coincide: depth alone decides. */
+/* Assets side by side in one plane, intersecting, or close in front of each other do not coincide: only depth decides. */
 TEST(others_do_not_coincide)
 {
     static const double low[3][3] = { { 1, 0, 0 }, { 0.5, 0.5, 0.5 }, { 0.2, 0.2, 0.2 } };
@@ -55,7 +55,7 @@ TEST(others_do_not_coincide)
     }
 }
 
-/* Rays from many directions onto the shared face: whatever the order in the loop, the asset in front is hit. */
+/* Rays from many directions onto the shared face hit the asset in front, whatever the order of the assets. */
 TEST(rays_hit_what_is_seen)
 {
     for (int parallel = 0; parallel < 2; parallel++)

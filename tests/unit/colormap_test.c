@@ -139,7 +139,7 @@ TEST(test_maps_for_relief_leave_room_for_shading)
         }
 }
 
-/* Tests that shading is not read as value: L* is changed by up to 7 and the value is read back from the nearest legend colour. */
+/* Shading must not be mistaken for a value: L* is changed by up to 7, and the value is read back from the nearest legend colour. */
 TEST(test_relief_is_read_back_through_shading)
 {
     const struct colormap *map = colormap_at(NULL, 0);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bodies that touch face to face and bodies that pass through themselves: distances compared with an exact solver on the surface of
-   their union. */
+/* Bodies that touch face to face and bodies that intersect themselves: distances compared with an exact solver on the surface
+   of their union. */
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
@@ -56,7 +56,7 @@ static void outer_finish(struct outer *outer)
     mem_free(outer->of_vertex);
 }
 
-/* Breaks the shape with `fault`, turns it, and compares the distances with the truth. Returns how many of its vertices are hidden. */
+/* Adds `fault` to the shape, rotates it, and compares the distances with the exact ones. Returns how many of its vertices are hidden. */
 static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault)
 {
     struct cad broken;
@@ -101,7 +101,7 @@ static size_t covered(const struct outer *outer, const struct cad *shape)
     return count;
 }
 
-/* Counts the triangle corners at covered vertices: in a triangle soup each corner is a vertex of its own. */
+/* Counts the triangle corners at covered vertices. In a triangle soup each corner is a separate vertex. */
 static size_t covered_corners(const struct outer *outer, const struct cad *shape)
 {
     size_t count = 0;
@@ -110,14 +110,14 @@ static size_t covered_corners(const struct outer *outer, const struct cad *shape
     return count;
 }
 
-/* Returns whether to test this fault: the default run takes the clean shape and one fault per pair, a different one for each pair. */
+/* Returns whether to test this fault: the default run tests the clean shape and one fault per pair, a different one for each pair. */
 static bool is_tried(int row, int fault)
 {
     return fault == CAD_CLEAN || sweep_takes(row, fault, 5);
 }
 
-/* Tests two bodies with a gap in z between them; the truth is computed without the gap. Vertices on the inside must be hidden, vertices
-   outside must not. */
+/* Tests two bodies with a gap in z between them, against exact distances without the gap. Inner vertices must be hidden, outer
+   vertices must not. */
 static void test_pair(const char *name, int row, const struct cad *below, const struct cad *above, double gap)
 {
     struct cad both = { 0 };
@@ -181,8 +181,8 @@ TEST(a_flange_lies_on_a_plate)
     cad_finish(&pipe);
 }
 
-/* A gap in one body overlaps a gap in the other, and a vertex at the gap lies just on the other body's edge. Inserting the vertex into
-   that edge would join the two bodies. The rows are seeds that once failed so. */
+/* A gap in one body overlaps a gap in the other, and a vertex at the gap lies exactly on the other body's edge. Inserting the
+   vertex into that edge would join the two bodies. The rows are seeds that once failed in this way. */
 TEST(gaps_of_a_flange_and_its_plate_run_over_each_other)
 {
     static const struct {
@@ -217,8 +217,8 @@ static void make_boxes(struct cad *below, struct cad *above, bool stacked)
     move(above, 0, 0, 0, (double)(10 * 0.05f));
 }
 
-/* A box stands on another one of the same width, so that both have the same vertices where they touch. Triangles there may coincide or have
-   different diagonals. */
+/* A box stands on another one of the same width, so both have the same vertices where they touch. Triangles there may coincide
+   or have different diagonals. */
 TEST(boxes_are_stacked)
 {
     struct cad below = { 0 }, above = { 0 };
@@ -245,7 +245,7 @@ struct contact_case {
     uint64_t shape, faults;
 };
 
-/* Tries pairs of boxes that are given by seeds of the random shapes and faults; the default run takes every third pair. */
+/* Tests pairs of boxes given by seeds of random shapes and faults; the default run tests every third pair. */
 static void score_drawn(const char *name, int row, const struct contact_case *drawn, size_t count, enum cad_fault fault)
 {
     const struct cad_random was = chance;
@@ -269,8 +269,9 @@ static void score_drawn(const char *name, int row, const struct contact_case *dr
     chance = was;
 }
 
-/* Seeds of boxes with gaps where a slit at the edge of both boxes once stayed open: along the edge; behind faces that no query visited; and
-   where the edge of a gap in the lower box fitted the upper box and was joined to it, so that no face was hidden. */
+/* Seeds of boxes with gaps where a slit at the edge of both boxes once stayed open: along the edge; behind faces that no query
+   visited; and where the rim of a gap in the lower box fitted the upper box and was joined to it, so that no face was hidden.
+   */
 TEST(gaps_at_a_rim_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },
@@ -281,8 +282,9 @@ TEST(gaps_at_a_rim_that_boxes_share)
     score_drawn("boxes, gaps at their rim", 0, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_GAPS);
 }
 
-/* Seeds where both bodies were cut on one side of an edge at different points: the two vertices were joined and the other side of the
-   edge stayed open. Last row: three of four faces were cut at different points, and each vertex was inserted into only one other face. */
+/* Seeds where the two sides of an edge were cut at different points: the two vertices were joined, and the other side of the
+   edge stayed open. Last row: three of four faces were cut at different points, and each vertex was inserted into only one
+   other face. */
 TEST(vertices_hang_in_an_edge_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 16412639206824042380u, 3835865350566676432u },
@@ -293,8 +295,8 @@ TEST(vertices_hang_in_an_edge_that_boxes_share)
     score_drawn("boxes, two in one edge", 1, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_HANGING);
 }
 
-/* No edge may stay open wherever T-junctions lie; tested with many random cases, without the solver. In the listed cases vertices are
-   closer together than an exact match or the tolerance. */
+/* No edge may stay open at a T-junction; many random cases, without the solver. In the listed cases, vertices are closer
+   together than the tolerance, or even than an exact match. */
 TEST(nothing_stays_open_where_vertices_hang)
 {
     enum { FOUND = 3, DRAWN = 8 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer that has lost its core moves its sessions to other renderers, depending on the load balancer's reports and their times. */
+/* A renderer that has lost its core moves its sessions to other renderers, when the load balancer's reports and their times allow it. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -10,7 +10,7 @@
 
 static const int64_t S = NS_PER_S, BEGIN = 1000 * NS_PER_S;
 
-/* Runs ticks each 100 ms and checks each second, from the loss on. Returns after how many ns the sessions are moved; -1: never. */
+/* Ticks every 100 ms and checks every second after the loss. Returns how many ns after the loss the sessions are moved; -1: never. */
 static int64_t moved_after(const char *state, int64_t checks_from_ns, int64_t core_back_ns)
 {
     struct core_loss loss = { 0 };

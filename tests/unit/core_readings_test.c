@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Live readings sent from a core to a renderer: only changes are sent, exact to the bit; invalid messages are refused. */
+/* Live readings sent from a core to a renderer: only changes are sent, bit-exact; invalid messages are refused. */
 #include "tests/support/test.h"
 
 #include "corelink/core_identity.h"
@@ -130,8 +130,8 @@ TEST(late_readings_are_older)
     way_finish(&way);
 }
 
-/* The renderer's store shows what the core's store shows, whatever its age. A lost link makes all readings Bad, including those sent
-   again unchanged afterwards. */
+/* The renderer's store equals the core's store, however old either is. A lost link makes all readings Bad, including those
+   resent unchanged afterwards. */
 TEST(a_store_shows_what_the_other_shows)
 {
     struct plant *plant = plant_by_hand_create(2);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Samples sent from a core to its standby: every one, in order, exact to the bit; invalid messages are refused. */
+/* Samples sent from a core to its standby: all of them, in order and bit-exact; invalid messages are refused. */
 #include "tests/support/test.h"
 
 #include "corelink/core_samples.h"

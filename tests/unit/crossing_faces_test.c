@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces that may cross other faces: every crossing found by sampling must be listed, and few other faces. */
+/* Faces that may cross other faces: the list must contain every crossing found by sampling, and few other faces. */
 #include "surface/repair/crossing_faces.h"
 
 #include "tests/support/test.h"
@@ -37,7 +37,7 @@ static void model_finish(struct crossing_model *model)
     trimesh_finish(&model->mesh);
 }
 
-/* A pipe wound into a coil of radius 1 m that rises rise_m per turn: it intersects itself where the rise is less than its width. */
+/* A pipe coiled with a radius of 1 m that rises rise_m per turn: it intersects itself if it rises by less than its width. */
 static void make_coil(struct crossing_model *model, double radius_m, double rise_m, double turns)
 {
     *model = (struct crossing_model){ 0 };

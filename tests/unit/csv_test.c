@@ -146,7 +146,7 @@ CASE(mistakes_have_a_place)
     assert_one_error(f, 2, 3, "byte 0xC0 is not UTF-8 text");
 }
 
-/* A file that is no table gives one error; a text in another encoding gives at most ten. */
+/* A file that is no table gives one error; a text in the wrong encoding gives at most ten. */
 CASE(what_is_no_table_is_said_once)
 {
     static const struct {

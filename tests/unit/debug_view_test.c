@@ -254,7 +254,7 @@ CASE(colors_follow_the_distance)
         const float(*places)[3] = elements(&glb, positions, 12);
         const uint16_t(*rgba)[4] = elements(&glb, colors, 8);
         double near_x = far ? 1 : -0.5,
-               near_y = far ? 0 : 0.5; /* T-GAP2 is in the middle of the end at x = 2, T-GAP on top of the first box */
+               near_y = far ? 0 : 0.5; /* T-GAP2 is in the middle of the end face at x = 2, T-GAP on top of the first box */
         for (size_t i = 0; i < (size_t)json_integer_value(json_object_get(positions, "count")); i++) {
             double dx = (double)places[i][0] - near_x, dy = (double)places[i][1] - near_y, dz = (double)places[i][2];
             if (sqrt(dx * dx + dy * dy + dz * dz) < 0.05) /* the colour map begins with dark purple */

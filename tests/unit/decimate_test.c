@@ -9,7 +9,7 @@
 #define ADDED 300
 #define WITHIN_M 1e-7
 #define MOST_TRIS (4 * ADDED + 8)
-/* largest number of added points that may remain: many triangles are so thin from the start that no neighbour can absorb them */
+/* maximum number of added points that may remain: many triangles are so thin from the start that no neighbour can absorb them */
 #define MOST_LEFT (ADDED / 2)
 
 /* Two triangles that share the diagonal from (0, 0, 0) to (1, 1, 0): the corner (1, 0, 0) on its right, (0, 1, lift_m) on its left. */
@@ -176,7 +176,7 @@ TEST(a_fold_stays_where_it_is)
     trimesh_finish(&plate.mesh);
 }
 
-/* Decimation must not move a border in a plane: neither that between two parts, nor that between visible and hidden triangles. */
+/* Decimation must not move a border within a plane, neither between two parts nor between visible and hidden triangles. */
 TEST(a_border_stays_where_it_is)
 {
     for (int hides = 0; hides < 2; hides++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decoding of register values: every data type in every byte order from bytes written by hand, and every scaling. */
+/* Decoding of register values: every data type in every byte order, from bytes written by hand, and every scaling. */
 #include "tests/support/test.h"
 
 #include "value/decode.h"
@@ -234,7 +234,7 @@ TEST(a_current_says_that_its_loop_has_failed)
     tag.scale.has_range = true;
     tag.scale.raw_high = 27648;
     tag.scale.scaled_high = 100;
-    /* by default, currents outside 4 to 20 mA do not mean a failed transmitter, as NAMUR NE 43 defines */
+    /* by default, currents just outside 4 to 20 mA do not mean a failed transmitter (NAMUR NE 43) */
     assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
     tag.scale.ne43 = true;
     const struct {

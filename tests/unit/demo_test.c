@@ -158,8 +158,7 @@ static bool beyond(const struct plant_tag *tag, double value, enum limit low, en
     return value < tag->alarms.limits[low] || value > tag->alarms.limits[high]; /* NaN: no limit */
 }
 
-/* Returns the upset of the simulated process (1 to 3: a fault such as lost cooling water) that is running or whose effects still show, or
-   CALM. */
+/* Returns the upset of the simulated process (1 to 3: a fault such as lost cooling water) that is running or still has effects, or CALM. */
 static int upset_now(const struct sim_values *values, int *last, int *since_s)
 {
     static const char *const names[] = { "cooling water lost", "exchanger fouled", "bearing worn" };
@@ -174,8 +173,8 @@ static int upset_now(const struct sim_values *values, int *last, int *since_s)
     return ++*since_s <= RECOVERY_S ? *last : CALM;
 }
 
-/* Without an upset every tag stays within its limits. An upset brings at most 12 tags beyond H or L, and some beyond HH or LL. Runs as
-   many cycles as there are machines, so that each machine has its worn bearing. */
+/* Without an upset every tag stays within its limits. An upset takes at most 12 tags beyond H or L, and some beyond HH or LL.
+   Runs one cycle per machine, so that each machine gets its worn bearing. */
 TEST(test_limits_fit_the_process)
 {
     struct diag diag = { 0 };

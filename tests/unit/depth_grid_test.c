@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Depth grids: cells against a plain search, also at sizes that are no multiple of a cell, and codes after a round trip. */
+/* Depth grids: cells compared with a brute-force search, also at sizes that are no multiple of a cell, and codes after a round trip. */
 #include "tests/support/test.h"
 
 #include "render/soft/depth_cells.h"
@@ -59,7 +59,7 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns how many of a cell's sorted depths lie behind the border at which the rule of depth_cells.c divides it; 0: not divided. */
+/* Returns how many of a cell's sorted depths lie behind the border at which depth_cells.c divides it; 0: not divided. */
 static int count_behind(const struct depth_lens *lens, const float *all, int count)
 {
     int background = 0, behind = 0;

@@ -45,8 +45,8 @@ static const char lost_rows[] = "T-GONE,400011,Float,plc,temperature,GONE,,50.5,
                                 "T-DROPPED,400013,Float,plc,temperature,DROPPED,,60.5,0.5,1\n"
                                 "T-NODE,400015,Float,plc,temperature,SAME,TT-2,,,\n";
 
-/* Boxes of 1 x 1 x 1 m at x = 0, 10, 20, ... In the new model MOVED is moved 2 m along y, TURNED (1 x 2 x 3 m) lies on its side, CHANGED
-   is 50 mm higher, GONE has another name and TT-2 is missing. */
+/* Boxes of 1 x 1 x 1 m at x = 0, 10, 20, ... In the new model, MOVED is 2 m farther along y, TURNED (1 x 2 x 3 m) lies on its
+   side, CHANGED is 50 mm higher, GONE is renamed and TT-2 is missing. */
 static void write_model(struct prep_case *c, bool is_new)
 {
     struct model_maker maker;
@@ -114,8 +114,8 @@ static json_t *compare(struct prep_case *c, const char *arguments, int status)
     return prep_case_json(&c->out);
 }
 
-/* Checks the assets of a diff report. exact: the old side is a plant file, so corners are those of the model; otherwise it is a prepared
-   folder. */
+/* Checks the assets of a diff report. exact: the old side is a plant file, so corners are the model's own; otherwise it is a
+   prepared folder. */
 static void check_assets(const json_t *root, bool exact)
 {
     asset_of(root, "SAME", "same");
@@ -126,7 +126,7 @@ static void check_assets(const json_t *root, bool exact)
     assert_float_equal(prep_case_number(asset_of(root, "PLACED", "moved"), "move_m.2"), 0.5, 1e-5);
     if (exact)
         assert_float_equal(prep_case_number(asset_of(root, "TURNED", "moved"), "turned_deg"), 90, 1e-2);
-    /* the shape changed by 50 mm in height: when both boxes are compared centre on centre, their surfaces are 25 mm apart */
+    /* the height changed by 50 mm, so with both boxes centred on each other their surfaces are 25 mm apart */
     assert_float_equal(prep_case_number(changed, "apart_m"), 0.025, 1e-4);
     assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, "GONE", "removed"), "why")),
                            "no node's name matches 'GONE': node 'VESSEL' has the same shape at the same place"));
@@ -168,7 +168,7 @@ CASE(a_revision_is_compared)
                            "surface of 3 sensors moved; 4 tags lost their position");
 }
 
-/* The usual case: the model file was overwritten, and only its prepared folder is left of the old revision. */
+/* The usual case: the model file was overwritten, so only the prepared folder of the old revision is left. */
 CASE(a_prepared_folder_stands_for_the_old_plant)
 {
     prep_case_expect(c, "$FOLDER/old.yaml", 0);

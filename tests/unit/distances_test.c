@@ -9,7 +9,7 @@
 enum { AROUND = 160, ALONG = 130 };
 static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
 
-/* Writes an open cylinder of radius 1 whose axis runs along z from 0. Returns its vertex count. */
+/* Writes an open cylinder of radius 1 whose axis runs along z from z = 0. Returns its vertex count. */
 static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
 {
     struct cad cad = { 0 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drift of sensors: the fit compared with plain least squares, and on real series (../shared/data/sensors) stretched over a week,
-   unchanged and with a drift added to one sensor. The alarm limit lies a tenth of the group's range beyond all readings. */
+/* Drift of sensors: the fit compared with plain least squares, and tested on real series (../shared/data/sensors) stretched
+   over a week, unchanged and with a drift added to one sensor. The alarm limit lies a tenth of the group's range beyond all
+   readings. */
 #include "tests/support/test.h"
 
 #include "base/log/log.h"
@@ -110,8 +111,8 @@ struct jump { /* a jump by `after` times the noise from hour `begins` on, and by
     int begins, ends;
 };
 
-/* Random sensors with a jump, every second of which also drifts by six times its noise, up or down. jump_of draws the jump. Asserts at
-   least `least_found` drifts found and at most `most_accused` false ones. */
+/* Random sensors with a jump, half of which also drift by six times their noise, up or down. jump_of draws the jump. Asserts at
+   least `least_found` detected drifts and at most `most_accused` false ones. */
 static void fit_after_jumps(const char *what, void (*jump_of)(int round, struct jump *jump), int least_found, int most_accused)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
@@ -143,7 +144,7 @@ static void one_jump(int round, struct jump *jump)
     jump->begins = 30 + rand() % 108;
 }
 
-/* Draws two jumps as a trial of a day or two causes: the second one undoes the first, or most of it. */
+/* Draws two jumps, as a trial of a day or two causes them: the second one undoes all or most of the first. */
 static void jump_and_back(int round, struct jump *jump)
 {
     *jump = (struct jump){ .after = random_in(8, 20) };
@@ -153,7 +154,7 @@ static void jump_and_back(int round, struct jump *jump)
     jump->ends = jump->begins + 24 + rand() % 36;
 }
 
-/* A sensor that is offset from the others from one hour to the next does not drift, and the jump hides no drift. */
+/* A sensor whose offset from the others jumps from one hour to the next does not drift, and the jump hides no real drift. */
 TEST(test_jumps_are_no_drift)
 {
     srand(2);
@@ -166,7 +167,7 @@ TEST(test_a_jump_and_back_is_no_drift)
     fit_after_jumps("a jump and back", jump_and_back, 68, 12);
 }
 
-/* Drift is unknown if readings are missing, or if the whole plant moved in one direction all week. */
+/* Drift is unknown if readings are missing, or if the whole plant changed in one direction all week. */
 TEST(test_what_cannot_be_told_is_unknown)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
@@ -201,7 +202,7 @@ TEST(test_what_cannot_be_told_is_unknown)
 struct recorded_series {
     const char *file, *columns[SENSORS];
     int count; /* number of columns */
-    double noise, beyond; /* noise: of a reading; beyond: distance of the alarm limit beyond all readings, a tenth of the range */
+    double noise, beyond; /* noise of a reading; distance of the alarm limit beyond all readings (a tenth of the range) */
     double from, to;      /* part of the file (0 to 1) that is stretched over a week */
     double hours[DRIFT_HOURS][SENSORS];
 };
@@ -303,7 +304,7 @@ static void leave(struct row_of_sensors *row)
     plant_destroy(&row->plant);
 }
 
-/* Fits the first `hours` of the week after adding to one sensor a linear drift that reaches `change` at their end. */
+/* Adds to one sensor a linear drift that reaches `change` after the first `hours` of the week, and fits those hours. */
 static void find(const struct row_of_sensors *row, const struct recorded_series *s, int hours, int sensor, double change, struct drift *out)
 {
     double values[DRIFT_HOURS * SENSORS], noise[SENSORS];
@@ -315,8 +316,8 @@ static void find(const struct row_of_sensors *row, const struct recorded_series 
     drift_find(row->neighbours, values, hours, noise, out, NULL);
 }
 
-/* Looks for drift each hour from half a week on, in readings without drift. Returns how many sensors were ever found to drift, wrongly;
-   *times receives how often. */
+/* Looks for drift each hour from half a week on, in readings without drift. Returns how many sensors were ever wrongly found to
+ * drift; times receives how often. */
 static int accused(const struct row_of_sensors *row, const struct recorded_series *s, int *times)
 {
     bool ever[SENSORS] = { false };
@@ -347,7 +348,7 @@ static struct recorded_series all_series[] = {
     { RIG, 1464 / 2205., 1, { { 0 } } },
     { RIG, 0, 1464 / 2205., { { 0 } } },
     { RIG, 732 / 2205., 1, { { 0 } } },
-    { RIG, 0, 0.5, { { 0 } } }, /* this half of the recording served to tune the weights of neighbours and of fast hours in the drift fit */
+    { RIG, 0, 0.5, { { 0 } } }, /* this half of the recording was used to tune the weights of neighbours and of fast hours in the fit */
     { RIG, 0.5, 1, { { 0 } } }, /* held out: not used for tuning */
 };
 
@@ -460,14 +461,14 @@ static bool accuses_another(const struct row_of_sensors *row, const struct recor
     return another;
 }
 
-/* Drifts of several sizes in units of sigma, the sensor's scatter without drift, must be found before the reading reaches its alarm
-   limit. */
+/* Drifts of several sizes, in units of sigma (the sensor's scatter without drift), must be found before the reading reaches its
+   alarm limit. */
 TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down)
 {
     enum { SIZES = 3 };
     static const double sizes[SIZES] = { 3, 4, 8 }; /* drifts, in sigmas per week */
-    /* number of drifts that must be found, by series and size; some drifts of the test rig are hidden by its own changes. {0}: series with
-       a process fault, not tested */
+    /* minimum number of drifts to find, by series and size; the test rig's own changes hide some. {0}: series with a process
+       fault, not tested */
     static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
     int others = 0; /* number of sensors that were wrongly found to drift, instead of the drifting one or in addition */
@@ -506,7 +507,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
     assert_true(others <= 27);
 }
 
-/* After excluding the drifting sensor, the others are judged by each other: none of them is accused because of it. */
+/* Once the drifting sensor is excluded, the others are compared with each other: none is accused because of it. */
 TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_case_tear_down)
 {
     struct recorded_series *s = &all_series[1];
@@ -523,7 +524,7 @@ TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_ca
     leave(&row);
 }
 
-/* A sensor that is lost for a day and a half makes no other sensor look as if it drifted, whatever it reads before and after. */
+/* A sensor that is lost for a day and a half makes no other sensor appear to drift, whatever it reads before and after. */
 TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down)
 {
     struct recorded_series s = all_series[1];
@@ -544,7 +545,7 @@ TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, pr
     leave(&row);
 }
 
-/* A sensor without any reading gets no verdict, and the others are compared with those that have readings. */
+/* A sensor without any reading gets no verdict, and the others are compared with the sensors that have readings. */
 TEST_WITH(test_one_that_is_silent_hides_nothing, prep_case_set_up, prep_case_tear_down)
 {
     struct recorded_series s = all_series[1];

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which clients get which packets, tested with a model: each client decodes its packets, and a packet is valid only directly after the
-   state that it needs. */
+/* Which clients get which packets, tested with a model of decoding: a packet is valid only directly after the state that it needs. */
 #include "service/encode_streams.h"
 
 #include "tests/support/test.h"
@@ -219,7 +218,7 @@ CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
     show(f, 0xffe, 0, 3, false);
     show(f, 1, 2, 4, false);
     assert_true(f->encodes == 4 && f->keys == 2 && chain_count(f) == 2);
-    /* client 0, which looked at other views meanwhile, shows the same view as the others again: at most two streams remain */
+    /* client 0, which was looking elsewhere, shows the others' view again: at most two streams remain */
     show(f, 0xfff, 0, 5, false);
     assert_true(chain_count(f) <= 2);
 }
@@ -249,7 +248,7 @@ CASE(depth_that_packets_lack_is_sent_to_clients_that_want_it)
     assert_int_equal(f->encodes, 2); /* for client 1, the packet that was encoded with depth is used again */
 }
 
-/* Hundreds of acknowledgements arrive one by one: some clients request the next view while others still wait for the previous one. */
+/* Hundreds of acknowledgements arrive one by one, so some clients request the next view while others still wait for the previous one. */
 CASE(whole_pictures_are_made_once_however_it_is_asked_for)
 {
     f->codec = WIRE_CODEC_JPEG;

@@ -125,7 +125,7 @@ static size_t head_of(const uint8_t *bytes, size_t count) /* returns the length 
     return at;
 }
 
-/* All streams share the header, and so the tables, of preview JPEGs. From JPEG_READ_QUALITY on, thin lines keep more of their colour. */
+/* Preview JPEGs of all streams share the header, and so its tables. From JPEG_READ_QUALITY on, thin lines keep more of their colour. */
 TEST(jpeg_keeps_the_colour_of_thin_things)
 {
     struct frame *frame = thin_lines(320, 200);

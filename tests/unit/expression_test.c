@@ -60,7 +60,7 @@ TEST(arithmetic)
     assert_false(isfinite(worth("1/0")));
     assert_false(isfinite(worth("sqrt(-1)")));
     assert_false(isfinite(worth("lmtd(100, 20, 20, 60)")));
-    /* if an argument has no finite value, the whole expression has none, even if the result would not depend on it */
+    /* an expression has no value if any argument is not finite, even if the result would not depend on it */
     static const char *const parts[] = { "min(1, sqrt(-1))",  "max(1, sqrt(-1))",          "min(1, 1/0)",
                                          "1/(1/0)",           "sqrt(-1)^0",                "1^sqrt(-1)",
                                          "max(1, -1/0)",      "approach(sqrt(-1),2,1,0)",  "approach(2,sqrt(-1),1,0)" };

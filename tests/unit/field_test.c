@@ -15,7 +15,7 @@
 struct vertex_truth {
     double value;
     bool no_data, uncertain;
-    /* true: whether the vertex has no data, or is uncertain, depends on differences below the rounding of floats, so it is not compared */
+    /* true: rounding of floats decides whether the vertex has no data or is uncertain, so it is not compared */
     bool near_tie;
 };
 
@@ -289,8 +289,8 @@ TEST(test_extreme_parameters)
     rig_finish(&rig);
 }
 
-/* 4,096 sensors with every interpolation. Lost sensors leave no data at their positions; with shepard, the other sensors' positions show
-   their own readings. Other cases are compared with plain loops. */
+/* 4,096 sensors with every interpolation. Lost sensors leave no data at their positions; with shepard, each other sensor's
+   position shows its own reading. Other cases are compared with plain loops. */
 TEST(test_4096_sensors)
 {
     uint64_t random = sweep_seed();
@@ -449,7 +449,7 @@ static void assert_even(const struct field_rig *rig, float value)
             fail_msg("vertex %zu of %zu: %g, no data %d", j, scalars->count, (double)scalars->at[j].value, scalars->at[j].no_data);
 }
 
-/* A sensor whose position is only assumed colours the whole asset evenly, whatever mode the group or the user asks for. */
+/* A sensor whose position is only assumed colours the whole asset uniformly, in every mode of the group or the user. */
 TEST(test_an_assumed_place_is_the_whole_asset_evenly)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
@@ -481,7 +481,7 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
     set(&rig, 0, 40, QUALITY_GOOD);
     set(&rig, 1, 75, QUALITY_GOOD);
     set(&rig, 2, 30, QUALITY_GOOD);
-    /* the asset shows the reading that is farthest from the middle of its range, 0 to 100, as no limits are set: 75 */
+    /* the asset shows the reading farthest from the middle of its range (0 to 100, as no limits are set): 75 */
     assert_even(&rig, 75);
     set(&rig, 2, 5, QUALITY_GOOD);
     assert_even(&rig, 5);
@@ -658,7 +658,7 @@ TEST(test_reach_ends_the_field)
     rig_finish(&rig);
 }
 
-/* A sensor's weight fades to zero at its reach, so that no edge is visible where the sensor leaves the sums. */
+/* A sensor's weight fades to zero at its reach, so that no edge shows where the sensor no longer contributes. */
 TEST(test_a_sensor_fades_towards_its_reach)
 {
     for (int paper = 0; paper < 2; paper++) {
@@ -752,8 +752,8 @@ TEST(test_an_hour_of_flicker_leaves_no_drift)
     rig_finish(&rig);
 }
 
-/* A loose wire makes single sensors come and go at any moment while the others change whole columns: nothing of a removed sensor may
-   remain in the sums. */
+/* A loose wire makes single sensors come and go at any moment while the readings of all others change: the sums must keep
+   nothing of a removed sensor. */
 TEST(test_flicker_at_any_moment_leaves_no_drift)
 {
     static const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_BAD_COMMUNICATION_ERROR, QUALITY_UNCERTAIN_LAST_USABLE,
@@ -811,8 +811,9 @@ TEST(test_an_hour_of_changes_leaves_no_drift)
     rig_finish(&rig);
 }
 
-/* Steps of one sensor that are large, but just small enough to be added, leave rounding in the sums. Small steps do not remove it, and are
-   added too: only a sum of all sensors, which follows after some thousand additions, gives the bits of a new field. */
+/* Steps of one sensor that are large, but just small enough to be added incrementally, leave rounding errors in the sums. Later
+   small steps are added too and do not remove the errors. Only the full sum over all sensors, made after some thousand
+   additions, gives the bits of a new field. */
 TEST(test_sums_are_made_anew_now_and_then)
 {
     uint64_t random = sweep_seed();
@@ -952,8 +953,7 @@ TEST(test_instances_share_their_weights)
         bytes[1 + (round > 0)] = field_bytes(rig.field);
     }
     size_t columns = (size_t)3 * 256 * 16 * sizeof(float), state_bytes = (bytes[2] - columns - bytes[0]) / 9;
-    /* the weights of a sensor at all vertices (a column) are cached once for all ten instances, from the second time on that they are
-       used */
+    /* a sensor's weights at all vertices (a column) are cached once for all ten instances, from their second use on */
     assert_int_equal(bytes[1], bytes[2]);
     assert_true(state_bytes < bytes[0] && state_bytes >= 700 * 16);
     for (int asset = 0; asset < 10; asset++)
@@ -988,8 +988,8 @@ TEST(test_dragging_stays_under_the_bound)
     rig_finish(&rig);
 }
 
-/* The weights of a sensor at all vertices (a column) may be evicted from the cache, never cached, or cached for part of the vertices: the
-   field has the same bits as with all columns cached. */
+/* A sensor's weights at all vertices (a column) may be evicted, never cached, or cached for only some vertices: the field has
+   the same bits as with all columns cached. */
 TEST(test_without_room_for_columns_the_bits_are_the_same)
 {
     uint64_t random = sweep_seed();
@@ -998,7 +998,7 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
     field_set_cache_limit(tight, 1);
     for (int tick = 0; tick < 60; tick++) {
-        /* limit in bytes: sometimes too small for the cached weights of all sensors (columns); everything else takes some 450,000 */
+        /* limit in bytes: sometimes too small for all columns (cached weights of the sensors); everything else takes some 450,000 */
         size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns;
         field_set_cache_limit(half, bound);
         rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -1019,8 +1019,8 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     rig_finish(&rig);
 }
 
-/* If the limit is too small for the cached weights of all sensors (columns), the cache uses all of it; once it is large enough, all of them
-   are cached. */
+/* If the limit is too small for all columns (cached weights of the sensors), the cache uses all of it; once it is large enough,
+   all columns are cached. */
 TEST(test_as_many_columns_as_fit_are_kept)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37));
@@ -1040,7 +1040,7 @@ TEST(test_as_many_columns_as_fit_are_kept)
     rig_finish(&rig);
 }
 
-/* Two sessions look at all assets in turn with room for less than one of them: the pointers returned within one round stay valid. */
+/* Two sessions look at all assets in turn, with room for less than one asset: pointers returned within one round stay valid. */
 TEST(test_scalars_of_the_same_parameters_stay)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
@@ -1058,8 +1058,8 @@ TEST(test_scalars_of_the_same_parameters_stay)
     rig_finish(&rig);
 }
 
-/* Fast path: with few sensors and cached weights one pass sums everything. It gives the same bits and the same account of changes as the
-   general path. */
+/* Fast path: with few sensors and cached weights, one pass sums everything. It gives the same bits and reports the same changes
+   as the general path. */
 TEST(test_few_sensors_are_summed_in_one_go)
 {
     enum { VERTICES = 1100 };
@@ -1102,8 +1102,8 @@ static void assert_first_as_fresh(const struct field_rig *rig, size_t count)
     field_destroy(&fresh);
 }
 
-/* Computing assets in parallel equals computing them one by one, whatever changed, during and after the filling of weights, and with any
-   cache size. */
+/* Computing assets in parallel equals computing them one by one, whatever changed, while weights are being cached and
+   afterwards, and with any cache size. */
 static void check_many_at_once(size_t sensors)
 {
     enum { ASSETS = 12, VERTICES = 1500 };
@@ -1147,7 +1147,7 @@ TEST(test_many_at_once_are_as_one_by_one)
     check_many_at_once(12);
 }
 
-/* Assets of which only the first vertices are drawn: the cache has room for those, so their weights are cached too. */
+/* Assets of which only the first vertices are drawn: the cache has room for the weights of those vertices, so it keeps them. */
 static void check_far_assets(size_t sensors)
 {
     enum { ASSETS = 40, VERTICES = 20000, DRAWN = 300 };
@@ -1225,7 +1225,7 @@ TEST(test_a_prefix_costs_less)
     rig_finish(&rig);
 }
 
-/* A field of straight-line distances to few sensors is evaluated at each pixel, so neither pictures nor picks compute its values at
+/* A field of straight-line distances to few sensors is evaluated per pixel, so neither pictures nor picks compute its values at
    vertices. */
 TEST(test_a_pick_of_an_exact_field_computes_no_vertex)
 {
@@ -1262,7 +1262,7 @@ TEST(test_in_pieces_it_is_the_same)
         set(&rig, 8, 5, round % 2 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
         while (!field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000)) {
             if (pieces++ == 2)
-                /* this reading comes too late for the pass that is being computed piece by piece; the next pass must show it */
+                /* this reading comes too late for the pass that is being computed in pieces; the next pass must show it */
                 set(&rig, 3, first + 1, QUALITY_GOOD);
         }
         assert_in_range(pieces, 3, 100);
@@ -1340,7 +1340,7 @@ TEST(test_distance_from_one_sensor)
     rig.params.show = straight.show = SHOW_DISTANCE;
     rig.params.sensor = straight.sensor = 4;
     straight.distance = DISTANCE_EUCLIDEAN;
-    /* sensor 4 is on the other asset, so on this asset no distance along the surface from it exists */
+    /* sensor 4 is on the other asset, so no path along this asset's surface leads to it */
     assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
     const struct scalars *way = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
     const struct scalars *line = field_scalars(rig.field, 1, &straight, rig.plant->snapshot);
@@ -1438,7 +1438,7 @@ TEST(test_difference_needs_both)
     assert_true(scalars->at[1].no_data && scalars->at[3].no_data);
     assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* sensor 2 was Uncertain then */
     assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that came back does not count as a change */
-    /* baselines belong to all sessions: the new readings replace the baseline also for the session that shows it */
+    /* sessions share baselines: the new readings also replace the baseline that this session shows */
     baselines_set(baselines, "then", rig.plant->snapshot);
     scalars = show(&rig);
     assert_true(!scalars->at[1].no_data && scalars->at[1].value == 0 && scalars->at[3].no_data);

@@ -34,7 +34,7 @@ static struct camera_window taken(const struct camera *camera, double aspect, co
     return out;
 }
 
-/* Returns how far the farthest corner of a box lies towards the image edge; 1 is on the edge. */
+/* Returns how close a box comes to the image edge: the largest projected coordinate of its corners; 1 is on the edge. */
 static double reach(const struct camera *camera, double aspect, const double min[3], const double max[3])
 {
     struct camera_window box = taken(camera, aspect, min, max);
@@ -160,8 +160,8 @@ static void add_box(struct toy *toy, const char *id, const double size_m[3], con
     toy_add(toy, id, &shape, at_m, NULL, 0);
 }
 
-/* Asserts that the initial view of a loaded plant is filled by its assets without strays, and that `outside` assets are reported as
-   outside. */
+/* Asserts that the initial view of a loaded plant is filled by its assets without the strays, and that `outside` assets are
+   reported as outside. */
 static void expect_framed(struct toy *toy, int outside)
 {
     struct camera camera;
@@ -225,7 +225,7 @@ TEST(small_and_long_ones_fill_the_picture)
     }
 }
 
-/* A stack on its base, units apart from each other, and a plate with little on it: nothing counts as stray, nor does the ground. */
+/* A stack on its base, with units far apart, and a plate with little on it: nothing counts as a stray, not even the ground. */
 TEST(what_belongs_together_stays)
 {
     struct toy *toy = toy_create();
@@ -247,7 +247,7 @@ TEST(what_belongs_together_stays)
     expect_framed(toy, 0);
 }
 
-/* A stray box 300 m away is not cut by the far plane; a box 5,000 km away must not make the near plane cut the plant. */
+/* The far plane does not cut off a stray box 300 m away, and a box 5,000 km away must not make the near plane cut into the plant. */
 TEST(depth_holds_strays_as_far_as_it_resolves_the_plant)
 {
     static const double strays_m[] = { 300, 5e6 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The Gaussian process compared with dense algebra: the kernel by inverting the system, weights by ordinary kriging with one mean per
-   body (Cressie, Statistics for Spatial Data, 3.2), lost sensors by omission; also difficult positions and numbers. */
+/* The Gaussian process compared with dense algebra: the kernel with an inverted matrix, the weights with ordinary kriging with
+   one mean per body (Cressie, Statistics for Spatial Data, 3.2), lost sensors by leaving them out. Also tests difficult
+   positions and numbers. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -30,7 +31,7 @@ static void prepare(struct gaussian_case *s, const double (*places_m)[3], size_t
     vertex_embedding_destroy(&embedding);
 }
 
-/* Uses the shape's own triangles without the surface's subdivision, so that the system is small enough for dense algebra. */
+/* Uses the shape's own triangles, without the surface's subdivision, so that the system is small enough for dense algebra. */
 static void prepare_coarse(struct gaussian_case *s, const double (*places_m)[3], size_t count, double disc_m)
 {
     const struct cad *shape = &s->shape;
@@ -186,8 +187,8 @@ static double covariance(const struct dense *d, const double *a, const double *b
     return sum;
 }
 
-/* Kriging: computes the weights of the sensors in `used` with which the value at `place` is predicted (interpolation weights of the mesh's
-   vertices). Returns the variance of the prediction's error. */
+/* Kriging: computes the weights of the sensors in `used` that predict the value at `place` (given as interpolation weights of
+   mesh vertices). Returns the variance of the prediction error. */
 static double krige(const struct dense *d, const struct gaussian_params *p, const uint8_t *used, const double *place, double *weights)
 {
     const size_t n = d->sensors + 1;
@@ -267,7 +268,7 @@ TEST(test_agrees_with_a_dense_one)
         }
         print_message("range %g: weights differ by %.1e, deviations by up to %.1f %%\n", cases[c].range_m, worst_share, 100 * worst);
         assert_true(worst_share < 1e-4);
-        /* standard deviation of the deviations, which are estimated from 256 samples: 4.4 %; four times that is allowed */
+        /* the deviations are estimated from 256 samples, so they have a standard deviation of 4.4 %; four times that is allowed */
         assert_true(worst < 4 * 0.044);
         influence_fill_destroy(&fill);
         mem_free(d.kernel);
@@ -312,7 +313,7 @@ static void sphere_of(struct gaussian_case *s, const double (*places_m)[3], size
     solve(s, params);
 }
 
-/* For a smooth field the readings are met within the noise, and each row of weights sums to 1. */
+/* For a smooth field, predictions match the readings within the noise, and each row of weights sums to 1. */
 TEST(test_readings_are_met_within_noise)
 {
     enum { MANY = 40 };
@@ -329,8 +330,8 @@ TEST(test_readings_are_met_within_noise)
         size_t v = nearest_vertex(&s, places[i]);
         double there = 50 + 20 * (double)s.shape.positions[v][2] + 10 * (double)s.shape.positions[v][0];
         assert_true(fabs(influence_value(&s.influence, readings, v) - there) < 0.5);
-        /* `untold`: share of the variance that the sensor leaves unknown at this vertex, because the sensor is a disc and the vertex is not
-           its centre. The correlation is x K_1(x), here for small x */
+        /* `untold`: share of the variance that stays unknown at this vertex, because the sensor is a disc and the vertex is not
+           its centre. The correlation is x K_1(x), approximated for small x */
         double away = 0, x;
         for (int axis = 0; axis < 3; axis++)
             away += pow((double)s.shape.positions[v][axis] - places[i][axis], 2);
@@ -356,7 +357,8 @@ TEST(test_two_sensors_at_one_place_that_disagree)
     }
 }
 
-/* A single sensor gives its value to its whole body, with a deviation that grows with distance; a body without a sensor gets no value. */
+/* A sensor that is alone on a body gives the whole body its value, with a deviation that grows with distance; a body without a
+   sensor gets no value. */
 TEST(test_one_sensor_and_bodies_apart)
 {
     struct gaussian_case s = { 0 };
@@ -371,7 +373,7 @@ TEST(test_one_sensor_and_bodies_apart)
     const double near = (double)s.influence.deviations[nearest_vertex(&s, places[0])];
     const double far = (double)s.influence.deviations[nearest_vertex(&s, (const double[3]){ 0, 0, -1 })];
     print_message("one sensor: deviation %.2f at it, %.2f at the other pole\n", near, far);
-    /* far away the deviation is sqrt(2) times that without any sensor, 10, because a single sensor does not tell the mean */
+    /* far away the deviation is sqrt(2) times the prior's, which is 10, because one sensor does not determine the mean */
     assert_true(near < 2 && far > 12 && far < 17);
     assert_true(s.influence.precision[0] < 1e-9);
     finish(&s);
@@ -414,7 +416,7 @@ TEST(test_threads_change_nothing)
     finish(&s);
 }
 
-/* Covariance without solving for a sensor, for ranges from a tenth of the plate to ten times the plate. */
+/* The covariance computed without solving for each sensor, for ranges from a tenth of the plate to ten times the plate. */
 TEST(test_covariance_agrees_with_a_dense_one)
 {
     static const double ranges_m[4] = { 0.25, 0.8, 3, 20 };
@@ -449,8 +451,8 @@ static double gaussian(void)
     return sqrt(-2 * log(1 - cad_random(&chance))) * cos(2 * M_PI * cad_random(&chance));
 }
 
-/* Readings drawn from a process of range 0.7, deviation 6 and noise 0.8: the fit must find nearly these parameters. Sensors stand in
-   pairs, because only close neighbours distinguish noise from a rough field. */
+/* Readings drawn from a process of range 0.7, deviation 6 and noise 0.8: the fit must recover nearly these parameters. Sensors
+   stand in pairs, because only close neighbours distinguish noise from a rough field. */
 TEST(test_fit_finds_what_made_the_readings)
 {
     enum { SENSORS = 24, INSTANTS = 200 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The build cache of plantcast-prep: with a changed sensor it gives the same bits as preparing everything again, without reading the
-   model; with very many sensors, an equally good field. Damaged entries are not used, and a killed run can be continued. */
+/* The build cache of plantcast-prep: with a changed sensor, a cached build has the same bits as a full build, without reading
+   the model; with very many sensors, an equally good field. Damaged entries are not used, and a killed run can be resumed. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
@@ -29,8 +29,8 @@ static const char plant_text[] = "plant: { name: Stock test }\n"
                                  "tags: tags.csv\n";
 static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
 
-/* Prepared plants that several tests start from or compare with; each is made once: one with first_tags, and for each other tag list one
-   without a cache. */
+/* Prepared plants that several tests start from or compare with, each made once: one with first_tags, and for each other tag
+   list one without a cache. */
 static struct {
     struct prep_case *c; /* the plant of all tests */
     json_t *first;       /* report of the asset that was prepared into FOLDER/first */
@@ -150,7 +150,7 @@ static size_t prepare_fresh(struct prep_case *c, const char *tags)
     return i;
 }
 
-/* Asserts that preparing `tags` into an empty folder gives the same file, byte by byte, and the same levels and surface in the report. */
+/* Asserts that preparing `tags` in an empty folder gives the same file, byte by byte, and the same levels and surface in the report. */
 static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t *found)
 {
     size_t i = prepare_fresh(c, tags), size;
@@ -163,7 +163,7 @@ static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t 
     mem_free(path);
 }
 
-/* When each group had one sensor, distances were not used and not checked; they must be checked once they matter. */
+/* While each group had one sensor, distances were unused and unchecked; they must be checked once they matter. */
 CASE(what_was_not_checked_is_checked_once_it_shows)
 {
     static const char *const tags[] = { "a,,,,t,A,,1.3,0,0\nc,,,,p,A,,0,1,0.3\n",
@@ -265,7 +265,7 @@ static ino_t file_number(const char *path)
     return st.st_ino;
 }
 
-/* Sample points' positions are taken from the cache, and the cache is rewritten only if few of them were known. */
+/* The positions of sample points are taken from the cache, which is rewritten only if it lacked many of them. */
 CASE(points_are_found_once)
 {
     static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
@@ -289,8 +289,8 @@ CASE(points_are_found_once)
 
 /* --- killed midway ------------------------------------------------------------------------------------------------------------ */
 
-/* Prepares into FOLDER/kept with a file size limit of `bytes`. Beyond the limit the system kills the process; with `told`, writing fails
-   instead. Returns the exit status. */
+/* Prepares into FOLDER/kept with a file size limit of `bytes`. A larger write kills the process or, with `told`, fails with an
+   error. Returns the exit status. */
 static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, bool told)
 {
     char *program = prep_case_program(), *folder = temp_path(c->folder, "kept"), *said = temp_path(c->folder, "said");
@@ -326,8 +326,8 @@ static size_t bytes_of(const char *path)
     return (size_t)st.st_size;
 }
 
-/* Killed while writing a column or the file: the old content stays, also for processes that have it mapped, and the next run gives the
-   result of preparing everything again. */
+/* Killed while writing a column or the file: the old content stays, even for processes that have it mapped, and the next run
+   gives the result of a full build. */
 CASE(killed_midway_it_goes_on)
 {
     bool model_read;
@@ -360,7 +360,8 @@ CASE(killed_midway_it_goes_on)
     mem_free(columns);
 }
 
-/* A file that does not fit on the disk is not begun: the old one stays, no temporary file remains, and with room it is written. */
+/* A file that does not fit on the disk is not started: the old one stays and no temporary file remains. Once there is room, it
+   is written. */
 CASE(without_room_the_old_file_stays)
 {
     static const char tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.1,-1.2,0\n";
@@ -476,7 +477,7 @@ static int by_size(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Compares the field of `at` at the corners of `other`'s triangles with the field that `other` computed there. */
+/* Compares the field of `at` at the corners of `other`'s triangles with the field of `other` there. */
 static void assert_shows(const struct prepared *at, const struct prepared *other, const char *name)
 {
     size_t count = other->mesh.tri_count;
@@ -509,7 +510,7 @@ static void assert_on_vertices(const struct prepared *at)
     }
 }
 
-/* Asserts that preparing `tags` again, into another folder or over a damaged cache, gives the same field as `moved`, without findings. */
+/* Asserts that preparing `tags` again, in another folder or over a damaged cache, gives the same field as `moved`, without findings. */
 static void assert_shows_as_anew(struct prep_case *c, const struct prepared *moved, const char *tags, const char *into)
 {
     struct prepared anew;
@@ -539,7 +540,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
     int first_found = 0;
     for (int move = 0; move < moves; move++) {
         char *tags = many_tags(move);
-        if (move == 1) { /* before the second move of a sensor, a run is killed while it writes; that must make no difference */
+        if (move == 1) { /* a run is killed while it writes, before the second move of a sensor; that must not change the result */
             char *findings = kept_file(c, ".splitting");
             prepare_killed_at(c, tags, bytes_of(findings) / 2);
             mem_free(findings);
@@ -552,7 +553,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
         if (move > 0) /* levels of detail that an earlier run rejected are not tried again, so fewer measurements are needed */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
-        /* after the last move of the sensor (the second one with PLANTCAST_LONG=1, else the first), the uncertainties of cached
+        /* after the last move of the sensor (the second one with PLANTCAST_LONG=1, else the first), the errors of cached
            measurements have added up: the field must still equal a new one */
         if (move == moves - 1) {
             open_prepared(&moved, c, "kept", found);

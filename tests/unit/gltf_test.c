@@ -10,7 +10,7 @@
 
 #define CASE(name) TEST_ON(struct gltf_case *l, name, gltf_case_set_up, gltf_case_tear_down)
 
-/* One binary chunk serves every model here; each member's comment begins with its offset, which the accessors below use. */
+/* All models here share one binary chunk. Each member's comment begins with its offset, which the accessors below use. */
 struct bin {
     float square[4][3];      /* offset 0: in the x-y plane, corners (0,0) (1,0) (0,1) (1,1) */
     uint16_t list16[6];      /* 48: two triangles */
@@ -157,7 +157,7 @@ CASE(nodes_are_put_in_place)
 #define TURNED(rotation)                                                                                                                   \
     HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"valve\",\"mesh\":0,\"rotation\":" rotation "}]," MESH(SQUARE) ACCESSORS "}"
 
-/* A quaternion of any length rotates like its unit quaternion, and is counted; a quaternion of length zero does not rotate. */
+/* A quaternion of any length rotates like its unit quaternion, and is counted; a zero quaternion does not rotate. */
 CASE(rotations_have_a_length)
 {
     good(l, TURNED("[0,0,0.7071,0.7071]"));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One surface encoded in every way that glTF allows is read as the same surface; also compressed by the reference encoders and by common
-   compression programs. */
+/* One surface, encoded in every way that glTF allows, is always read as the same surface; also when compressed by the reference
+   encoders and by common compression programs. */
 #include "preprocess/geometry/geometry.h"
 
 #include "tests/support/test.h"
@@ -54,7 +54,7 @@ struct gltf_corner {
     const uint8_t *color;
 };
 
-/* Returns the triangle of the wavy test sheet that has these corners in the same winding, or -1. */
+/* Returns the triangle of the wavy test sheet that has these corners in the same winding order, or -1. */
 static int triangle_of(const struct wavy_sheet *sheet, struct gltf_corner corners[3], double tolerance_m)
 {
     for (uint32_t t = 0; t < sheet->index_count / 3; t++)
@@ -242,7 +242,7 @@ CASE(what_draco_writes_is_read)
 
 /* --- damaged compressed data --------------------------------------------------------------------------------------------- */
 
-/* Changes every byte of the compressed data in turn: never a crash, and an accepted model is consistent. */
+/* Changes every byte of the compressed data in turn: the reader never crashes, and any model that it accepts is consistent. */
 CASE(broken_compression_is_refused_or_harmless)
 {
     struct wavy_sheet sheet;
@@ -546,8 +546,8 @@ CASE(colors_are_read_in_every_type)
 
 /* --- materials ----------------------------------------------------------------------------------------------------------- */
 
-/* Another texture of the same material with a different mapping: on its own coordinate set, or on the same one. A third mapping is
-   refused. */
+/* Another texture of the same material with a different mapping, on its own coordinate set or on the same one. A third mapping
+   is refused. */
 static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_sheet *sheet)
 {
     struct geometry g;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* H.264: libavcodec decodes each frame as it went in; key frames come when requested, and the colour space is described. */
+/* H.264: libavcodec decodes each frame to what was encoded; key frames come when requested, and the stream states its colour space. */
 #include "tests/support/test.h"
 #include <errno.h>
 
@@ -199,7 +199,7 @@ CASE(quality_can_change_between_pictures)
     assert_true(bytes[1] > 2 * bytes[0] && bytes[1] > 2 * bytes[2]);
 }
 
-/* Grey shapes of little contrast on grey, like a building from afar; `turn`: how far the camera has moved. */
+/* Grey low-contrast shapes on grey, like a building from afar; `turn`: how far the camera has moved. */
 static struct frame *building(int w, int h, int turn)
 {
     struct frame *frame = frame_create(NULL, w, h);
@@ -223,7 +223,7 @@ static double mean_off(const struct h264_fixture *f, const struct frame *frame)
     return sum / (double)pixels;
 }
 
-/* At any quality, a frame shows objects where they are now and leaves no trace of where they were. */
+/* At any quality, a frame shows objects at their current positions and leaves no trace at earlier ones. */
 CASE(what_moves_leaves_nothing_behind)
 {
     static const int qualities[] = { 78, 42, 30, 25 };

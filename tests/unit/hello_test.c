@@ -176,7 +176,7 @@ CASE(a_revoked_token_ends_its_sessions_and_no_others)
     leave(f, &local);
 }
 
-/* A valid token that the login throttle delays is not judged, so the session keeps no token holder. */
+/* A valid token delayed by the login throttle is not checked, so the session keeps no token holder. */
 CASE(a_login_that_is_held_up_keeps_no_holder)
 {
     struct login_throttle *throttle = f->context.login_throttle = login_throttle_create();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The historian: samples are on disk one second after the store got them, also after kill -9, with a full, read-only, slow or damaged
-   disk, and when the clock is set. */
+/* The historian: samples are on disk one second after they reach the store, even after kill -9, with a full, read-only, slow or
+   damaged disk, and when the clock is set. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <glob.h>
@@ -29,8 +29,8 @@
 
 enum { TAGS = 50 };
 
-/* A wall clock that tests may set; the machine's clock stays untouched. It begins in the middle of a month: each month has its own file,
-   and tests look into one file only. */
+/* A wall clock that tests may set; the machine's clock stays untouched. It begins mid-month, because each month has its own
+   file and the tests look into only one file. */
 static const int64_t MID_MONTH_S = 1781524800; /* 2026-06-15T12:00Z */
 static _Atomic int64_t clock_off_ns;
 int64_t __real_clock_utc_ns(void);
@@ -82,7 +82,7 @@ static void end(struct historian_setup *s)
 {
     historian_stop(&s->historian);
     mem_free(s->tags);
-    /* the folder of a test with a disk of its own, which is still mounted if that test failed */
+    /* mount point of a test with its own disk, which is still mounted if that test failed */
     char *disk = temp_path(s->folder, "history");
     (void)umount2(disk, MNT_DETACH);
 }
@@ -226,7 +226,7 @@ static bool has_quality(const struct history_series *series, uint32_t quality)
     return false;
 }
 
-/* Readings go stale, and then a device is lost of which no sample ever came: nothing but time tells the historian. */
+/* Readings go stale, and then a device is lost that never sent a sample: only the passing of time tells the historian. */
 CASE(a_standby_records_what_time_alone_changes)
 {
     struct history_series here = { 0 }, there = { 0 };
@@ -257,8 +257,7 @@ CASE(a_standby_records_what_time_alone_changes)
         read_series(s, "standby", i, &there);
         assert_true(here.points.count >= 2);
         assert_int_equal(here.points.count, there.points.count);
-        /* the point has the time at which the reading went stale, not that at which the historian noticed; 25 ms: possible difference of
-           the two clocks */
+        /* the point carries the time at which the reading went stale, not when the historian noticed; the two clocks may differ by 25 ms */
         int64_t stale_us = here.points.at[here.points.count - 1].t_us - 500000;
         assert_true(i >= TAGS / 2 || (stale_us >= before_us - 25000 && stale_us <= after_us + 25000));
         for (size_t k = 0; k < here.points.count; k++) {
@@ -288,7 +287,7 @@ static void never_stale(struct historian_setup *s)
     s->tags = history_tags(s->plant);
 }
 
-/* Waits until the newest recorded reading of tag 0 has a quality. Returns false after half a minute. */
+/* Waits until the newest recorded reading of tag 0 has this quality. Returns false after half a minute. */
 static bool comes_to(struct historian_setup *s, uint32_t quality)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -300,7 +299,7 @@ static bool comes_to(struct historian_setup *s, uint32_t quality)
     return snapshot->readings[0].quality == quality;
 }
 
-/* A server states when a value changed. After a lost connection, or a restart of the daemon, this is before the loss. */
+/* A server states when a value changed. After a lost connection or a daemon restart, that time is before the loss. */
 CASE(a_value_with_an_old_time_is_good_again)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -329,7 +328,7 @@ CASE(a_value_with_an_old_time_is_good_again)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
 }
 
-/* Only tag 1 gets samples. The value of tag 0 is recorded until the daemon ends, and again in the next month. */
+/* Only tag 1 gets samples. Tag 0's value is recorded until the daemon ends, and again in the next month. */
 CASE(a_value_without_samples_holds_until_the_end)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -372,7 +371,7 @@ CASE(quiet_readers_see_the_last_second)
     assert_true(snapshot->readings[7].value == 49);
 }
 
-/* Records until the process is killed; *told receives the time of the last sample given to the store (shared memory). */
+/* Records until the process is killed; *told (shared memory) receives the time of the last sample given to the store. */
 static void record_for_ever(struct historian_setup *s, _Atomic int64_t *told)
 {
     start(s);
@@ -405,8 +404,8 @@ static double kill_one(struct historian_setup *s, _Atomic int64_t *told, unsigne
     return lost_s;
 }
 
-/* The limit is one second plus the time of the write. A disk may itself take seconds, so a slow kill is tried again. make test-long sets
-   KILLS=100. */
+/* The limit is one second plus the time of the write. A write may itself take seconds, so after a slow one the kill is
+   repeated. make test-long sets KILLS=100. */
 CASE(a_kill_takes_at_most_a_second)
 {
     unsigned seed = (unsigned)sweep_seed();
@@ -445,7 +444,7 @@ CASE(a_full_disk_loses_nothing)
     history_series_finish(&series);
 }
 
-/* A file stands where the history folder should be, which acts like a read-only folder; once the folder exists, it is used. */
+/* A file has the history folder's path, which makes the folder unusable like a read-only one; once the folder exists, it is used. */
 CASE(a_folder_that_comes_later_is_used)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder");
@@ -485,8 +484,7 @@ static void expect_spooled_run(struct historian_setup *s, int64_t first_ns, int6
     assert_true(events_of(s, "gap", last_ns) >= 1); /* the gap begins at the end of the previous run */
 }
 
-/* The history folder is unusable until the daemon has ended: samples that wait go into a spool elsewhere and are recorded at the next
-   start. */
+/* The history folder is unusable until the daemon ends: unwritten samples go into a spool elsewhere and are recorded at the next start. */
 CASE(what_waits_at_the_end_comes_with_the_next_start)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder"), *spool = temp_path(s->folder, "history.spool");
@@ -509,7 +507,7 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
 
 /* --- clocks ------------------------------------------------------------------------------------------------------------------- */
 
-/* The clock is set forward by an hour: samples from before and after are recorded, and no line spans the skipped hour. */
+/* The clock is set forward by an hour: samples before and after are recorded, and no line spans the skipped hour. */
 CASE(a_clock_set_forward_leaves_its_hour_empty)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -560,7 +558,7 @@ CASE(a_clock_set_back_loses_nothing)
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
 }
 
-/* Local time jumps from 02:00 to 03:00 and from 03:00 to 02:00: recorded time continues without a break. */
+/* Local time jumps from 02:00 to 03:00 in spring and from 03:00 to 02:00 in autumn: recorded time continues without a break. */
 TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
 {
     static const int64_t changes_s[] = { 1774746000, 1792890000 }; /* 2026-03-29T01:00Z and 2026-10-25T01:00Z, Europe/Berlin */
@@ -616,7 +614,7 @@ static char *fill_disk(const char *folder)
     return path;
 }
 
-/* The disk is full and no other folder is available, as after a reboot: waiting samples go into the reserved file. */
+/* The disk is full and no other folder is available, as after a reboot: unwritten samples go into the reserved file. */
 CASE(a_full_disk_has_room_for_a_spool)
 {
     char *folder = temp_path(s->folder, "history");
@@ -727,7 +725,7 @@ CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
     history_series_finish(&series);
 }
 
-/* Another process locks the database for more than a second: threads that write to the store or read it are not delayed. */
+/* Another process locks the database for more than a second: threads that write to the store or read it do not wait. */
 CASE(a_disk_that_hangs_holds_up_nobody)
 {
     char path[300];

@@ -166,7 +166,7 @@ static void record_much(struct history_queries_setup *s)
     mem_free(tags);
 }
 
-/* A client that does not read holds one part while others have their turn; all parts together make one answer. */
+/* A client that stops reading holds up its answer after one part while other requests continue; all parts together make one answer. */
 CASE(long_answers_come_in_pieces)
 {
     struct history_query query = { .client = 7, .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Month files and their reader: recorded points come back across month borders, rolled up, at one instant, from damaged files, and when
-   the disk is full. */
+/* Month files and their reader: recorded points are returned across month borders, as rollups, at one instant, from damaged
+   files, and when the disk is full. */
 #include "tests/support/test.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -173,7 +173,8 @@ CASE(a_value_that_is_not_sent_again_holds)
     }
 }
 
-/* Records samples of TT-1 by a plant's rules for its source and for stale readings, and reads the tag at a time after the first sample. */
+/* Records samples of TT-1 under a plant's rules for its source and for stale readings. Returns the tag's reading at a time
+   after the first sample. */
 static struct reading recorded_at(struct history_setup *s, const struct history_point *sent, size_t count, int second)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -205,7 +206,7 @@ static void send_by(struct history_setup *s, const char *kind, enum mqtt_payload
     s->plant->tags[0].validity.stale_s = stale_s;
 }
 
-/* `Stale s` of a tag permits ten minutes without a sample: pictures showed the old value during this time. */
+/* `Stale s` of a tag allows ten minutes without a sample: pictures showed the old value during this time. */
 CASE(a_line_does_not_slope_over_a_long_silence)
 {
     static const struct {
@@ -221,7 +222,7 @@ CASE(a_line_does_not_slope_over_a_long_silence)
         reading = recorded_at(s, sent, 2, 598);
         assert_float_equal(reading.value, 10, 1e-9);
     }
-    /* a publisher that sends every five minutes, as `Scan Rate` states: ten minutes are an interval in which one message is missing */
+    /* a publisher that sends every five minutes, as `Scan Rate` states: a pause of ten minutes means one missing message */
     send_by(s, "mqtt", MQTT_JSON, 300000, 3600);
     assert_float_equal(recorded_at(s, sent, 2, 300).value, 50, 1e-9);
 }
@@ -307,7 +308,7 @@ static void import_points(struct history_setup *s, int tag, const struct history
     }
 }
 
-/* TT-1 and the switch have points in July and November only, and TT-1 another one in January; TT-2 has points in all months. */
+/* TT-1 and the switch have points only in July and November, and TT-1 one more in January; TT-2 has points in all months. */
 CASE(points_that_are_months_apart_are_found)
 {
     const int64_t day = 86400 * S, july = NOVEMBER - 120 * day, january = NOVEMBER + 65 * day;
@@ -439,8 +440,9 @@ static void assert_points(struct history_setup *s, int tag, const struct history
     history_series_finish(&series);
 }
 
-/* Values and qualities of every kind come back bit by bit, also where times repeat or go back, whether the points are in seconds or in
-   blocks, and through handles that close and open the file at any moment. A newer point replaces an older one of the same time. */
+/* Values and qualities of every kind come back bit by bit, even if times repeat or go backwards, whether stored per second or
+   in blocks, and through handles that close and open the file at any moment. A newer point replaces an older one with the same
+   time. */
 CASE(every_point_comes_back_bit_by_bit)
 {
     struct history_point truth[TAGS][ODD_SECONDS];
@@ -530,7 +532,8 @@ static void sum_up(const struct history_point *points, int count, bool step, int
     out->mean = sum / (double)(out->good_us / (60 * S));
 }
 
-/* Points at the borders of buckets, as in imported tables: a switch, and values before a change of quality, hold until the next point. */
+/* Points at bucket boundaries, as in imported tables: the value of a switch, and a value before a change of quality, hold until
+   the next point. */
 CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
 {
     enum { COUNT = 4 };
@@ -574,7 +577,7 @@ CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
     }
 }
 
-/* A steady tag has few points: the bucket before the requested span says that the tag has a value at its beginning. */
+/* A steady tag has few points: the bucket before the requested span provides the tag's value at its beginning. */
 CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
 {
     enum { COUNT = 400, APART_S = 1000 };
@@ -597,7 +600,8 @@ CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
     mem_free(points);
 }
 
-/* Adds to *out the part from begin_us to end_us of the line from point a to point b, or to the end of the data if b is NULL. */
+/* Adds to *out the part of the line from point a to point b that lies between begin_us and end_us. If b is NULL, the line ends
+   with the data. */
 static void add_line(const struct history_point *a, const struct history_point *b, bool step, int64_t begin_us, int64_t end_us,
                      struct history_bucket *out)
 {
@@ -622,7 +626,7 @@ static void add_line(const struct history_point *a, const struct history_point *
     out->good_us += end_us - begin_us;
 }
 
-/* Returns the value at which the line leaves the time t_us; NaN: none. `before`: the value with which it arrives. */
+/* Returns the value with which the line continues at time t_us; NaN: none. `before`: the value with which it arrives there. */
 static double line_at(const struct history_point *points, int count, bool step, int64_t t_us, bool before)
 {
     for (int i = 0; i + 1 < count; i++) {
@@ -698,7 +702,7 @@ static int make_points(struct history_point *points, int most, bool step)
     return count;
 }
 
-/* Writes the points of each month, the newest ones as a historian that has not moved them to blocks yet. */
+/* Writes the points of each month; the newest ones as a historian leaves them before moving them to blocks. */
 static void write_points(struct history_setup *s, int tag, const struct history_point *points, int count)
 {
     for (int i = 0, end; i < count; i = end) {
@@ -714,7 +718,7 @@ static void write_points(struct history_setup *s, int tag, const struct history_
     }
 }
 
-/* Intervals of any length over any time, with few points and many, are those of the whole line, also at the borders of months. */
+/* Intervals of any length over any time, with few or many points, equal those of the whole line, also at month borders. */
 CASE(intervals_are_those_of_the_line)
 {
     enum { MOST = 3000 };
@@ -789,7 +793,7 @@ CASE(a_restart_leaves_a_gap)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
 }
 
-/* In October recording paused for ten seconds and across the turn of the month; in November the clock was set forward. */
+/* In October recording paused for ten seconds, and again across the end of the month; in November the clock was set forward. */
 CASE(gaps_are_told_in_order_and_joined)
 {
     struct history_gaps gaps;
@@ -808,7 +812,7 @@ CASE(gaps_are_told_in_order_and_joined)
     assert_true(gaps.at[0].from_us == october && gaps.at[0].to_us == october + 10 * S);
     assert_true(gaps.at[1].from_us == october + 200 * S && gaps.at[1].to_us == NOVEMBER + 86600 * S);
     mem_free(gaps.at);
-    /* an hour within a gap that began in the month before: the gap is found in that month's file */
+    /* an hour within a gap that began in the previous month: the gap is found in that month's file */
     assert_int_equal(history_gaps(s->reader, NOVEMBER + 3600 * S, NOVEMBER + 7200 * S, &gaps), 0);
     assert_int_equal(gaps.count, 1);
     mem_free(gaps.at);
@@ -849,7 +853,7 @@ CASE(damage_inside_is_noticed)
     fseek(file, 0, SEEK_END);
     long pages = ftell(file) / 4096;
     assert_true(pages > 20);
-    /* damages all pages but the first ones, which hold the roots of tables, whose damage is noticed earlier */
+    /* damages all pages except the first, which hold the roots of tables: damage there is noticed earlier */
     for (long page = 12; page < pages; page++) {
         fseek(file, page * 4096, SEEK_SET);
         assert_int_equal(fwrite(rubbish, sizeof(rubbish), 1, file), 1);
@@ -926,7 +930,7 @@ static void check_contents(sqlite3 *db)
     assert_rows(db, "SELECT kind, text FROM event", "gap not recorded for 3 s; ");
 }
 
-/* A file of an older version is readable as it is; a writer upgrades it with all its content and then appends. */
+/* A file of an older version can be read as it is. A writer upgrades it with all its content, then appends. */
 CASE(an_older_version_is_read_and_brought_up)
 {
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
@@ -1067,7 +1071,7 @@ static void check_what_is_left(struct history_setup *s, int64_t last_us)
     history_reader_destroy(&reader);
 }
 
-/* Recording continues for three times the allowed size: the newest points stay, and the file never exceeds the limit by much. */
+/* Records three times the allowed size: the newest points stay, and the file never exceeds the limit by much. */
 CASE(a_month_that_is_too_large_loses_its_beginning)
 {
     int64_t from_us = NOVEMBER;
@@ -1085,7 +1089,7 @@ CASE(a_month_that_is_too_large_loses_its_beginning)
     check_what_is_left(s, from_us + (LOT - 1) * US_PER_S);
 }
 
-/* When the next month begins, the month before is not deleted whole: it shrinks by as much as the new month needs. */
+/* When the next month begins, the previous month is not deleted at once: it shrinks as the new month needs space. */
 CASE(a_month_that_is_over_shrinks)
 {
     int64_t december_us = month_begin_us(month_of(NOVEMBER) + 1);
@@ -1191,7 +1195,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     assert_int_equal(count, 1);
 }
 
-/* A month that cannot be read may hold unsent points, so it is not deleted for its age. */
+/* An unreadable month may hold unsent points, so it is not deleted because of its age. */
 CASE(months_that_cannot_be_read_are_not_too_old)
 {
     int64_t march_us = month_begin_us(month_of(NOVEMBER) + 4), unsent;
@@ -1213,8 +1217,8 @@ CASE(months_that_cannot_be_read_are_not_too_old)
     assert_int_equal(count, 1);
 }
 
-/* Unsent points are converted too, even through a handle that sends nothing: an import, or a daemon whose plant file no longer names a
-   database. */
+/* Unsent points are converted too, even by a process that sends nothing: an import, or a daemon whose plant file no longer
+   names a database. */
 CASE(what_waits_is_converted_with_the_rest)
 {
     int error;
@@ -1240,7 +1244,7 @@ CASE(what_waits_is_converted_with_the_rest)
 
 /* --- changes of unit that cannot be converted --------------------------------------------------------------------------------- */
 
-/* Writes points to the file of November as the historian of a plant does in which TT-1 has this unit. sends: also to the outbox */
+/* Writes points to November's file like the historian of a plant in which TT-1 has this unit. sends: also to the outbox */
 static void write_in_unit(struct history_setup *s, const char *unit, int64_t t_us, double value, int count, bool sends)
 {
     int error;
@@ -1256,7 +1260,7 @@ static void write_in_unit(struct history_setup *s, const char *unit, int64_t t_u
     month_file_close(&file);
 }
 
-/* Reads TT-1 as a plant does in which TT-1 has this unit. Returns the lines of the log; free with mem_free(). */
+/* Reads TT-1 like a plant in which TT-1 has this unit. Returns the lines of the log; free with mem_free(). */
 static char *read_in_unit(struct history_setup *s, const char *unit, int64_t to_us, int max_points, struct history_series *series)
 {
     mem_free(s->plant->tags[0].unit);
@@ -1324,7 +1328,7 @@ CASE(points_of_another_quantity_are_left_out)
             assert_string_equal(batch.tags[i].name, "TT-1");
             assert_string_equal(batch.tags[i].unit, changes[c][batch.tags[i].id == batch.rows[4].tag]);
         }
-        /* five rows: the points of both units, and one without a value that ends the line in the first unit */
+        /* five rows: the points of both units, and one without a value that ends the line of the first unit */
         assert_int_equal(batch.row_count, 5);
         month_outbox_batch_finish(&batch);
         month_outbox_close(&outbox);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Images: encoded pictures decode to the original, large ones are shrunk, and truncated or oversized files are refused. */
+/* Images: encoded pictures decode to the original, large ones are scaled down, and truncated or oversized files are refused. */
 #include "base/image/image.h"
 
 #include "tests/support/test.h"

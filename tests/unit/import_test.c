@@ -154,7 +154,7 @@ CASE(everything_wrong_is_said_and_nothing_is_taken)
     assert_int_equal(months, 0);
 }
 
-/* Local times: in the night that repeats an hour rows continue, and an hour that does not exist is refused. */
+/* Local times: in the night that repeats an hour, rows continue through both hours, and an hour that does not exist is refused. */
 CASE(times_without_a_zone_are_the_plant_s)
 {
     timestamp_use_zone("Europe/Berlin");
@@ -272,8 +272,8 @@ CASE(a_gap_is_no_data_in_rollups)
     history_reader_destroy(&reader);
 }
 
-/* The longest gap comes from --longest-gap, else from the tag's Stale s, else from the sample spacing; a Stale s below the spacing is
-   ignored. */
+/* The longest gap comes from --longest-gap, else from the tag's Stale s, else from the sample spacing. A Stale s shorter than
+   the spacing is ignored. */
 CASE(the_longest_gap_can_be_stated)
 {
     static const char series[] = "Time,FT-1\n0,1\n10,1\n20,1\n30,1\n90,2\n100,2\n";
@@ -349,8 +349,8 @@ CASE(the_last_of_equal_times_counts)
     history_series_finish(&series);
 }
 
-/* Importing the files of one series in any order leaves gaps only where data is missing; a later import with a longer gap limit closes
-   earlier gaps. */
+/* However the files of one series are ordered, importing them leaves gaps only where data is missing. A later import with a
+   longer gap limit closes earlier gaps. */
 CASE(imports_that_follow_each_other_join)
 {
     static const char parts[3][80] = { "Time,FT-1\n0,0\n10,1\n20,2\n", "Time,FT-1\n30,3\n40,4\n50,5\n", "Time,FT-1\n60,6\n70,7\n80,8\n" };

@@ -7,7 +7,7 @@
 #include "preprocess/influence/influence_bend.h"
 #include "tests/support/surface_case.h"
 
-/* MANY: so many sensors that their equations are solved in more than one block, the last one not full */
+/* MANY: enough sensors for more than one block of equations, the last block not full */
 enum { FEW = 5, MANY = 70, PLACES = 4000, MOST = 400000 };
 static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
@@ -87,8 +87,7 @@ static void make_gaps(struct cad *shape)
     cad_finish(&clean);
 }
 
-/* Returns the worst error as a share of MAX - MIN: readings are MAX where that increases the error and MIN elsewhere, then the other way
-   round. */
+/* Returns the worst error as a share of MAX - MIN: readings are MAX where that increases the error and MIN elsewhere, then vice versa. */
 static double worst_at(const struct bend_case *drawn, const struct influence *influence, size_t place, double around)
 {
     double plus = 0, minus = 0;
@@ -127,8 +126,7 @@ struct case_of {
     size_t sensors;
 };
 
-/* Compares with a solution on much smaller triangles, which serves as the exact one; the drawn field may differ from it by the corners'
-   errors. */
+/* Compares with a solution on much smaller triangles, taken as exact; the drawn field may differ from it by the errors at the corners. */
 static void compare_finer(const struct case_of *of, const struct bend_case *drawn, const struct surface *surface,
                           const double (*places_m)[3], const struct vertex_embedding *embedding, const float *errors)
 {
@@ -206,8 +204,8 @@ static void holds(const struct case_of *of)
         if (!surface_find_point_within(surface, place_m, drawn.normals[i], ON_SURFACE_M, &hit)) {
             hidden_m2 += surface_find_point_within(surface, place_m, drawn.normals[i], surface_report(surface)->tolerance_m, &hit)
                              ? 0
-                             /* area of points that are hidden inside the other body; near the surface, bridging may only have moved the
-                                point, so it is not counted */
+                             /* area of points hidden inside the other body; points near the surface are not counted, because
+                                bridging may have moved them there */
                              : area_m2;
             continue;
         }

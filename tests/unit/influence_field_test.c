@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepared interpolations from the plant file to the drawn field: what is written, refused, summed up and left unknown. */
+/* Prepared interpolations from the plant file to the drawn field: what is written, refused, added up and left unknown. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -169,7 +169,7 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_int_equal(look(&u, place_of(4))->no_data, 255);
-    /* sensor 4 is lost: the field is linear from sensor 3 to sensor 5, outside the discs that the sensors cover */
+    /* sensor 4 is lost: outside the discs that the sensors cover, the field is linear from sensor 3 to sensor 5 */
     assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4);
     assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
     u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* the Uncertain tag contributes half of the value at the lost sensor */
@@ -183,7 +183,7 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     finish(&u);
 }
 
-/* The decay length is sqrt(k t / h) = 0.236 m: points farther than 2.3 times that from the last sensor are unknown. */
+/* The decay length is sqrt(k t / h) = 0.236 m: points more than 2.3 decay lengths from the last sensor are unknown. */
 CASE(test_fin_knows_how_far_it_sees)
 {
     struct plant_in_use u;
@@ -210,8 +210,8 @@ CASE(test_fin_knows_how_far_it_sees)
     finish(&u);
 }
 
-/* Beyond the last sensor a fin decays as exp(-x / d): half-way between two points its value is their geometric mean. Triangles of 0.1 m
-   are too long for d = 0.236 m, so picks report their error and are marked. */
+/* Beyond the last sensor a fin decays as exp(-x / d), so the value half-way between two points is their geometric mean.
+   Triangles of 0.1 m are too long for d = 0.236 m, so picks report their error and are marked. */
 CASE(test_picks_of_fin_tell_their_error)
 {
     struct plant_in_use u;
@@ -254,7 +254,8 @@ CASE(test_picks_of_fin_tell_their_error)
     finish(&u);
 }
 
-/* Errors of distances along the surface change values of a high power. Picks state these errors where two sensors have similar weights. */
+/* Errors in distances along the surface change a field with a high power. Picks state the resulting error where two sensors
+   have similar weights. */
 CASE(test_errors_of_distances_are_stated_for_high_powers)
 {
     for (double power = 4; power <= 16; power *= 2) {
@@ -286,8 +287,8 @@ CASE(test_errors_of_distances_are_stated_for_high_powers)
     }
 }
 
-/* Half-way between two sensors with similar readings, a third one far away has no weight: a pick there is not uncertain, although the
-   readings of the plant differ much. Pictures mark the place, because they do not depend on single readings. */
+/* Half-way between two sensors with similar readings, a third one far away has no weight. A pick there is not uncertain,
+   although the plant's readings differ much. Pictures mark the place, because their marks do not depend on single readings. */
 CASE(test_picks_look_at_the_readings_that_matter)
 {
     struct plant_in_use u;
@@ -317,7 +318,7 @@ CASE(test_picks_look_at_the_readings_that_matter)
     finish(&u);
 }
 
-/* Distances by the paper's heat method agree with ours, on a strip as wide as a sensor is far from its edge. */
+/* Distances by the paper's heat method agree with ours on a strip as wide as the distance from a sensor to its edge. */
 CASE(test_distances_by_heat)
 {
     struct plant_in_use u;
@@ -458,7 +459,7 @@ CASE(test_directions)
 
 #define GP_KEYS ", interpolation: gp, gp: { range_m: 3, noise: 0.5, deviation: 30 }, disc_m: 0.1"
 
-/* The gp field meets the readings of the sensors, follows a changed one, and without a lost sensor equals the field of the others. */
+/* The gp field matches the sensors' readings and follows a changed one. Without a lost sensor it equals the field of the others. */
 CASE(test_gp_meets_readings_and_lets_lost_ones_go)
 {
     struct plant_in_use u;
@@ -471,7 +472,7 @@ CASE(test_gp_meets_readings_and_lets_lost_ones_go)
     u.params.fill = FILL_NEIGHBOURS;
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_true(fabs((double)look(&u, place_of(4))->value - 40) < 3);
-    /* each vertex's weights sum to 1, so the operator's view (positions between alarm limits) can be computed with them */
+    /* each vertex's weights sum to 1, so the weights also serve the operator's view (positions between alarm limits) */
     u.params.show = SHOW_OPERATOR;
     assert_null(field_params_wrong(u.plant, &u.params));
     finish(&u);
@@ -543,7 +544,7 @@ CASE(test_what_others_say_is_kept_for_a_second)
     finish(&u);
 }
 
-/* The prediction of a sensor from the others does not depend on that sensor's reading or quality, also when others are lost. */
+/* The prediction of a sensor from the others does not depend on that sensor's own reading or quality, even when others are lost. */
 CASE(test_others_do_not_hear_a_sensor_itself)
 {
     static const char *const keys[] = { GP_KEYS, ", prepare: [harmonic], disc_m: 0.1", ", prepare: [fin], ambient: 20, disc_m: 0.1", "" };
@@ -587,7 +588,7 @@ CASE(test_others_by_distance)
     finish(&u);
 }
 
-/* The detectable size of a hot spot is a twentieth of the range at a good sensor and e^2 times that two spot sizes away. */
+/* The detectable size of a hot spot is a twentieth of the range at a good sensor, and e^2 times that at a distance of two spot sizes. */
 CASE(test_blind_places)
 {
     struct plant_in_use u;
@@ -607,8 +608,8 @@ CASE(test_blind_places)
     finish(&u);
 }
 
-/* The gp field is unknown far from its two sensors, but the map of blind spots is known there too. Where sensor positions are unknown,
-   neither is known. */
+/* The gp field is unknown far from its two sensors, but the map of blind spots is known even there. Where sensor positions are
+   unknown, so are both. */
 CASE(test_blind_places_are_told_where_gp_knows_nothing)
 {
     struct plant_in_use u;
@@ -630,8 +631,8 @@ CASE(test_blind_places_are_told_where_gp_knows_nothing)
     finish(&u);
 }
 
-/* On a strip with two sensors at its beginning, the first suggestion lies in the wholly blind part, and each further one gains less.
-   Trying all positions one by one finds none that gains noticeably more than the first suggestion. */
+/* On a strip with two sensors at one end, the first suggestion lies in the wholly blind part, and each further one gains less.
+   A brute-force search of all positions finds none that gains noticeably more than the first suggestion. */
 CASE(test_suggestions_gain_less_and_less)
 {
     struct plant_in_use u;
@@ -699,7 +700,7 @@ CASE(test_gp_bad_input)
     assert_false(use(&u, c));
 }
 
-/* Range, noise and deviation are fitted to the readings of a file; a changed file is fitted again. */
+/* Range, noise and deviation are fitted to the readings in a file; if the file changes, they are fitted again. */
 CASE(test_gp_fitted_to_readings)
 {
     struct plant_in_use u;

@@ -49,7 +49,7 @@ static void finish(struct influence_case *s)
     cad_finish(&s->shape);
 }
 
-/* A strip 10 m long and 0.1 m wide acts as a rod: its sensors cover the whole width. */
+/* A strip 10 m long and 0.1 m wide acts as a rod: each sensor covers its whole width. */
 #define STRIP_M 10.0
 #define WIDTH_M 0.1
 #define DISC_M 0.1
@@ -82,7 +82,8 @@ TEST(test_rod_is_straight_between_sensors)
     finish(&s);
 }
 
-/* Between two sensors a combination of sinh, beyond the last one exp: Incropera, Fundamentals of Heat and Mass Transfer, 3.6. */
+/* Between two sensors the field is a combination of sinh, beyond the last one exp: Incropera, Fundamentals of Heat and Mass
+   Transfer, 3.6. */
 TEST(test_fin_falls_by_its_decay_length)
 {
     struct influence_case s = { 0 };
@@ -127,8 +128,8 @@ TEST(test_sphere_between_caps)
 /* --- errors of the field drawn inside triangles --------------------------------------------------------------------------------- */
 
 struct tally {
-    /* in colour steps: largest error at a point inside a triangle; by how much an error exceeds the one that the triangle's corners
-       report */
+    /* in colour steps: largest error at a point inside a triangle; largest excess of an error over the one reported for the
+       triangle's corners */
     double worst, beyond;
     size_t compared, marked;
 };
@@ -158,7 +159,7 @@ static void tally_places(const struct influence_case *s, const double *readings,
     }
 }
 
-/* Between points NEAR_M away from two sensors a fin is the sum of two sinh terms, given its values at those points. */
+/* Between points NEAR_M away from two sensors, a fin is the sum of two sinh terms, determined by the values at those points. */
 #define NEAR_M 0.4
 static struct {
     /* decay length of the fin; the field's values at x = 1 + NEAR_M and x = 5 - NEAR_M, between sensors at 1 and 5 */
@@ -182,8 +183,8 @@ static double value_near(const struct influence_case *s, const double *readings,
     return influence_value(&s->influence, readings, best);
 }
 
-/* A fin on triangles shorter than its decay length is right and not marked. On triangles 2 m long it is wrong and marked, also where
-   even the finite elements are too large (decay 0.2 m). */
+/* A fin on triangles shorter than its decay length is accurate and not marked. On triangles 2 m long it is inaccurate and
+   marked, even where the finite elements are too large as well (decay 0.2 m). */
 TEST(test_fin_on_long_triangles_is_marked)
 {
     static const struct {
@@ -221,7 +222,7 @@ static double exact_sphere(const double at[3])
     return theta < 0.3 || theta > M_PI - 0.3 ? (double)NAN : 0.5 + log_slope * log(tan(theta / 2));
 }
 
-/* The size of the caps depends on the vertices within the discs, so the slope between the caps is taken from a fine sphere. */
+/* The size of the caps depends on the vertices within the discs, so a fine sphere gives the reference slope between the caps. */
 TEST(test_coarse_spheres_are_marked)
 {
     const double places_m[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
@@ -329,7 +330,7 @@ TEST(test_one_sensor_and_bodies_apart)
     finish(&s);
 }
 
-/* More than one block of right-hand sides, the last one smaller, with a different block size on one thread than on several. */
+/* More than one block of right-hand sides, the last one smaller; the block size on one thread differs from that on several. */
 TEST(test_many_sensors_are_solved_in_blocks)
 {
     enum { MANY = 75 };

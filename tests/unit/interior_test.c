@@ -4,8 +4,8 @@
 
 #include "tests/support/test.h"
 
-/* A ring of four quadrangles. One stands across a thin part: the others stay connected without it, so it is interior. Of two that face
-   each other, each connects what would otherwise be apart, so both are visible. */
+/* A ring of four quadrangles. One stands across a thin part: without it the others stay connected, so it is interior. Two face
+   each other: each alone connects parts that would otherwise be separate, so both are visible. */
 TEST(what_alone_joins_is_seen)
 {
     enum { AROUND = 4 };

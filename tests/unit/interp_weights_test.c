@@ -44,7 +44,7 @@ static double fading(const struct weights_trial *trial, double d)
     return isinf(reach_m) ? 0 : 2 / fmax(1e-5, reach_m - d);
 }
 
-/* Draws random distances from a point to sensors: some are beyond the reach, and some sensors are at the point itself. */
+/* Draws random distances from a point to sensors, some beyond the reach and some zero. */
 static void make(struct weights_trial *trial, bool decays)
 {
     trial->count = 1 + (size_t)(cad_random(&chance) * (MOST - 8));
@@ -133,8 +133,8 @@ TEST(papers_shares_are_those_of_a_plain_loop)
     }
 }
 
-/* The bound on how fast the value changes with the sensors' distances holds for any readings and for random distances, as long as no sensor
-   crosses its radius. */
+/* The bound on how fast the value changes with the sensor distances holds for any readings and random distances, as long as no
+   sensor crosses its radius. */
 TEST(no_value_changes_faster_than_is_said)
 {
     for (int n = 0; n < 2000; n++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queries of the alarm journal: pages, and each alarm's state at an instant, compared with a plain loop over all rows. */
+/* Queries of the alarm journal: paging, and each alarm's state at an instant, compared with a plain loop over all rows. */
 #include "tests/support/test.h"
 #include <inttypes.h>
 
@@ -111,7 +111,7 @@ CASE(each_alarm_is_as_it_was_then)
     }
 }
 
-/* Asserts that paging backwards from the newest row returns every row of the time range exactly once, for one tag or for all. */
+/* Asserts that paging backwards from the newest row returns every row in the time range exactly once, for one tag or for all. */
 static void check_pages(struct journal_setup *s, const char *tag, int64_t from_us, int64_t to_us, int limit)
 {
     struct journal_query query = { from_us, to_us, INT64_MAX, tag, limit };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Label placement, and which markers are drawn, by the rules of protocol/LABELS.md; uses the same test vectors as the browser's
-   implementation. */
+/* Label placement and the choice of drawn markers, by the rules of protocol/LABELS.md; shares its test vectors with the
+   browser's implementation. */
 #include "render/overlay/labels.h"
 #include "render/overlay/crowd.h"
 

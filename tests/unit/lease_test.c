@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two nodes must never lead at once: a random simulation of three nodes and a database with lost connections, delayed messages, clocks
-   that drift apart, and nodes that are killed, paused for seconds, restarted, and ended in good order, which gives the lease. */
+/* Two nodes must never lead at once. Simulates three nodes and a database at random: lost connections, delayed messages, clocks
+   that drift apart, nodes that are killed, paused for seconds or restarted, and nodes that shut down in good order, which gives
+   up the lease. */
 #include "tests/support/test.h"
 
 #include "corelink/lease.h"
@@ -15,7 +16,7 @@ struct flight { /* a message on its way */
     int64_t at_ns; /* time of the message's arrival on the simulation's clock; 0: this entry is free */
     enum what what;
     int from, to;  /* index of the sending and of the receiving node; NODES: the database */
-    /* number of the process that sends or receives the message: a restarted node is a new process, which must not get old answers */
+    /* id of the process that sends or receives the message: a restarted node is a new process and must not get old answers */
     uint64_t life;
     struct lease_row row; /* row of the database that an answer contains, or that a request expects to find */
     char standby[LEASE_NODE_BYTES];
@@ -32,8 +33,7 @@ struct lease_node {
     bool waits;
     bool alone; /* true: the standby of this node is in maintenance, so the leader needs no promise from it */
     int64_t waits_since_ns;
-    /* on the simulation's clock: from now on the node tries to give up its lease in good order, and ends at this time; 0: it does not
-       end */
+    /* simulation time at which the node, having tried to give up its lease in good order, ends; 0: it does not end */
     int64_t ends_ns;
     int times_led;
 };
@@ -226,7 +226,7 @@ static void lead(struct lease_world *world, struct lease_node *node, int i)
     const char own[2] = { (char)('a' + i), 0 }, other[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
     const char *name = node->alone ? own : other;
     lease_promised(&node->lease, own, clock_of(world, node));
-    /* the node may have lost the answer to its last request: from time to time it reads the row to find out */
+    /* the node may have lost the answer to its last request, so now and then it reads the row to find out */
     if (!node->waits && chance(world, 10) == 0 && node->sent_ns && !world->calm) {
         ask_database(world, node, i, LOOK, "");
     } else if (!node->waits) {
@@ -252,7 +252,7 @@ static void follow(struct lease_world *world, struct lease_node *node, int i)
     }
 }
 
-/* Gives the lease to a node that can be reached, or to any. After a failed attempt the node reads the row and tries again. */
+/* Gives the lease to a reachable node, or to any node. After a failed attempt the node reads the row and tries again. */
 static void give(struct lease_world *world, struct lease_node *node, int i)
 {
     int follower = follower_of(world, i);
@@ -301,7 +301,7 @@ static void deliver(struct lease_world *world, struct flight *flight)
         on_database(world, flight);
         return;
     }
-    /* a question whether a node promises not to bid is answered by whatever process runs on that node, also after a restart */
+    /* the current process of a node answers whether the node promises not to bid, even after a restart */
     bool asks = flight->what == ASK;
     if (node->life && world->now_ns < node->wakes_ns) {
         flight->at_ns = node->wakes_ns + 1;
@@ -409,8 +409,8 @@ TEST(a_follower_waits_for_what_binds_it)
 {
     const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
     struct lease b = follower("b", &free_row, S);
-    /* The row names no leader, because the leader gave up the lease or because the database is new and empty. Core b cannot tell, so it
-       waits. */
+    /* The row names no leader: either the leader gave up the lease, or the database is new and empty. Core b cannot tell which,
+       so it waits. */
     assert_false(lease_may_bid(&b, 4 * S - 1));
     assert_true(lease_may_bid(&b, 4 * S));
     b = follower("b", &led, 10 * S);
@@ -446,7 +446,7 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     lease_promised(&a, "b", 3 * S);
     assert_true(lease_acts(&a, 5 * S - 1));
     lease_renew(&a, "");
-    /* the promise of standby b does not count: the row may already name no standby, because a renewal that says so is on its way */
+    /* the promise of standby b does not count: a renewal under way may already have removed it from the row */
     lease_promised(&a, "b", 4 * S);
     assert_false(lease_acts(&a, 5 * S));
     struct lease_row other = a.row;
@@ -483,7 +483,7 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     assert_false(a.lost);
     assert_false(lease_may_bid(&a, 100 * S)); /* a ends */
     struct lease late = follower("b", &given, 3 * S), other = follower("b", &none, 3 * S);
-    /* `late` has seen only this row, which may be an old one in a restored database, so it waits */
+    /* `late` has seen only this row, which may be an old one from a restored database, so it waits */
     assert_false(lease_may_bid(&late, 3 * S));
     lease_saw(&other, &given, 3 * S);
     assert_false(lease_may_bid(&other, 3 * S));
@@ -524,7 +524,7 @@ TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
     assert_false(lease_acts(&a, 3 * S)); /* a is its own standby in maintenance, but the row in the database does not say so yet */
     lease_renew(&a, "a");
     lease_renewed(&a, "a", 2 * S);
-    /* a, which is its own standby during maintenance, promises itself not to bid: that extends its lease even without the database */
+    /* a, its own standby during maintenance, promises itself not to bid: that extends its lease even without the database */
     lease_promised(&a, "a", 100 * S);
     assert_true(lease_acts(&a, 102 * S - 1));
     assert_false(lease_acts(&a, 102 * S)); /* a process that hangs makes no further promise, so its lease ends */
@@ -536,7 +536,7 @@ TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
     assert_false(lease_acts(&a, 102 * S));
 }
 
-/* A restored database has an old row of the same leader: some node may win it next without anybody having seen the leader's later row. */
+/* A restored database has an old row of the same leader: some node may take the lease next without having seen the leader's later row. */
 TEST(a_leader_whose_row_is_of_another_epoch_has_lost_it)
 {
     const struct lease_row none = { 0 };
@@ -560,7 +560,7 @@ TEST(a_bid_whose_answer_is_lost_is_found_in_the_row)
     struct lease_row won = { .epoch = 1, .beat = 1, .instance = 7, .leader = "a" };
     lease_saw(&a, &won, 2 * S);
     assert_true(a.leads);
-    assert_false(lease_acts(&a, 2 * S)); /* node a does not know when its bid was accepted, so it may act only after a renewal */
+    assert_false(lease_acts(&a, 2 * S)); /* node a does not know when its bid was accepted, so it may not act before a renewal */
     lease_renewed(&a, "", 2 * S);
     assert_true(lease_acts(&a, 2 * S));
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Level-of-detail selection: the coarsest level whose error at the asset's nearest point is below the limit; and the limit itself, which
-   is lower when the frame has room for more triangles. */
+/* Level-of-detail selection: the coarsest level whose error at the asset's nearest point is below the limit; and the limit
+   itself, which is lower when the frame has room for more triangles. */
 #include "tests/support/test.h"
 
 #include "render/plan/lod_selection.h"
@@ -42,8 +42,8 @@ TEST(levels_change_within_a_pixel)
     }
 }
 
-/* Returns the error limit for `assets` boxes 10 m away, whose levels have 1,000,000, 300,000, 100,000 and 30,000 triangles divided by
-   `fewer` and errors of 0, 2, 4 and 8 mm; 1 mm is 0.1 pixels. */
+/* Returns the error limit for `assets` boxes 10 m away. Their levels have 1,000,000, 300,000, 100,000 and 30,000 triangles
+   divided by `fewer`, and errors of 0, 2, 4 and 8 mm; 1 mm is 0.1 pixels. */
 static double error_among(size_t assets, int fewer, enum tier tier)
 {
     struct model_level levels[4] = { { .triangles = 1000000 / fewer },

@@ -78,8 +78,8 @@ static void shape_finish(struct bounded_shape *s)
     mem_free(s->corners);
 }
 
-/* Returns the largest distance between the model's corners and the remaining mesh, or between centres of remaining triangles and the
-   model, by brute force. */
+/* Returns the largest distance between the model's corners and the simplified mesh, or between centres of the remaining
+   triangles and the model, by brute force. */
 static double stray(const struct bounded_shape *s)
 {
     size_t count = bounded_count(s->bounded);
@@ -115,7 +115,7 @@ static double angle_of(uint32_t i)
     return 2 * acos(-1) * i / ROUND;
 }
 
-/* A flat disc of radius 1 m: a polygon within half of the error needs n corners, and so n - 2 triangles. */
+/* A flat disc of radius 1 m: a polygon within half of the error needs n corners, hence n - 2 triangles. */
 TEST(a_disc_takes_few_triangles)
 {
     for (double error_m = 0.005; error_m < 0.2; error_m *= 2) {
@@ -136,7 +136,7 @@ TEST(a_disc_takes_few_triangles)
     }
 }
 
-/* A bent tube of rings, open at both ends: each coarser level has no more triangles than the one before and stays within its error. */
+/* A bent tube of rings, open at both ends: no coarser level has more triangles than the one before, and each stays within its error. */
 TEST(errors_grow_with_what_is_asked)
 {
     struct bounded_shape s;
@@ -186,7 +186,7 @@ static size_t count_open(const struct bounded_shape *s)
     return open;
 }
 
-/* Tori with more and more corners stay closed and no edge gets four triangles, even if the allowed error exceeds the tube's thickness. */
+/* Tori with more and more corners stay closed, and no edge gets four triangles, even if the allowed error exceeds the tube's thickness. */
 TEST(what_is_closed_stays_so)
 {
     for (uint32_t around = 5; around <= 12; around++) {
@@ -216,7 +216,7 @@ TEST(what_is_closed_stays_so)
     }
 }
 
-/* Two materials meet along a wavy line on one plate: the border stays within half of the error, and no triangle mixes the materials. */
+/* Two materials meet along a wavy line on one plate: the border stays within half of the error, and no triangle lies on both materials. */
 TEST(seams_stay)
 {
     struct bounded_shape s;

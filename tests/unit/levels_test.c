@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Levels of detail: nested, without cracks, within their stated error, with vertices in the order that the asset file requires. */
+/* Levels of detail: nested, without cracks, within their stated errors, with vertices in the order that the asset file requires. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -90,8 +90,8 @@ TEST_WITH(levels_grow_coarser, set_up, tear_down)
     assert_true(s->levels.at[s->levels.count - 1].index_count < 3 * 200);
 }
 
-/* Levels follow each other closely: errors grow by a factor of 1.4, or by two steps of 1.3 if the level between them would save hardly
-   any triangles. */
+/* Levels are closely spaced: errors grow by a factor of 1.4, or by two steps of 1.3 if the level between would save hardly any
+   triangles. */
 TEST_WITH(levels_lie_close, set_up, tear_down)
 {
     const struct set_of *s = *state;
@@ -335,8 +335,8 @@ TEST(bolts_go_where_they_hardly_stand_out)
     geometry_finish(&g);
 }
 
-/* Nuts protrude 2 cm from a slab below a torus that has a level for every error: no level whose error exceeds 2 cm by a tenth still has
-   nuts. */
+/* Nuts protrude 2 cm from a slab below a torus that has a level for every error: no level whose error exceeds 2 cm by a tenth
+   still contains nuts. */
 TEST(nuts_go_once_they_stand_out_by_less)
 {
     struct geometry g;
@@ -362,7 +362,7 @@ TEST(nuts_go_once_they_stand_out_by_less)
     geometry_finish(&g);
 }
 
-/* A lone block of 5 cm, 20 m away, disappears in levels whose error is at least its size. A grating of equally small bars must stay. */
+/* A lone block of 5 cm, 20 m away, disappears in levels whose error is at least its size. A grating of bars that small must stay. */
 TEST(what_is_alone_and_small_goes_but_no_crowd)
 {
     struct geometry g;
@@ -392,7 +392,7 @@ TEST(what_is_alone_and_small_goes_but_no_crowd)
     geometry_finish(&g);
 }
 
-/* Counts corners whose vertex normal faces away from the triangle: such a corner is lit as the other side. */
+/* Counts corners whose vertex normal faces away from the triangle: such a corner is lit as if it were on the other side. */
 static size_t looking_away(const struct geometry *g, const struct level *level)
 {
     size_t count = 0;
@@ -415,7 +415,7 @@ static size_t looking_away(const struct geometry *g, const struct level *level)
     return count;
 }
 
-/* A thin deck keeps faces above and below even in levels whose error exceeds its thickness, each with vertices of its own side. */
+/* A thin deck keeps faces above and below, each with its own vertices, even in levels whose error exceeds its thickness. */
 TEST(thin_plates_keep_their_sides)
 {
     struct set_of s = { 0 };

@@ -15,9 +15,9 @@
 #define TOLERANCE 5.5e-4    /* metres; lower bound of the tolerance chosen for these shapes */
 #define TOLERANCE_MOST 1e-3 /* upper bound of the tolerance, which depends on the rotation */
 #define ALONG 16            /* cells of the rod */
-#define OFF 0.02            /* metres; error allowed for distances of 0.5 m or more; a rod joined to the wrong side exceeds it */
+#define OFF 0.02            /* metres; allowed error of distances of 0.5 m or more; a rod joined to the wrong side exceeds it */
 
-struct sheet_and_rod { /* a sheet that rises in z from 0, and a rod along x, above it or next to it */
+struct sheet_and_rod { /* a sheet with its lower side at z = 0, and a rod along x, above or beside it */
     struct cad cad;
     size_t sheet_count; /* vertices of the sheet; all further ones belong to the rod */
     double thick, rod, source[3];
@@ -31,7 +31,8 @@ static void stretch(struct cad *cad, size_t from, double x, double y, double z, 
             cad->positions[v][axis] = (float)((double)cad->positions[v][axis] * by[axis] + low[axis]);
 }
 
-/* Makes the pair. low: the rod's lowest corner. The source is in the middle of the rod's side that faces away from the sheet. */
+/* Makes the sheet and the rod. low: the rod's lowest corner. The source is in the middle of the rod's side that faces away from
+   the sheet. */
 static void make_pair(struct sheet_and_rod *pair, double thick, double rod, const double low[3], const double source[3])
 {
     *pair = (struct sheet_and_rod){ .thick = thick, .rod = rod };
@@ -58,8 +59,8 @@ static double way_round(const struct sheet_and_rod *pair, const double p[3], con
     return least;
 }
 
-/* Checks distances from the rod to both sides of the sheet. pieces: 1 if the rod must be joined to the sheet, 2 if it must stay apart.
-   beside: the rod lies along a rim. */
+/* Checks distances from the rod to both sides of the sheet. pieces: 1 if the rod must be joined to the sheet, 2 if it must stay
+   separate. beside: the rod lies along a rim. */
 static void test_pair(const char *name, const struct sheet_and_rod *pair, bool below, bool beside, size_t pieces)
 {
     /* no fault with gaps: gaps would be as wide as the sheet is thick */

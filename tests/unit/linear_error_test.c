@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* No distance along a surface is shorter than the straight line: on shapes with every fault of CAD exports, and on real models
-   (shared/data/models). */
+/* No distance along a surface is shorter than the straight line: tested on shapes with every fault of CAD exports, and on real
+   models (shared/data/models). */
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
@@ -13,7 +13,7 @@
 
 #define SOURCES 6
 #define MODELS "../shared/data/models/"
-#define LONGEST 2.0   /* longest allowed edge, in spacings of the sample points: longer edges span faces that were cut on two sides */
+#define LONGEST 2.0   /* longest allowed edge, in spacings of the sample points; a longer edge spans faces that were cut on two sides */
 #define ROUNDING 1e-5 /* of the straight line: floats */
 
 static size_t draw(size_t count)
@@ -21,7 +21,7 @@ static size_t draw(size_t count)
     return (size_t)(cad_random(&chance) * (double)count);
 }
 
-/* Joining moves a point by at most the tolerance. A source is one vertex, and it is looked up at its moved position. */
+/* Joining moves a point by at most the tolerance. Each source is one vertex, found at its moved position. */
 static void check_sources(const char *name, const struct surface *surface, const float (*positions_m)[3], size_t vertex_count,
                           const double (*sources_m)[3], int count)
 {
@@ -113,7 +113,7 @@ TEST(shapes)
     check_shape("rod", &cad, CAD_FAULTS);
 }
 
-/* Two layers of crossing rods that touch. The area suggests 15,000 samples, but one layer alone needs more. */
+/* Two layers of crossing rods that touch. Their area suggests 15,000 samples, but one layer alone needs more. */
 TEST(a_grating_of_rods)
 {
     struct cad cad = { 0 };
@@ -171,8 +171,8 @@ static void check_model(const char *path, const char *const *parts, const double
     model_source_finish(&source);
 }
 
-/* A corner of the first frame from which a tenth of the distances were too short, by up to 0.2 m of 1.1 m, when long rods had no
-   samples. */
+/* A corner of the first support frame: a tenth of the distances from it were too short, by up to 0.2 m of 1.1 m, when long rods
+   had no samples. */
 TEST(supports)
 {
     static const char *const parts[] = { "/PS/WD1/0003", "/PS/WD1/0022", "/PS/WD1/0036", NULL };

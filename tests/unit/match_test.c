@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matching tags to equipment: each matching rule, parsing of names, and editing of plant files that keeps their formatting. */
+/* Matching of tags to equipment: each matching rule, parsing of names, and edits to plant files that keep their formatting. */
 #include "preprocess/match/matcher.h"
 
 #include "tests/support/test.h"
@@ -147,8 +147,7 @@ TEST(test_isa_names)
     }
 }
 
-/* A quantity is derived from the unit, the description, words of the name and letters, in this order; a guess never contradicts the
-   unit. */
+/* The quantity comes from the unit, then the description, then words in the name, then letters; a guess never contradicts the unit. */
 TEST(test_quantities)
 {
     static const struct {

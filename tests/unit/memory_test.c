@@ -12,7 +12,8 @@ TEST(the_default_suits_the_machine)
     assert_true(bytes > 0 && bytes <= (size_t)2 << 30);
 }
 
-/* Small blocks with some kept in between: the free memory lies below a kept block, where free() alone returns nothing to the system. */
+/* Small blocks are freed but some between them are kept: free memory below a kept block, which free() alone does not return to
+   the system. */
 TEST(what_is_freed_goes_back)
 {
     static void *pieces[PIECES];

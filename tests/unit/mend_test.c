@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Mending of faults in CAD exports that leave holes in the picture: hairline gaps and flipped faces. Subdivision must open nothing
-   either: in the demo plant every open edge belongs to the model. */
+/* Mending of CAD export faults that leave holes in the picture: hairline gaps and flipped faces. Subdivision must open no edges
+   either: every open edge in the demo plant comes from the model. */
 #include "tests/support/test.h"
 #include <unistd.h>
 

@@ -387,7 +387,7 @@ TEST(what_is_fitted_lies_beside_the_legend)
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < 1.5 * whole.camera.eye_m[1]);
 }
 
-/* The plant file's view was chosen for a wide image; half the width would cut the plant off, so each half moves its camera back. */
+/* The plant file's view was chosen for a wide image. Half the width would cut the plant off, so each half moves its camera back. */
 TEST(halves_show_what_the_plants_own_view_does)
 {
     static const char *const args[] = { "split=colormap=viridis", "camera=0,-9,3,0,0,0,40" };
@@ -651,7 +651,7 @@ static double thread_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-/* Returns the milliseconds to parse the message and to print the resulting visibility: the fastest of five runs. */
+/* Returns the milliseconds needed to parse the message and print the resulting visibility: the fastest of five runs. */
 static double time_message(const struct plant *many, const struct text *said, struct message *message)
 {
     double least_ms = INFINITY;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A recorded series, sent sixty times as fast through Modbus into the history and compared with what the history returns: spikes, gaps
-   and quality. REPLAY_S sets the seconds; `make test-long` runs an hour. */
+/* A recorded series is sent sixty times as fast through Modbus into the history and compared with what the history returns:
+   spikes, gaps and quality. REPLAY_S sets the seconds; `make test-long` runs an hour. */
 #include "tests/support/test.h"
 #include <pthread.h>
 #include <stdatomic.h>
@@ -21,7 +21,7 @@ enum { SPEED = 60, TICK_MS = 50, SHORT_S = 8, OUTAGE_MS = 1500, SPIKE_MS = 400, 
 static const char plant_path[] = "tests/plants/cookie_line.yaml", map_path[] = "tests/plants/cookie_line.map";
 static const char data_path[] = "../shared/data/sensors/cookie_factory/telemetry.csv";
 
-struct register_rows { /* rows of the values that a device's registers held, or of the readings that the store received from it */
+struct register_rows { /* rows of values: of a device's registers, or of the readings that the store received from them */
     struct register_row {
         int64_t mono_ns, utc_ns;
         double value;
@@ -104,7 +104,7 @@ static void check_wire(const struct modbus_replay *r, size_t tag)
     assert_true(good > 20);
 }
 
-/* Returns the value of the history's line at t_us; *quality receives the quality of the point that governs there. */
+/* Returns the value of the history's line at t_us; *quality receives the quality of the point that applies then. */
 static double line_at(const struct history_series *series, int64_t t_us, uint32_t *quality)
 {
     const struct history_points *points = &series->points;
@@ -118,7 +118,7 @@ static double line_at(const struct history_series *series, int64_t t_us, uint32_
     return a->value + (b->value - a->value) * (double)(t_us - a->t_us) / (double)(b->t_us - a->t_us);
 }
 
-/* Asserts that the history is within the tag's deviation of every reading in the store, and has its quality. */
+/* Asserts that the history is within the tag's deviation of every reading in the store, and has the same quality. */
 static void check_history(const struct modbus_replay *r, struct history_reader *reader, const struct history_tag *tag, size_t index,
                           double *worst)
 {

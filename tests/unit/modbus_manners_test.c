@@ -93,7 +93,7 @@ static bool all_good(struct modbus_case *s)
 
 enum { LONGEST_TURN = 20 }; /* each of the device's three blocks must be read again after at most so many requests */
 
-/* Counts the requests that a device gets until a block has a new reading: unlike times, counts do not depend on the machine's load. */
+/* Counts the requests that a device receives until a block has a new reading. Unlike times, counts do not depend on the machine's load. */
 struct turn {
     int64_t received_ns;
     int requests;
@@ -295,7 +295,7 @@ CASE(an_address_that_is_never_answered_leaves_the_others_alone)
     modbus_case_expect(s, BLOCKS, QUALITY_GOOD, 15);
 }
 
-/* Asserts that blocks 0 and 1 keep being read while the block of unit 7 is lost, and that one log line says so. */
+/* Asserts that blocks 0 and 1 are still read while the block of unit 7 is lost, and that one log line reports the loss. */
 static void expect_two_units_live(struct modbus_case *s)
 {
     struct turn turns[2] = { 0 };
@@ -310,7 +310,7 @@ static void expect_two_units_live(struct modbus_case *s)
     assert_int_equal(lines_with("unit 7 does not answer"), 1);
 }
 
-/* A gateway with one connection at a time, a silent unit, and a connection that ends after each answer: the other units are still read. */
+/* A gateway that allows one connection at a time and closes it after each answer, with one silent unit: the other units are still read. */
 CASE(a_dead_unit_at_a_closing_gateway)
 {
     s->device.answers_per_connection = 1;
@@ -322,7 +322,7 @@ CASE(a_dead_unit_at_a_closing_gateway)
     expect_two_units_live(s);
 }
 
-/* A device with a single unit that falls silent must not be treated as a gateway waiting for another unit: two timeouts suffice. */
+/* A device with only one unit that falls silent must not be treated as a gateway waiting for another unit: two timeouts suffice. */
 CASE(a_device_that_falls_silent_is_not_waited_for)
 {
     start(s);
@@ -336,7 +336,7 @@ CASE(a_device_that_falls_silent_is_not_waited_for)
     assert_false(quality_is_good(modbus_case_look(s, 0)->quality));
 }
 
-/* A gateway that waits for a dead unit three times as long as our timeout, and accepts no other request meanwhile. */
+/* A gateway that waits for a dead unit three times as long as our timeout and accepts no other request meanwhile. */
 CASE(a_dead_unit_that_blocks_its_gateway)
 {
     add_blocks(s);
@@ -370,7 +370,8 @@ static void start_gateway(struct modbus_case *s)
         modbus_case_expect(s, i, QUALITY_GOOD, 10);
 }
 
-/* Asserts that all units are lost together, with one line for the gateway and one for each of the two units before, and come back. */
+/* Asserts that all units are lost together, with one log line for the gateway and one for each of the two units asked before,
+   and that all come back. */
 static void expect_lost_together(struct modbus_case *s)
 {
     await_line("the gateway is treated as lost: 3 units stopped answering one after the other", 60);
@@ -391,7 +392,7 @@ CASE(a_gateway_that_falls_silent_is_told_once_for_all_units)
     int requests = s->device.requests;
     s->device.manner = DEVICE_SILENT;
     await_line("the gateway is treated as lost", 60);
-    /* the second unit is asked for 5 s, as long as a gateway may block; without the rule, each of the eleven is */
+    /* the second unit is asked for 5 s, as long as a gateway may block; without this limit, each of the eleven would be */
     assert_in_range(s->device.requests - requests, 3, 60);
     expect_lost_together(s);
 }

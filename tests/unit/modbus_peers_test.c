@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus interoperability: our source reads pymodbus, and mbpoll reads our simulator. Also that our programs contain no Modbus function
-   that writes. */
+/* Modbus interoperability: our source reads from pymodbus, and mbpoll reads from our simulator. Also checks that our programs
+   contain no Modbus function that writes. */
 #include "tests/support/test.h"
 #include <signal.h>
 #include <sys/wait.h>
@@ -189,7 +189,7 @@ TEST(a_probe_shows_every_type_and_order)
     mem_free(path);
 }
 
-/* All functions of libmodbus that write or send raw data. A program that does not import them cannot call them. */
+/* All functions of libmodbus that write or that send raw data. A program that does not import them cannot call them. */
 TEST(programs_import_nothing_that_writes)
 {
     static const char *const programs[] = { "plantcastd", "plantcast", "plantcast-prep" };

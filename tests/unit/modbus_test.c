@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The Modbus source with a real Modbus TCP server: the store's readings while devices appear, disappear and misbehave. */
+/* The Modbus source against a real Modbus TCP server: the store's readings while devices appear, disappear and misbehave. */
 #include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <sys/resource.h>
@@ -441,7 +441,7 @@ CASE(two_sources_may_name_one_device)
     assert_int_equal(s->device.connections, 2);
 }
 
-/* libmodbus waits with select(), which cannot handle descriptors from 1024 on; a daemon with many viewers has that many. */
+/* libmodbus waits with select(), which fails for descriptors of 1024 and above; a daemon with many viewers has that many. */
 CASE(reconnects_with_a_thousand_files_open)
 {
     enum { FILES = 1100, LOW = 4 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus over TCP, and RTU frames in a socket and on a serial line; backup hosts, limits of devices, and hostile answers. */
+/* Modbus TCP, and RTU frames over a socket and a serial line; backup hosts, device limits, and hostile answers. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -58,7 +58,7 @@ static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     use_wire(s, wire);
     s->plant->sources[0].timeout_ms = 200;
-    /* late answers come after the next request, which follows after a timeout of 0.2 s and at most 0.75 s of backoff */
+    /* late answers arrive after the next request, which follows a timeout of 0.2 s and at most 0.75 s of backoff */
     s->device.late_ms = 1000;
     modbus_case_start(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
@@ -86,7 +86,7 @@ CASE(late_replies_do_not_poison_a_serial_line)
     check_late_rtu(s, DEVICE_LINE);
 }
 
-/* A serial device server sends the answer to an abandoned request over the next connection, on which another block is requested. */
+/* A serial device server sends the answer to an abandoned request over the next connection, on which another block has been requested. */
 CASE(late_replies_do_not_poison_the_next_connection)
 {
     modbus_case_add_registers(s, 1);
@@ -113,7 +113,8 @@ CASE(late_replies_do_not_poison_the_next_connection)
         modbus_case_expect(s, tag, QUALITY_GOOD, 8);
 }
 
-/* A device becomes so slow that every answer comes after the timeout: its values are lost, and never those of another request. */
+/* A device becomes so slow that every answer comes after the timeout: its values are lost, and no answer is taken for that of
+   another request. */
 static void check_always_late(struct modbus_case *s, enum device_wire wire)
 {
     modbus_case_add_registers(s, 1);
@@ -211,7 +212,7 @@ CASE(requests_keep_to_the_device_s_limits)
     assert_true(s->device.least_gap_ns > 29 * NS_PER_MS);
 }
 
-/* A small PLC refuses a request across a hole in its registers; the source finds the hole once and then reads the ranges on both sides. */
+/* A small PLC refuses a request that spans a hole in its registers. The source finds the hole once, then reads the ranges on both sides. */
 CASE(a_hole_is_refused_once)
 {
     modbus_case_add_registers(s, 10);
@@ -242,7 +243,7 @@ CASE(busy_is_asked_again_soon)
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
 }
 
-/* Asserts that no value is taken from any hostile answer, and that values return when the device behaves again. */
+/* Asserts that no value is taken from a hostile answer, and that values return when the device behaves again. */
 static void check_hostile(struct modbus_case *s, enum device_wire wire, int manner)
 {
     modbus_case_add_registers(s, 20);
@@ -262,8 +263,7 @@ static void check_hostile(struct modbus_case *s, enum device_wire wire, int mann
     assert_true(modbus_case_look(s, 20)->value == 500);
 }
 
-/* Tests one kind of wrong answers of a device. length: wrong length that the answers state in their header, if manner is
-   DEVICE_MEASURED. */
+/* Tests one kind of wrong answer. length: the wrong length that answers state in their header, if manner is DEVICE_MEASURED. */
 #define HOSTILE(name, wire, manner, length)                                                                                                \
     CASE(name)                                                                                                                             \
     {                                                                                                                                      \

@@ -11,7 +11,7 @@
 
 #define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
-/* Two pumps of 743 x 200 x 400 model units, y up, 1,000 apart; the second is rotated by 90 degrees about y and half as large. */
+/* Two pumps of 743 x 200 x 400 model units, y up, 1,000 apart; the second is rotated by 90 degrees about y and half the size. */
 static const char model[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
     "\"nodes\":[{\"name\":\"hall\",\"children\":[1,2]},{\"name\":\"P-101A\",\"mesh\":0},"

@@ -5,8 +5,8 @@
 
 #include "tests/support/prep_case.h"
 
-/* Known facts about the models. triangles: number in the model's own description, and without_area: degenerate ones among them; -1: not
-   stated. pieces: separate surfaces after preparing; 0: several, because the model itself is in pieces. */
+/* Known facts about the models. triangles: number in the model's own description; without_area: number of degenerate ones; -1:
+   not stated. pieces: separate surfaces after preparing; 0: several, because the model itself is in pieces. */
 static const struct known_model {
     const char *plant, *asset;
     int triangles, without_area, pieces;
@@ -65,7 +65,7 @@ static void check_asset(const json_t *asset, const char *plant)
     check_levels(asset);
     if (surface)
         check_surface(asset);
-    /* the sensors of these plants were placed on vertices; a hidden vertex lies off the surface that is used */
+    /* these plants' sensors were placed on vertices, and a hidden vertex lies off the surface in use */
     for (size_t s = 0; s < json_array_size(sensors); s++)
         assert_true(of(json_array_get(sensors, s), "surface_distance_m") < off_m);
     print_message("# %-26s %-9s %6.0f triangles, split %6.0f; ", plant, json_string_value(json_object_get(asset, "id")),
@@ -131,7 +131,8 @@ static void plant_in_five_parts(void **state)
 static void plant_with_its_tree(void **state)
 {
     json_t *report = prepare(*state, "plm_plant_hierarchy");
-    /* In V-1105 distances jump at walls, and thin triangles lie next to others: neither may be subdivided without benefit. */
+    /* In V-1105 distances jump at walls, and thin triangles adjoin other triangles: subdividing either would gain nothing, so
+       it must not happen. */
     assert_true(prep_case_number(report, "assets.0.levels.0.limited_by_triangles") < 10);
     assert_true(prep_case_number(report, "assets.0.levels.0.triangles") < 40000);
 }

@@ -190,7 +190,7 @@ TEST(a_value_of_another_member_is_never_taken)
         { T2, "values[?id=='A.T'].v", MQTT_ABSENT, 0, 0, 0 },
         { T2, "values[?id=='A.T2'].w", MQTT_ABSENT, 0, 0, 0 },
         { T2, "values[?id=='A.T2']", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 },
-        /* the path selects by position, and the item's own id ends in T1, the tag's name, so the value is taken */
+        /* the path selects by position, and the item's id ends in T1, the tag's name, so the value is accepted */
         { BOTH, "values[0].v", MQTT_FOUND, 21, 0, 0 },
         { BOTH, "values[1].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
         { BOTH, "values[?@.id=='A.T1'].v", MQTT_FOUND, 21, 0, 0 },

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named views survive a restart, keep their content and share one order; views of the plant file stay as written there. Short links
-   survive a restart, and the newest ones are kept. */
+/* Named views survive a restart, keep their content and share one order; the plant file's views stay as written there. Short
+   links survive a restart, and the newest ones are kept. */
 #include "tests/support/test.h"
 
 #include <jansson.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Normals at points where many faces meet: equal to the plain sum over all pairs, in a time that grows little faster than their number. */
+/* Normals at points where many faces meet: equal to the plain sum over all pairs, computed in a time that grows little faster
+   than the number of faces. */
 #include "tests/support/test.h"
 #include <time.h>
 
@@ -19,7 +20,7 @@ static double chance(unsigned *seed)
     return rand_r(seed) / (double)RAND_MAX;
 }
 
-/* Makes a fan. height: of the centre above the rim; `rough` moves the rim's points up and down at random. */
+/* Makes a fan. height: of the centre above the rim; rough: moves the rim's points up and down at random. */
 static void fan_init(struct fan *fan, size_t count, double height, double rough, unsigned seed)
 {
     *fan = (struct fan){ .positions = mem_array(count + 1, sizeof(*fan->positions)),
@@ -77,8 +78,8 @@ static void assert_plain_sum(const struct fan *fan)
         face_of(fan, t, faces[t], &angles[t]);
     for (size_t t = 0; t < fan->count; t++) {
         double sum[3] = { 0 };
-        /* true: the angle to another face is so close to the crease angle that rounding decides whether both share a normal, so the sum is
-           not compared */
+        /* true: the angle to another face is so close to the crease angle that rounding decides whether the two share a normal,
+           so the sum is not compared */
         bool close = false;
         for (size_t o = 0; o < fan->count; o++) {
             double cosine = faces[t][0] * faces[o][0] + faces[t][1] * faces[o][1] + faces[t][2] * faces[o][2];

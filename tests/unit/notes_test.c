@@ -204,7 +204,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     assert_int_equal(system(mended), 0);
     assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
-    notes_close(&notes); /* notes are closed, as by a reload of the plant: the pending change is written all the same */
+    notes_close(&notes); /* closes the notes, as a reload of the plant does: the pending change must still be written */
     file_writer_stop(writer);
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 2 * S), "one three");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-prep on models that are far away, tiny, narrow or duplicated many times; and that it stops on a signal. */
+/* plantcast-prep on models that are far away, tiny, narrow or repeated many times; also, that a signal stops it. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
@@ -31,7 +31,8 @@ enum {
 /* Kinds of stray triangles at the origin of a model whose plate is far away. */
 enum expected_stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
 
-/* Adds a node with one stray triangle: without area at the origin, a needle from the plate to the origin, or a small one at the origin. */
+/* Adds a node with one stray triangle: a degenerate one at the origin, a needle from the plate to the origin, or a small one at
+   the origin. */
 static void add_stray(struct model_maker *maker, enum expected_stray stray, const double at_m[3])
 {
     static const uint32_t corners[3] = { 0, 1, 2 };
@@ -242,7 +243,7 @@ static double seconds_of(pid_t child)
     return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
 }
 
-/* Two million triangles take longer than the time that the program allows itself for finishing after a signal. */
+/* Two million triangles take longer than the program may take to finish after a signal. */
 CASE(what_is_told_to_end_ends)
 {
     static const int signals[] = { SIGTERM, SIGINT };

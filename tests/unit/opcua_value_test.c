@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OPC UA: node addresses, and conversion of values to readings: every numeric type, status codes and timestamps bit by bit, and values
-   that are not numbers. */
+/* OPC UA: node addresses, and conversion of values to readings: every numeric type, status codes and timestamps bit by bit, and
+   values that are no numbers. */
 #include "tests/support/test.h"
 
 #include "plant/sources/opcua_address.h"
@@ -136,7 +136,7 @@ TEST(status_codes_and_times_stay_as_they_are)
     stamped_writer_finish(&writer);
 }
 
-/* Readings older than the machine's boot: a machine started a minute ago receives readings of an hour ago. */
+/* Readings older than the machine's boot: a machine that started a minute ago receives readings that are an hour old. */
 TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
 {
     static const int64_t minute_ns = 60 * 1000000000LL;

@@ -197,7 +197,7 @@ CASE(test_claims)
     expect(f, sign(f->key, "RS256", "k1", "{\"iss\":\"https://id.example\",\"iss\":\"https://id.example\"}"), "n1", NULL, "not JSON");
 }
 
-/* A core accepts tokens of its renderers' users for the whole duration of a login, which may exceed a day. */
+/* A core accepts the tokens of its renderers' users for the whole duration of a login, which may exceed a day. */
 CASE(test_older_tokens)
 {
     struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .sub = "s1", .now_s = NOW_S + 2 * 24 * 3600 };

@@ -43,7 +43,7 @@ TEST(test_limits_that_are_missing)
     expect(&high, -50, 0); /* for a tag without a low limit, no reading is too low */
     expect(&alone, 80, 1);
     expect(&alone, 120, 1.5);
-    expect(&alone, 500, 2); /* a reading far beyond H stays below 2, the position of HH, because this tag has no HH */
+    expect(&alone, 500, 2); /* a reading far beyond H stays below 2, the position of HH, even though this tag has no HH */
     assert_true(limit_place(&range_0_100, &alone, 500) < 2);
     expect(&last, 40, 0.5);
     assert_true(limit_place(&range_0_100, &last, 79.999) < 1); /* no limit is passed yet */
@@ -118,8 +118,8 @@ static void set_limits(struct synthetic *plant, size_t tag, double low, double h
            sizeof(plant->plant.tags[tag].alarms.limits));
 }
 
-/* Compares the field of positions between limits with the field of another plant that has no limits and those positions as readings: both
-   must be equal. */
+/* Compares the field of positions between limits with the field of a plant without limits whose readings are those positions:
+   they must be equal. */
 static void compare(enum interpolation interpolation, double least_place, double most_place)
 {
     struct synthetic *places = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .max = 1);

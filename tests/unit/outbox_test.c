@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarm notifications: which recipients get which alarms, with floods, shifts and areas, escalation, outages and restarts; and the text
+/* Alarm notifications: which recipients get which alarms; floods, shifts, areas, escalation, outages and restarts; and the text
    of messages. */
 #include "tests/support/test.h"
 #include <time.h>
@@ -415,7 +415,7 @@ CASE(a_mail_says_what_and_since_when)
     text_finish(&mail);
 }
 
-/* Without acknowledgements in Plantcast, nobody knows here whether an operator has acknowledged the alarm in the control system. */
+/* Acknowledgement in Plantcast is off, so Plantcast cannot know whether an operator acknowledged the alarm in the control system. */
 CASE(an_escalated_mail_says_only_what_is_known)
 {
     load(f, "  - { id: all, to: boss, escalate: [{ after_min: 10, to: ops }] }\n");
@@ -440,7 +440,7 @@ CASE(an_escalated_mail_says_only_what_is_known)
     }
 }
 
-/* A message waits while the tag gets another unit: its value and limit are converted, or left out. */
+/* While a message waits, the tag's unit changes: the message's value and limit are converted, or left out. */
 CASE(a_message_that_waits_has_the_present_unit)
 {
     static const struct {

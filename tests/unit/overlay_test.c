@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The overlay of frames: alarms without a visible marker are listed, alarms with one are not; the overlay never covers the fitted plant. */
+/* The frame overlay: it lists alarms without a visible marker but not those with one, and it never covers the fitted plant. */
 #include "render/overlay/overlay.h"
 
 #include "tests/support/test.h"
@@ -47,7 +47,7 @@ static struct frame *draw(int tag, bool occluded, bool split)
     return draw_beside(tag, occluded, split ? &same : NULL);
 }
 
-/* Returns whether the lower left corner of a frame has the list of alarms without a visible marker. */
+/* Returns whether a frame shows the list of alarms without a visible marker in its lower left corner. */
 static bool has_list(const struct frame *frame)
 {
     for (int y = HEIGHT * 2 / 3; y < HEIGHT; y++)
@@ -196,7 +196,7 @@ TEST(halves_share_a_legend_that_says_the_same)
         right.look = way == LOOK ? LOOK_MATERIALS : right.look;
         right.field.show = way == SHOWN ? SHOW_DIFFERENCE : right.field.show;
         struct frame *frame = draw_beside(0, false, &right);
-        /* The halves are the same or differ in interpolation only: a colour means the same value in both, so one legend serves both. */
+        /* Both halves are equal or differ only in interpolation: a colour means the same value in both, so they share one legend. */
         bool shared = way == SAME || way == DISTANCE;
         if ((legend_px(frame, 0) > 20) == shared || (legend_px(frame, 1) > 20) != (way != LOOK))
             fail_msg("way %d: %d pixels of the left half, %d of the right", way, legend_px(frame, 0), legend_px(frame, 1));
@@ -204,7 +204,7 @@ TEST(halves_share_a_legend_that_says_the_same)
     }
 }
 
-/* Returns how many pixels of the legend's quarter of the frame differ between this look and the default one. */
+/* Returns how many pixels differ in the legend's quarter of the frame between this look and the default one. */
 static int legend_differs_px(enum look look)
 {
     struct view view;
@@ -221,14 +221,14 @@ static int legend_differs_px(enum look look)
     return count;
 }
 
-/* With the glossy look, values read from the picture may be wrong: the legend says so in two lines. */
+/* Values read from a picture with the glossy look may be wrong: the legend says so in two lines. */
 TEST(the_legend_says_glossy)
 {
     assert_int_equal(legend_differs_px(LOOK_FLAT), 0);
     assert_true(legend_differs_px(LOOK_GLOSSY) > 500);
 }
 
-/* Returns how many pixels of the legend differ between two frames with one arrow each; both arrows lie far from the legend. */
+/* Returns how many pixels of the legend differ between two frames, each with one arrow far from the legend. */
 static int arrow_legends_differ_px(const struct frame_label *label, const struct frame_label *other)
 {
     const struct frame_label *labels[2] = { label, other };
@@ -328,7 +328,7 @@ static unsigned sum_of(const struct frame *frame, const struct label_box *box)
     return sum;
 }
 
-/* Header, captions of both halves, alarm list and legend, each checked by itself; also the text of a frame of the past. */
+/* Header, captions of both halves, alarm list and legend, each checked separately; also the text of a frame that shows the past. */
 TEST(all_speaks_the_language)
 {
     static const struct label_box parts[] = {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pacing: the window of frames in flight, acknowledgements in order, out of order and of frames that were never sent; and a simulated
-   network. */
+/* Pacing: the window of frames in flight; acknowledgements in order, out of order and for frames that were never sent; and a
+   simulated network. */
 #include "session/pacing/pacer.h"
 
 #include "tests/support/test.h"
@@ -280,7 +280,7 @@ static void run_busy(struct pacer_world *world, struct pacer *pacer, int64_t bus
     run_world(world, pacer, seconds);
 }
 
-/* A page that loads its modules on a busy machine: neither the network nor the decoder is slow. */
+/* A page that loads its modules on a busy machine: the pacer must not take the network or the decoder for slow. */
 TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 {
     struct pacer pacer = fresh();
@@ -298,7 +298,7 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
     }
 }
 
-/* One frame takes long to decode, as the first one of a new codec does, while few other frames arrive. */
+/* One frame takes long to decode, as the first of a new codec does, and few other frames arrive meanwhile. */
 TEST(a_decoder_that_begins_is_not_slow)
 {
     struct pacer pacer = fresh();
@@ -339,7 +339,7 @@ TEST(who_see_the_same_take_one_step)
     struct quality_ladder ladder = { .step = 1 }, seen = { 0 };
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 1, 0, 1 }), -1);
     int common = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
-    assert_int_equal(common, 1); /* 10 of 100 clients have slower steps; they must not pull down the quality step that all share */
+    assert_int_equal(common, 1); /* 10 of 100 clients are on slower quality steps; they must not pull down the step that all share */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
                      QUALITY_LADDER_STEPS - 1);
     seen.unit_bytes = 90e3; /* bytes per frame: too many for 500 clients, not for 100 */

@@ -131,11 +131,11 @@ CASE(few_wait_and_few_guesses_are_judged)
     char digits[PAIRING_DIGITS + 1], more[PAIRING_DIGITS + 1];
     for (int i = 0; i < PAIRINGS; i++)
         assert_int_equal(ask(f, i, 0, digits), PAIRING_WAITS);
-    /* Eight addresses that fill the table cannot keep a ninth address out: it gets its share of seven. */
+    /* Eight addresses that fill the table cannot shut out a ninth: it gets its share of seven. */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
         assert_int_equal(ask(f, PAIRINGS + i, 0, more), PAIRING_WAITS);
     assert_int_equal(ask(f, PAIRINGS + PAIRINGS_FROM - 1, 0, more), PAIRING_FULL);
-    /* the first address lost one pending request to the ninth one and now has as many as the others, so it gets no more */
+    /* the first address lost one pending request to the ninth and now has as many as the others, so it gets no more */
     assert_int_equal(ask(f, 0, 0, more), PAIRING_FULL);
     assert_int_equal(ask(f, PAIRINGS, PAIRING_QUIET_S * NS_PER_S, more), PAIRING_WAITS); /* all other requests have expired */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)

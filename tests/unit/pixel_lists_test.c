@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists of near sensors (render/soft/pixel_lists.h): values at random places of random squares against plain sums in double precision,
-   flags against pixel_field_at(). */
+/* Lists of near sensors (render/soft/pixel_lists.h): values at random positions in random squares, compared with plain sums in
+   double precision, and flags, compared with pixel_field_at(). */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -101,7 +101,7 @@ static void make_field(struct pixel_field *field, int count, bool paper, bool od
     }
 }
 
-/* Makes a square of pixel cells on a tilted plane, of which `side` x `side` are used; some cells also show a surface behind the plane. */
+/* Makes a square of pixel cells on a tilted plane, with `side` x `side` of them in use; some cells also show a surface behind the plane. */
 static size_t make_cells(struct pixel_cell *cells, int side, double size_m, const double corner_m[3], const double slope[2])
 {
     size_t count = 0;

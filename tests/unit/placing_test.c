@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trial layouts of sensors: a trial is available at once and replaced when distances along the surface are ready; an invalid layout is
-   refused whole. */
+/* Trial layouts of sensors: a trial is available at once and replaced when its distances along the surface are ready. An
+   invalid layout is refused as a whole. */
 #include "placing/placing.h"
 
 #include "tests/support/test.h"
@@ -65,7 +65,7 @@ TEST_FIXTURE(struct placing_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct placing_fixture *f, name, set_up, tear_down)
 
-/* Returns the next answer about the gaps between a plant's sensors; NULL once no request of the test's set of positions is pending. */
+/* Returns the next answer about the gaps between a plant's sensors; NULL if no request for the test's positions is pending. */
 static struct sensor_coverage_answer *collect(struct placing_fixture *f, bool gaps)
 {
     for (int seen = 0;;) {
@@ -119,7 +119,7 @@ TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_do
         farthest_m = fmax(farthest_m, along_m);
         assert_true(along_m > 0.94 * straight_m - 0.05); /* no path along the surface is much shorter than the straight line */
     }
-    /* the farthest vertex is in the middle of the box's bottom: 0.5 + 1 + 0.5 m along the surface */
+    /* the farthest vertex is in the middle of the box's bottom, 0.5 + 1 + 0.5 m along the surface */
     assert_true(farthest_m > 1.85 && farthest_m < 2.4);
     trials_give(placing_trials(f->placing), &trial);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plant files: the meaning of a valid file, and every kind of mistake with its line, column and message. */
+/* Plant files: what a valid file means, and every kind of mistake, with its line, column and message. */
 #include "plant/plant.h"
 
 #include "tests/support/test.h"
@@ -202,8 +202,8 @@ CASE(sensors_are_given_in_the_asset_frame)
          placed_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
-    /* Rotation about x: (x, y, z) -> (x, -z, y), then about z: (x, y, z) -> (-y, x, z), together (a, b, c) -> (c, a, b). The expected
-       positions apply the inverse to points relative to (0, 2, 3). */
+    /* Rotation about x: (x, y, z) -> (x, -z, y), then about z: (x, y, z) -> (-y, x, z), together (a, b, c) -> (c, a, b). The
+       expected positions apply the inverse to points relative to (0, 2, 3). */
     assert_point(s[0].position_m, 2, 3, 0); /* positions are enlarged by the asset's scale, still in metres */
     assert_true(s[0].tag == 0 && s[0].node_hash == 0 && !s[0].node);
     assert_float_equal(f->plant->assets[0].unit_m, 2e-3, 1e-15);
@@ -309,7 +309,7 @@ CASE(unknown_keys_are_named)
     FOUND(f, { "plant.yaml", 1, 19, "expected the name of a key, found a list" });
 }
 
-/* Radiance HDR files: two valid ones of white pixels, and a black one that cannot serve as surroundings. */
+/* Radiance HDR files: two valid ones of white pixels, and a black one, which cannot serve as surroundings. */
 CASE(surroundings_are_read)
 {
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";

@@ -36,7 +36,7 @@ static const char tags_text[] = "T1,400001,Float,plc,temperature,A,,0,0,0\n"
                                 "T4,400007,Float,plc,temperature,B,TT-2,,,\n"
                                 "T5,400009,Float,plc,temperature,C,,1,0.5,0.4\n";
 
-/* The new revision has its second plate at another position, a third plate, and its nodes and meshes in another order. */
+/* In the new revision, the second plate has moved, a third plate is added, and the nodes and meshes are in another order. */
 static const char first_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"name\":\"plate-1\",\"mesh\":0},{\"name\":\"plate-2\","
                                   "\"mesh\":0,\"translation\":[0,5,0]},{\"name\":\"TT-2\",\"translation\":[2,1,0]}],";
 static const char next_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"name\":\"TT-2\",\"translation\":[2,1,0]},"
@@ -210,7 +210,7 @@ static size_t triangles_of_first(struct prep_case *s)
     return indices / 3;
 }
 
-/* Subdivision depends on the field, and so on a change of the reach; a change of a limit does not affect the field. */
+/* Subdivision depends on the field, so a change of the reach requires a new file; a change of a limit does not affect the field. */
 CASE(another_reach_is_another_file)
 {
     assert_states(s, "built", "shared", "built");
@@ -369,8 +369,8 @@ CASE(a_field_that_is_constant_needs_no_triangles)
     assert_true(triangles[2] == triangles[1]);
 }
 
-/* Sensors with an assumed position, which represent their whole asset, need neither a surface nor subdivision; if another sensor's
-   position is known, both are needed. */
+/* A sensor with an assumed position represents its whole asset and needs neither a surface nor subdivision. As soon as one
+   sensor's position is known, both are needed. */
 CASE(assumed_places_need_no_surface)
 {
     struct prep_case *c = s;

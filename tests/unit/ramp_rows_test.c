@@ -31,8 +31,7 @@ static void end(struct ramp_rows_setup *s)
         mem_free(*at);
 }
 
-/* Sets the colour ramp of a material from black to the material's own colour. grey: colour of the material where it is drawn as muted
-   context. */
+/* Sets a material's colour ramp from black to the material's own colour. grey: the material's colour where it is drawn as muted context. */
 static void set(struct ramp_rows_setup *s, size_t material, uint32_t color, uint32_t grey)
 {
     for (uint32_t i = 0; i < STEPS; i++) {
@@ -50,7 +49,7 @@ TEST(equal_ones_are_kept_once)
     begin(&s, 5000);
     for (size_t i = 0; i < s.count; i++) {
         uint32_t shade = (uint32_t)(i * 7919 % 50);
-        /* equal colours, but some of these materials have another grey as muted context, which needs a row of its own */
+        /* equal colours, but some of these materials have a different grey as muted context, which needs a row of its own */
         set(&s, i, 0x102030 + shade, 0x808080 + (shade == 7 && i > 2500));
     }
     assert_int_equal(pack(&s), 51);

@@ -21,7 +21,8 @@ static void corner(const struct scene_asset *asset, uint32_t vertex, double out[
         out[i] = (double)asset->file->view.positions_m[vertex][i] + asset->placement[12 + i];
 }
 
-/* Solves origin + t direction = a + u ab + v ac by Cramer's rule. Returns true with *t and *facing if the ray hits the triangle. */
+/* Reference: solves origin + t direction = a + u ab + v ac by Cramer's rule. Returns true with *t and *facing if the ray hits
+   the triangle. */
 static bool slow_triangle(const struct ray *ray, const double a[3], const double b[3], const double c[3], double *t, double *facing)
 {
     double m[3][4], ab[3], ac[3];
@@ -66,7 +67,7 @@ static double slow_raycast(const struct visibility *visibility, const struct ray
     return best;
 }
 
-/* Returns how many closed bodies contain the ray's point at `from`: exits after it minus entries after it. */
+/* Returns how many closed bodies contain the ray's point at `from`: number of exits after it minus number of entries after it. */
 static int slow_bodies(const struct visibility *visibility, const struct ray *ray, double from)
 {
     int bodies = 0;
@@ -89,7 +90,7 @@ static int slow_bodies(const struct visibility *visibility, const struct ray *ra
     return bodies;
 }
 
-/* A section plane caps cut bodies: the ray must hit a cap where it passes the plane inside a body. Returns false if the ray hits no cap. */
+/* A section plane caps the bodies that it cuts: a ray that passes the plane inside a body must hit a cap. Returns false if it hits none. */
 static bool agrees_on_cap(const struct visibility *visibility, const struct ray *ray, const struct raycast_hit *hit)
 {
     double low = ray->low, high = ray->high, facing = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Read plans of Modbus: which registers are read together, on random tag lists compared with the rules applied one by one. */
+/* Modbus read plans: which registers are read together, on random tag lists, checked against the rules one by one. */
 #include "tests/support/test.h"
 
 #include "tests/support/plant_by_hand.h"
@@ -95,7 +95,7 @@ TEST(gaps_are_bridged_up_to_the_device_s_limit)
     struct plant *plant = plant_of_registers((int[]){ 0, 6, 13, 23 }, 4, TABLE_HOLDING, DATA_FLOAT32);
     plant->sources[0].max_gap = 5;
     read_plan_init(&plan, plant, 0);
-    assert_block(&plan, 0, 0, 15, 3); /* registers 0, 6 and 13 are read together, with gaps of 4 and 5 unused registers between them */
+    assert_block(&plan, 0, 0, 15, 3); /* registers 0, 6 and 13 are read together, across gaps of 4 and 5 unused registers */
     assert_block(&plan, 1, 23, 2, 1); /* register 23 is read separately, because the gap before it, 8 registers, is longer than allowed */
     read_plan_split(&plan, plant, 0);
     assert_block(&plan, 0, 0, 2, 1); /* a refused block is split at its first gap, which is then not read any more */
@@ -148,8 +148,8 @@ TEST(splitting_ends_at_single_tags)
 
 enum { REGISTERS = 1000 };
 
-/* Asserts that every tag is in exactly one block, that blocks respect the limits, and that no gap of unused registers is longer than the
-   device allows. */
+/* Asserts that every tag is in exactly one block, that blocks respect the limits, and that no gap of unused registers exceeds
+   the device's limit. */
 static void check_rules(const struct plant *plant, const struct read_plan *plan)
 {
     char wanted[2][REGISTERS + 4] = { { 0 } };

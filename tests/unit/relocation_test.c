@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Relocation of sensors on a loaded asset: distances equal those that plantcast-prep would store, each request is answered once, and
-   invalid ones are refused. */
+/* Relocation of sensors on a loaded asset: distances equal those that plantcast-prep would store, each request gets exactly one
+   answer, and invalid ones are refused. */
 #include "surface/relocation.h"
 
 #include "tests/support/test.h"
@@ -18,9 +18,9 @@
 #include "tests/support/sleep.h"
 
 #define FAR 3e-3  /* of the largest distance */
-/* metres; a point counts as on the surface if it is nearer than this, because bridging of cracks moves the surface by less */
+/* metres; a point nearer than this counts as on the surface: bridging of cracks moves the surface by less */
 #define ON 1e-3
-#define SEEN 1e-5 /* metres; a vertex of the finest level counts as visible if it is nearer than this to the visible surface */
+#define SEEN 1e-5 /* metres; a vertex of the finest level this near to the visible surface counts as visible */
 #define NEAR 0.05 /* metres; the same for vertices that only coarser levels have, which lie off the surface */
 
 struct result_box { /* receives a result */
@@ -120,8 +120,8 @@ struct most {           /* largest differences that are allowed between computed
 
 enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
 
-/* Classifies vertices: of the finest level, only of coarser levels (which have errors), or hidden inside another part. Hidden ones are
-   not compared: plantcast-prep assigns them a nearby distance, which is ambiguous. */
+/* Classifies vertices: in the finest level; only in coarser levels (which have errors); or hidden inside another part. Hidden
+   vertices are not compared: plantcast-prep assigns them a nearby distance, which is ambiguous. */
 static enum sight *sights_of(const struct relocation_shape *shape)
 {
     struct cache_file kept;
@@ -296,7 +296,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
 
 /* --- failing allocations ------------------------------------------------------------------------------------------------------- */
 
-/* counts down: the memory allocation that finds 1 fails, to test what happens when memory is short; 0: none fails */
+/* countdown: the memory allocation that finds it at 1 fails, which tests shortage of memory; 0: none fails */
 static atomic_int until_fault;
 void *__real_mem_try_array(size_t count, size_t bytes_each);
 void *__wrap_mem_try_array(size_t count, size_t bytes_each);
@@ -321,8 +321,8 @@ static void ask_and_wait(struct relocation *relocation, struct result_box *box)
     wait_for(box, 1);
 }
 
-/* Computes the distances of a moved sensor again and again; each time another memory allocation fails, and the next request must
-   succeed. */
+/* Computes the distances of a moved sensor repeatedly. Each time a different memory allocation fails, and the request after it
+   must succeed. */
 static void try_walks_without_memory(struct relocation *relocation, const struct cad *plate)
 {
     int failed = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cracks in seams between faces: each crack is closed with the face across it, not with a face that it overlaps. */
+/* Cracks in seams between faces: each crack is closed with the face across it, not with a face that overlaps it. */
 #include "surface/repair/repair.h"
 
 #include "tests/support/test.h"
@@ -36,8 +36,8 @@ static bool sheets_share(const struct trimesh *mesh)
     return share;
 }
 
-/* The lower sheet has a crack along y with its left side at x = 0. In the upper sheet two cracks cross, and two of the four corners
-   there lie just on that left side. */
+/* The lower sheet has a crack along y whose left side is at x = 0. In the upper sheet two cracks cross, and two of the four
+   corners at the crossing lie exactly on that side. */
 TEST(a_gap_is_not_set_into_one_that_it_runs_over)
 {
     static const float corners[QUADS][8] = {
@@ -66,8 +66,8 @@ TEST(a_gap_is_not_set_into_one_that_it_runs_over)
     trimesh_finish(&mesh);
 }
 
-/* Two faces at a crack along x = 0 and two faces on top of them that match the left ones, all cut along the crack: left must close with
-   right, not with the faces on top. */
+/* Two faces at a crack along x = 0, and two faces on top of the left ones with the same shape, all cut along the crack: left
+   must close with right, not with the faces on top. */
 TEST(a_gap_is_closed_across_not_with_what_lies_on_it)
 {
     static const float corners[4][8] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays: every recorded sample reaches the store in its order and at its time, once or in a loop. */
+/* Replays: every recorded sample reaches the store in order and at its time, once or in a loop. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -157,7 +157,7 @@ CASE(what_is_not_in_the_file_is_bad)
     assert_true(s->events.at[1].tag == 0 && s->events.at[1].value == 0);
     wait_for_link(s, true);
     int64_t begin_ns = clock_mono_ns();
-    source_stop(&s->source); /* stops the replay long before the end of the recording; this must not take longer than 2 s */
+    source_stop(&s->source); /* stops the replay long before the recording ends, which must take at most 2 s */
     assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
 }
 
@@ -182,7 +182,7 @@ static void check_series(const char *path, const char *name, size_t count, doubl
     series_finish(&series);
 }
 
-/* A cell must not be cut at a decimal comma or at a comma between thousands, which would give the columns other values. */
+/* A cell must not be split at a decimal comma or a thousands comma: the columns would get wrong values. */
 CASE(commas_in_numbers_are_refused)
 {
     static const char *const files[] = { "t_s;a;b\n0;21,5;3\n", "t_s\ta\tb\n0\t21,5\t3\n", "t_s,a,b\n0,1,234,3\n",
@@ -213,7 +213,7 @@ CASE(exported_qualities_are_replayed)
     assert_true(s->events.at[1].value == 2 && s->events.at[3].value == 4);
 }
 
-/* Timestamps as historians write them: with a zone, with an offset, or in local time with one hour of a night twice. */
+/* Timestamps as historians write them: with a time zone, with an offset, or in local time, with one hour of a night repeated. */
 CASE(times_may_be_instants)
 {
     static const char *const wide[] = {

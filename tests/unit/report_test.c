@@ -23,8 +23,8 @@ static const char tags_rows[] = "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5
                                 "T-APART,400003,Float,plc,temperature,APART,,10.5,0.5,1.5\n"
                                 "T-INSIDE,400005,Float,plc,temperature,INSIDE,,22,2,4.02\n";
 
-/* Models: two boxes of 1 m, 0.2 mm apart; two boxes 0.5 m apart, one with a duplicate face, a degenerate face, lines and points; a small
-   box inside a large one; and one box without a sensor. */
+/* Models: two boxes of 1 m, 0.2 mm apart; two boxes 0.5 m apart, one with a duplicate face, a degenerate face, lines and
+   points; a small box inside a large one; and one box without a sensor. */
 static int set_up(void **state)
 {
     static const float twice[3][3] = { { 10, 0, 0 }, { 10, 1, 0 }, { 11, 0, 0 } },
@@ -169,7 +169,7 @@ TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
     assert_int_equal(system(command), 0);
 }
 
-/* Whether half a metre counts as a gap depends on the tolerance in the plant file; changing it rebuilds only that asset. */
+/* The tolerance in the plant file decides whether half a metre counts as a gap; changing it rebuilds only that asset. */
 TEST_WITH(the_plant_file_sets_the_tolerance, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
@@ -217,7 +217,7 @@ TEST(the_time_left_follows_the_work)
     progress_begin(&progress, out, 10, 4, 0);
     assert_true(progress_left_s(&progress, s) < 0);
     for (int i = 0; i < 3; i++)
-        /* the work of three of the six assets is known, so the progress line expects 1,200 in all, as if the others were alike */
+        /* the work of three of the six assets is known, so the progress line expects 1,200 in all, assuming that the others take as much */
         progress_expect(&progress, i == 0 ? 400 : 100);
     progress_step(&progress, 400, 4 * s);
     assert_float_equal(progress_left_s(&progress, 4 * s), 8, 1e-9);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a plant that are replaced together: killed, or out of disk space, at each step; and edits to the plant file's text. */
+/* Files of a plant that are replaced together, with a kill or a full disk at each step; also edits to the plant file's text. */
 #include "preprocess/import/revision/revision_files.h"
 
 #include "tests/support/test.h"
@@ -55,7 +55,7 @@ static int take(const char *folder, const char *own)
     return lock;
 }
 
-/* Applies a revision that also replaces a list in a subfolder and records one list that stays unchanged. */
+/* Applies a revision that also replaces a list in a subfolder and records one unchanged list. */
 static int apply_to(const char *folder, const char *plant_as_read)
 {
     char *own = test_printf("%s/.import-1", folder), *list = test_printf("%s/lists/tags.csv", folder);

@@ -107,7 +107,7 @@ TEST(merged_buckets_are_longer_ones)
     assert_true(none.low == 0 && none.high == 9 && none.mean == 4);
 }
 
-/* The line from 0 at 100 s to 30 at 400 s is bridged over the part from 200 s to 300 s. */
+/* The line from 0 at 100 s to 30 at 400 s is bridged from 200 s to 300 s. */
 TEST(a_bridge_is_a_straight_line)
 {
     struct history_bucket a = { .t_us = 90 * US_PER_S, .last = 0 }, b = { .t_us = 400 * US_PER_S, .first = 30 };

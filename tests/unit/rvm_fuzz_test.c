@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the fuzzer of RVM files and their attributes, and random mutations of them. PLANTCAST_FUZZ_ROUNDS: mutations per
-   seed. */
+/* Replays the seeds of the fuzzer of RVM and attribute files, and random mutations of them. PLANTCAST_FUZZ_ROUNDS: mutations per seed. */
 #include "tests/fuzz/rvm_fuzz.c"
 
 #include "tests/support/test.h"

@@ -233,15 +233,15 @@ static size_t open_edges(const struct cad_model *model)
     return open;
 }
 
-/* A pipe, an elbow turned in a slanted plane, a pipe, a reducer, and a pipe closed by a dish. */
+/* A pipe, an elbow rotated within a slanted plane, a pipe, a reducer, and a pipe closed by a dish. */
 TEST(test_a_pipe_run_is_closed)
 {
     struct text file = { 0 };
     struct rvm_counts counts;
     double c = cos(0.7), s = sin(0.7);
-    /* The elbow runs from (offset, 0, 0) through a quarter turn to (0, offset, 0), all turned about x by 0.7. */
+    /* The elbow makes a quarter turn from (offset, 0, 0) to (0, offset, 0), all rotated about x by 0.7. */
     const double turned[12] = { 0.001, 0, 0, 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, 0, 0, 0 };
-    /* The elbow's first end faces -y: a pipe of 1 m along y with its centre at (300, -500, 0). */
+    /* The elbow's first end faces -y, where a pipe 1 m long along y has its centre at (300, -500, 0). */
     const double first[12] = { 0.001, 0, 0, 0, -0.001 * s, 0.001 * c, 0, -0.001 * c, -0.001 * s, 0.3, -0.5 * c, -0.5 * s };
     /* The elbow's second end faces -x: pipe, reducer and dish continue in this direction. */
     const double second[12] = { 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, -0.001, 0, 0, -0.5, 0.3 * c, 0.3 * s };
@@ -376,8 +376,8 @@ TEST(test_a_long_name_stays_whole)
     text_finish(&name);
 }
 
-/* Files truncated at each byte, and with each of the first 4,096 bytes set to 255, are either read completely or refused with a
-   position. */
+/* Files truncated at each byte, and files with one of the first 4,096 bytes set to 255, are either read completely or refused
+   with the byte position. */
 TEST(test_broken_files_are_refused_at_a_byte)
 {
     struct text file = { 0 };

@@ -108,7 +108,7 @@ TEST(test_logarithmic)
     for (double place = 0; place <= 1; place += 0.125)
         assert_true(fabs(scale_place(&scale, scale_value(&scale, place)) - place) < 1e-12);
     assert_true(fabs(scale_value(&scale, 0.5) - 10) < 1e-9);
-    /* on a logarithmic scale, the step is the smallest difference that is visible at the low end of the range */
+    /* on a logarithmic scale, the step is the smallest difference visible at the low end of the range */
     assert_true(scale_step(&scale) < 0.1 * log(1e4) / 255);
     memcpy(scale.breaks, (double[]){ 1, 10 }, 2 * sizeof(double));
     scale.break_count = 2;

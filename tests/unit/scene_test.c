@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes from real plant and asset files: everything is at its position, and files of another plant are refused with the reason. */
+/* Scenes from real plant and asset files: everything is in its place, and files of another plant are refused with the reason. */
 #include "scene/scene_create.h"
 
 #include "tests/support/test.h"
@@ -155,7 +155,7 @@ CASE(everything_is_in_its_place)
     assert_point(b->sensors[1].position_m, 8, 24, 30);
     assert_point(b->sensors[0].surface_m, 8, 21, 32.5);
     assert_float_equal(b->sensors[0].surface_distance_m, 0.5, 1e-6);
-    assert_point(c->sensors[0].position_m, -4, -3, 2); /* the asset's placement in the plant file turns y of the model to z, and z to -y */
+    assert_point(c->sensors[0].position_m, -4, -3, 2); /* the asset's placement in the plant file maps the model's y to z, and z to -y */
     assert_point(a->bounds_min_m, 0, 1, 1);
     assert_point(a->bounds_max_m, 4, 2, 3);
     assert_point(b->bounds_min_m, 8, 20, 31);
@@ -166,8 +166,8 @@ CASE(everything_is_in_its_place)
     assert_null(scene);
 }
 
-/* Asserts that creating the scene fails and that the log contains `words` and `hint`. Redirects stderr, where the log writes, to a file
-   meanwhile. */
+/* Asserts that creating the scene fails and that the log contains `words` and `hint`. Meanwhile redirects stderr, where the log
+   goes, to a file. */
 static void assert_refused_from(struct scene_fixture *f, const char *prepared, const char *words, const char *hint)
 {
     char *path = temp_path(f->folder, "log.txt");
@@ -337,7 +337,7 @@ CASE(home_is_the_view_of_the_plant)
     scene_destroy(&scene);
 }
 
-/* The home view covers only assets that are visible at the start. B stands 10 m away from the others. */
+/* The home view covers only assets that are visible at start. B stands 10 m away from the others. */
 CASE(home_is_of_what_is_shown_at_the_start)
 {
     f->plant->assets[1].start = PLANT_START_HIDDEN;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scheduler: which request is drawn next, tested by simulating a slow render thread and counting the frames of each client. */
+/* The scheduler: which request is drawn next, tested by simulating a slow render thread and counting each client's frames. */
 #include "service/scheduler.h"
 
 #include "tests/support/test.h"
@@ -42,8 +42,8 @@ TEST(slow_pictures_wait_for_a_pause)
     assert_int_equal(choose(&scheduler, wait_until_ns, NONE, now_ns, NONE, wait_until_ns), URGENCY_INPUT);
 }
 
-/* Frames for input and for data take 30 ms each, a refinement 50 steps of 10 ms. Every client requests again immediately: a moving
-   client must wait no longer than one step plus the others' frames. */
+/* Frames for input and for data take 30 ms each, a refinement 50 steps of 10 ms. Every client sends its next request
+   immediately. A moving client must wait no longer than one step plus the others' frames. */
 TEST(everyone_gets_a_share)
 {
     enum { STEPS = 50 };
@@ -90,7 +90,7 @@ TEST(a_queue_of_refinements_does_not_hold_up_a_move)
     }
 }
 
-/* Three clients that request continuously, with frames of 5, 10 and 40 ms, and one that requests occasionally. */
+/* Three clients that always have a request, with frames of 5, 10 and 40 ms, and one that requests a frame now and then. */
 TEST(time_is_shared_by_what_pictures_cost)
 {
     static const int64_t cost_ns[] = { 5 * NS_PER_MS, 10 * NS_PER_MS, 40 * NS_PER_MS, 10 * NS_PER_MS };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensor coverage of a plate whose distances and areas can be computed by hand, compared with a plain sum over its vertices. */
+/* Sensor coverage of a plate with distances and areas that can be computed by hand, compared with a plain sum over its vertices. */
 #include "placing/sensor_coverage.h"
 
 #include "tests/support/test.h"
@@ -50,7 +50,7 @@ static double share_of(bool (*f)(const double nearest[2], double limit_m), doubl
             double triangles = inside ? 3 * inside : 1.5;
             for (int s = 0; s < SENSORS; s++) {
                 double m = hypot(x - sensors[s][0], y - sensors[s][1]);
-                /* the later sensor wins if two are equally near: the last one has a good reading, which counts first */
+                /* if two sensors are equally near, the later one wins: the last one has a good reading, which takes precedence */
                 if (m <= nearest[0]) {
                     nearest[0] = m;
                     nearest[1] = s;
@@ -76,7 +76,7 @@ TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
 {
     struct sensor_coverage gaps = find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 1, 1, 1 });
     assert_int_equal(gaps.sensors, SENSORS);
-    /* the point (1, 4) is farthest, from the first sensor; the third one is hardly farther from it */
+    /* the point (1, 4) is the farthest from any sensor: the first is its nearest, and the third is hardly farther away */
     assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6);
     assert_true(fabs(gaps.farthest_at_m[0] - 101) < 1e-5 && fabs(gaps.farthest_at_m[1] - 4) < 1e-5);
     assert_true(fabs(gaps.farthest_at_m[2] - 7) < 1e-5);

@@ -19,7 +19,7 @@ struct service_manager_setup {
 static void begin(struct service_manager_setup *s)
 {
     struct sockaddr_un address = { .sun_family = AF_UNIX };
-    setsid(); /* own session, as a service manager would start it; otherwise the work of other processes in the session counts too */
+    setsid(); /* a session of its own, as under a service manager; otherwise the work of other processes in the session would count too */
     s->path = temp_path(temp_folder(), "notify");
     memcpy(address.sun_path, s->path, strlen(s->path));
     s->fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -66,7 +66,7 @@ CASE(it_asks_while_it_works_and_not_while_it_hangs)
     struct service_patience *patience = service_patience_begin("working", LIMIT_S);
     work_ms(5 * EVERY_MS);
     assert_true(asked(s) >= 3);
-    /* work done before this pause may still cause one more request to the service manager, which is not counted */
+    /* work done before this pause may still cause one more request to the service manager, which does not count */
     rest_ms(EVERY_MS + EVERY_MS / 2);
     asked(s);
     rest_ms(3 * EVERY_MS);
@@ -99,7 +99,7 @@ CASE(one_step_may_not_last_for_ever)
     int asks = asked(s);
     if (clock_work_ns() - before_ns > 1500 * NS_PER_MS)
         assert_true(asks >= 5);
-    else /* the machine was too busy: without processor time the thread made no progress, so the number of requests proves nothing */
+    else /* the machine was too busy: the thread got no processor time and made no progress, so the number of requests proves nothing */
         print_message("# not judged: asked %d times in %lld ms of a processor\n", asks,
                       (long long)((clock_work_ns() - before_ns) / NS_PER_MS));
     rest_ms(200); /* one more request may have been waiting for space in the socket */

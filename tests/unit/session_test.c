@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session without a socket, clock or render service: its frame requests, the messages that it sends, and its answers. */
+/* A session without a socket, clock or render service: its frame requests, the messages that it sends, and how it handles answers. */
 #include "session/session.h"
 
 #include "tests/support/test.h"
@@ -62,8 +62,8 @@ static void greet(struct session_case *f)
     expect(f, "welcome status tags ");
 }
 
-/* Takes the session's next request in place of the render service. Returns false if there is none, or if the render service would
-   decline it. */
+/* Takes the session's next request in the role of the render service. Returns false if there is none, or if the render service
+   would decline it. */
 static bool ask(struct session_case *f, struct frame_request *request)
 {
     if (!session_next_request(f->session, f->now_ns, request) || request->only_replace)
@@ -143,7 +143,8 @@ static struct frame_request show(struct session_case *f)
     return request;
 }
 
-/* New readings while a refined frame is shown. quick: whether the render thread can recolour it in time, or draws a preview instead. */
+/* New readings arrive while a refined frame is shown. quick: whether the render thread can recolour it in time, rather than
+   drawing a preview. */
 static struct frame_request show_data(struct session_case *f, bool quick)
 {
     struct frame_request request = { 0 };
@@ -260,7 +261,7 @@ CASE(refined_frames_are_asked_for_signed)
     f->now_ns += NS_PER_S;
     struct frame_request refined = show(f);
     assert_true(refined.view.tier == TIER_REFINED && refined.record && refined.codec == WIRE_CODEC_PNG && !refined.draft);
-    /* asks for the refined frame with new colours as a PNG file to sign, or else for a preview in JPEG like those before */
+    /* requests the refined frame with new colours as a PNG file to be signed, or else a preview in JPEG like those before */
     struct frame_request data = show_data(f, true);
     assert_true(data.record && data.codec == WIRE_CODEC_PNG && (!data.or_moving || data.moving_codec == WIRE_CODEC_JPEG));
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
@@ -631,7 +632,7 @@ CASE(data_on_a_loaded_server_does_not_put_refinement_off_for_ever)
     assert_in_range(refined, 2, 4);
 }
 
-/* A refinement was abandoned for new readings that change no pixel: the preview on display must still be refined. */
+/* A refinement was abandoned because of new readings that change no pixel: the preview on display must still be refined. */
 CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
 {
     struct frame_request refined, data;
@@ -649,8 +650,8 @@ CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
 }
 
-/* The render service reports that the client already has the refined frame, but the frame was never sent: after a pause the session
-   requests it once more, complete. */
+/* The render service answers that the client already has the refined frame, but that frame was lost: after a pause the session
+   requests it once more, in full. */
 CASE(a_refined_picture_that_is_lost_is_asked_for_again)
 {
     struct frame_request refined;
@@ -693,8 +694,8 @@ CASE(data_does_not_wait_for_the_first_refined_picture)
     assert_true(ask(f, &data) && data.view.tier == TIER_REFINED && !data.or_moving);
 }
 
-/* A preview requested during a refinement and drawn after it must be refined again: tested for delayed readings, and for a client that
-   changes its codec. */
+/* A preview requested during a refinement and drawn after it must itself be refined. Tested with delayed readings, and with a
+   client that changes its codec. */
 CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
 {
     struct frame_request refined, preview;
@@ -723,7 +724,7 @@ CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
     assert_false(ask(f, &preview));
 }
 
-/* A minute of readings that change twice per second: the refined frame stays, whatever else the server has to do. */
+/* For a minute, readings change twice per second: the refined frame stays, however busy the server is. */
 CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
 {
     struct frame_request request;
@@ -836,14 +837,14 @@ CASE(hidden_pages_get_nothing)
     assert_true(request.always && request.view.camera_seq == 1);
 }
 
-/* Hiding and showing a view repeatedly costs a new frame each time and is admitted like a new session. */
+/* Hiding and showing a view repeatedly costs a new frame each time, so it is admitted like a new session. */
 CASE(views_shown_again_and_again_are_admitted_as_new_ones)
 {
     static const char HIDE[] = "{\"type\":\"visible\",\"visible\":false}", SHOW[] = "{\"type\":\"visible\",\"visible\":true}";
     struct frame_request request;
     greet(f);
     show(f);
-    /* pretends that drawing takes all of the time and that readings are delayed, so that no new session would be admitted */
+    /* pretends that drawing takes all of the time and that readings are delayed, so no new session would be admitted */
     for (int i = 0; i < 3; i++)
         f->admission.windows[i] = (struct admission_window){ .drawing_ns = NS_PER_S, .data_wait_ns = 2 * NS_PER_S };
     f->now_ns += NS_PER_S;
@@ -895,7 +896,7 @@ CASE(large_readings_keep_all_digits)
     char *text = reply_api_tags_text(&f->context, 1, 1);
     assert_non_null(strstr(text, "\"value\":12345678.531,"));
     mem_free(text);
-    /* a display whose token is limited to some tags gets a list without the other tags; numbers in it must keep their digits */
+    /* a display whose token is limited to some tags gets a list without the others; numbers in it must keep all their digits */
     f->session->identity.holder.display = 1;
     f->session->scope.tags = mem_array(f->context.plant->tag_count + 1, sizeof(*f->session->scope.tags));
     f->session->scope.tags[1] = true;
@@ -986,7 +987,7 @@ CASE(too_many_messages_are_put_off)
     assert_false(f->session->rate.exceeded);
 }
 
-/* Messages that were sent before the session told the client to stop are read at once, and count against the following seconds. */
+/* Messages already sent when the session tells the client to stop are read at once, and count against the following seconds. */
 CASE(messages_beyond_a_second_count_for_the_next)
 {
     const int most = (int)f->quotas.at[QUOTA_MESSAGES], beyond = most / 4, seconds = 12;
@@ -1091,7 +1092,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     session_on_leader(f->session, f->now_ns);
     request = show(f);
     assert_true(request.view.camera.eye_m[0] == 3 && request.view.field.group == leader->view.field.group);
-    /* number of the camera that this client sent last, not of the camera of the session that it follows */
+    /* number of the camera that this client sent last, not the camera of the session that it follows */
     assert_int_equal(request.view.camera_seq, 1);
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");

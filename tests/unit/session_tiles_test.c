@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tiles of one picture: which frames they present together, and that none waits forever for a frame that another tile will never get. */
+/* Tiles of one picture: which frames they present together, and that no tile waits forever for a frame that another tile will never get. */
 #include "session/tiles/tile_sync.h"
 
 #include "tests/support/test.h"
@@ -60,7 +60,7 @@ TEST(test_of_two_pictures_none_is_waited_for)
     set_up(&wall);
     have(&wall, 0, 6, 3);
     have(&wall, 1, 7, 3);
-    wall.members[0]->delivery.pacer.asked = 1; /* tile 0 has a request under way, so it may still get picture 7, which tile 1 has */
+    wall.members[0]->delivery.pacer.asked = 1; /* tile 0 has a request under way, so it may still get picture 7, which tile 1 already has */
     session_tiles_present(&wall.tiles, &presented, 0, 0);
     assert_false(wall.members[0]->demand.any || wall.members[1]->demand.any);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -70,7 +70,7 @@ TEST(test_of_two_pictures_none_is_waited_for)
     tear_down(&wall);
 }
 
-/* Frame 6 is drawn and still in the encoder; the answer that picture 7 equals it overtakes it. */
+/* Frame 6 is drawn and still in the encoder, and the answer that picture 7 equals it arrives first. */
 TEST(test_an_answer_without_a_frame_overtakes_one)
 {
     struct wall_case wall;
@@ -84,7 +84,7 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     wall.members[0]->delivery.pacer.asked = 1;
     have(&wall, 1, 7, 4);
     session_tiles_present(&wall.tiles, &presented, 0, 0);
-    assert_int_equal(presented, 5); /* tile 0 shows the frame of picture 5, which must not count as its frame of picture 7 */
+    assert_int_equal(presented, 5); /* tile 0 still shows the frame of picture 5, which must not count as its frame of picture 7 */
     session_tile_came(wall.members[0], &request, 0);
     assert_int_equal(request.picture, 7);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -95,7 +95,7 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     tear_down(&wall);
 }
 
-/* Answers a tile's request for a picture with the message that no frame comes, for the reason `absence`. */
+/* Answers a tile's request for a picture with the message that no frame follows, for the reason `absence`. */
 static void answer_without_frame(struct session *session, uint64_t picture, uint64_t number, enum frame_absence absence)
 {
     struct encoded_frame *encoded = mem_new(sizeof(*encoded));
@@ -103,8 +103,8 @@ static void answer_without_frame(struct session *session, uint64_t picture, uint
     session_on_frame(session, encoded);
 }
 
-/* A request whose readings were older was drawn after a later one, and is answered without a frame: the tile does not show its picture. An
-   answer "unchanged" means that the tile shows it. */
+/* A request with older readings was drawn after a later one and is answered without a frame: the tile does not show its
+   picture. The answer "unchanged" means that the tile does show it. */
 TEST(test_a_skipped_picture_is_not_one_that_the_tile_shows)
 {
     for (int unchanged = 0; unchanged < 2; unchanged++) {
@@ -126,8 +126,8 @@ TEST(test_a_skipped_picture_is_not_one_that_the_tile_shows)
     }
 }
 
-/* The picture exceeds the tiles by the amount of its shift at every size, so that no tile ever sees beyond its edge. Checks each shift
-   of displays of this size, at a few preview sizes. */
+/* Checks each shift of displays of this size, at a few preview sizes: the picture must extend beyond the tiles by the shift, so
+   that no tile ever shows an area outside it. */
 static void check_moves(int width_px, int height_px)
 {
     struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2, .bezel_mm = { 20, 0 } } };
@@ -152,12 +152,12 @@ static void check_moves(int width_px, int height_px)
 TEST(test_tiles_are_moved_within_the_picture)
 {
     check_moves(320, 180);
-    /* a picture across three such displays would exceed the largest one that the server draws, so it starts smaller */
+    /* a picture across three such displays would exceed the server's largest one, so it starts smaller */
     check_moves(4096, 2160);
     check_moves(8192, 8192);
 }
 
-/* Displays state their own size: a window may be a sliver, with bezels thousands of times as wide. */
+/* Displays report their own size: a window may be a sliver, with bezels thousands of times as wide. */
 TEST(test_a_picture_is_never_larger_than_one_may_be)
 {
     for (int i = 0; i < WALL_DISPLAYS * 2 * 100; i++) {
@@ -176,7 +176,7 @@ TEST(test_a_picture_is_never_larger_than_one_may_be)
     }
 }
 
-/* A tile that was hidden for a while reserves as many pixels as when it was added: those of its display, not of the whole picture. */
+/* A tile that was hidden for a while reserves as many pixels as when it joined: those of its display, not of the whole picture. */
 TEST(test_a_tile_seen_again_takes_its_own_pixels)
 {
     const struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2 } };
@@ -229,7 +229,7 @@ TEST(test_a_server_that_takes_long_makes_smaller_pictures)
     assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* pictures are made fast enough */
     assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
     assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* pictures took too long for half a second */
-    /* frames of this size take 125 ms: not so long that they shrink, and not so short that the next larger size would be fast enough */
+    /* frames of this size take 125 ms: short enough not to shrink, too long to try the next larger size */
     assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1);
     assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1); /* frames of the next larger size would take 107 ms, so the size stays */
     assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);

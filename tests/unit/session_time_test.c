@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A session that shows the past: its requests for snapshots, its frames and messages, playback, and that other sessions stay in the
-   present. */
+/* A session that shows the past: its snapshot requests, frames and messages, playback, and that other sessions stay in the present. */
 #include "tests/support/test.h"
 #include <jansson.h>
 

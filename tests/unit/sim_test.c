@@ -19,7 +19,7 @@ static double random_between(double low, double high)
     return low + (high - low) * (rand() / (double)RAND_MAX);
 }
 
-/* Returns the largest error due to the raw type: half a raw step, or the precision of a float. */
+/* Returns the largest error that the raw type causes: half a raw step, or the precision of a float. */
 static double tolerance(const struct plant_tag *tag, double raw_low, double raw_high)
 {
     double step = tag->signal.type == DATA_FLOAT32   ? fmax(fabs(raw_low), fabs(raw_high)) * 1.2e-7
@@ -35,7 +35,7 @@ static void check_there_and_back(const struct plant_tag *tag, double value, doub
     struct sample sample;
     assert_true(sim_encode(tag, value, words));
     decode_sample(tag, words, &sample);
-    /* square-root scaling: a step of the raw value is a step of the squared value, so small values have a larger error */
+    /* square-root scaling: a raw step is a step of the squared value, so small values have a larger error */
     if (tag->scale.kind == SCALING_SQUARE_ROOT) {
         double low = tag->scale.negate ? -tag->scale.scaled_low : tag->scale.scaled_low;
         allowed = allowed * fabs(tag->scale.scaled_high - tag->scale.scaled_low) /
@@ -189,7 +189,7 @@ static const struct process_tag unit[] = {
 };
 enum { TAGS = sizeof(unit) / sizeof(unit[0]), CYCLE_TICKS = 6900 };
 
-/* the values of one simulated tag during a cycle of process upsets: extremes, sum of the values without an upset, and largest step */
+/* the values of one simulated tag during a cycle of process upsets: extremes, sum of values without an upset, and largest step */
 struct course {
     double least, most, calm_sum, jump;
     int calm_count;
@@ -274,7 +274,7 @@ TEST(wide_series)
     bool found;
     assert_true(series_read(&series, path, "a", &found, why) && found);
     assert_int_equal(series.count, 3);
-    assert_true(series.length_s == 540); /* the series lasts 9 min: until its last time, 6 min, and one step of 3 min more */
+    assert_true(series.length_s == 540); /* the series lasts 9 min: 6 min to its last time plus one step of 3 min */
     assert_true(series_at(&series, 0, false) == 1.5);
     assert_true(series_at(&series, 179.9, false) == 1.5); /* held, nothing invented */
     assert_true(series_at(&series, 180, false) == 2.5);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of the web client: served for every valid path below the folder, and for no other path. */
+/* Files of the web client: served for every valid path in the folder and for no other path. */
 #include "net/http/site.h"
 
 #include "tests/support/test.h"
@@ -52,8 +52,8 @@ CASE(honest_paths_are_served)
     expect(f, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
 }
 
-/* Whole-line comments and indentation are stripped; lines keep their numbers. Template literals, text that only looks like a comment, and
-   vendored scripts stay unchanged. */
+/* Comment lines and indentation are stripped, and lines keep their numbers. Template literals, text that only looks like a
+   comment, and vendored scripts stay unchanged. */
 CASE(scripts_come_without_comments_and_indentation)
 {
     static const char source[] = "// licence\n// what it is\nconst a = 1; // why\n    // a `tick\n\n    const b = 'x//y';\n"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The snapshot cache: snapshots in use stay, unused ones are evicted in the end, and two snapshots in use never share a slot. */
+/* The snapshot cache: snapshots in use stay, unused ones are eventually evicted, and two snapshots in use never share a slot. */
 #include "value/snapshot_cache.h"
 
 #include "tests/support/test.h"

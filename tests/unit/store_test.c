@@ -221,7 +221,7 @@ static void count_events(void *arg, const struct sample_event *event)
     *(int64_t *)arg += event->mono_ns;
 }
 
-/* The readings move to another plant: one tag stays, at another index and with another stale time; one tag is new. */
+/* The readings are carried over to another plant: one tag stays, with another index and another stale time; one tag is new. */
 CASE(readings_go_on_in_another_plant)
 {
     struct plant *plant = plant_by_hand_create(2);
@@ -244,8 +244,8 @@ CASE(readings_go_on_in_another_plant)
     assert_true(store_link_is_up(store, 0));
 }
 
-/* Another source takes over a tag whose server was lost. It repeats the old value with the original timestamp, a moment off by our
-   clock. */
+/* Another source takes over a tag whose server was lost. It resends the old value with the original timestamp, slightly off by
+   our clock. */
 CASE(a_value_told_again_is_good_again)
 {
     write_one(s, 0, 42, QUALITY_GOOD, 10 * S);
@@ -272,7 +272,7 @@ CASE(all_who_listen_hear_until_they_leave)
     assert_int_equal(other, 3 + 2 * 10); /* both tags of the link */
 }
 
-/* Before the first sample the store has no wall clock time: events of losses must not be dated 1970. */
+/* Before the first sample the store has no wall clock time: the loss of a source must not be dated 1970. */
 CASE(what_is_lost_at_first_is_not_told_at_a_wrong_time)
 {
     int64_t heard = 0;
@@ -400,7 +400,7 @@ CASE(other_tags_vouch)
                   { 0x1p62 + 0x1p10, QUALITY_UNCERTAIN, QUALITY_UNCERTAIN } }; /* the lowest bits of the 64 are unknown */
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
-        /* tag 0 has its quality from tag 1: the change is reported at once, not with tag 0's own next sample */
+        /* tag 0 has its quality from tag 1: its change is reported at once, not with its own next sample */
         assert_quality(heard[0], cases[i].pattern);
         assert_quality(heard[2], cases[i].any);
         assert_quality(look(s, 0, S)->quality, cases[i].pattern);
@@ -482,7 +482,7 @@ CASE(says_when_a_reading_gets_stale)
     assert_true(take(s, 9 * S) == INT64_MAX); /* both readings are stale */
 }
 
-/* Random writes and pauses: the time since when a reading is old is the first one at which a snapshot shows its quality. */
+/* Random writes and pauses: the reported time since which a reading is stale is the first at which a snapshot shows that quality. */
 CASE(says_since_when_a_reading_is_old)
 {
     enum { STEP = S / 100 };
@@ -516,7 +516,7 @@ CASE(says_since_when_a_reading_is_old)
     assert_true(found > 1000);
 }
 
-/* A heartbeat that returns makes a reading usable again at that time, not when the reading's value would have counted as unchanged. */
+/* When the heartbeat returns, a reading is usable from that time on, not from when its value would have counted as unchanged. */
 CASE(a_reading_is_usable_again_when_the_heartbeat_returns)
 {
     s->plant->sources[0].heartbeat_s = 2;

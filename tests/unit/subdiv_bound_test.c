@@ -91,7 +91,7 @@ TEST(a_sample_says_what_the_level_needs)
     take_in_hand(&part, &sample, errors);
     assert_true(comes_to(&whole, needed - 100));
     assert_false(comes_to(&whole, needed + 100));
-    /* an estimate from a sample of the triangles is lower than the need by a margin for chance */
+    /* an estimate from a sample of the triangles stays below the real need by a margin for chance */
     assert_true(comes_to(&part, 0.85 * needed));
     assert_false(comes_to(&part, 1.1 * needed));
     whole.finest = true;
@@ -103,7 +103,7 @@ TEST(a_sample_says_what_the_level_needs)
     mem_free(errors);
 }
 
-/* One triangle with any error says nothing about the others: the level is not given up for it. */
+/* One triangle, however large its error, says nothing about the others: the level is not given up because of it. */
 TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
 {
     struct level level, sample;

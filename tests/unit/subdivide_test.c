@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Subdivision: a few huge triangles show the field of a fine mesh, sensors are on vertices, and no cracks open. The truth is the field's
-   formula on the distance formula, in doubles. */
+/* Subdivision: a few huge triangles show the field of a fine mesh, sensors are on vertices, and no cracks open. The reference
+   is the field's formula applied to exact distances, in doubles. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -21,7 +21,7 @@ struct prepared_body { /* one asset with the sensors of two groups, as the test 
     struct asset_sensor places[SENSORS];
     struct surface *surface;
     struct surface_field field;
-    /* true: the expected values use distances that the solver computes at the point, for a shape whose distances have no formula */
+    /* true: the expected values use distances that the solver computes at the point, because the shape's distances have no formula */
     bool as_solved;
     struct levels levels;
     float *distances; /* distances of all vertices after subdivision */
@@ -59,7 +59,7 @@ static double along_plate(const double a[3], const double b[3])
     return vec_distance(a, b);
 }
 
-/* Returns the distance on a cylinder of radius 1 around the z axis, along the shorter way around. */
+/* Returns the distance on a cylinder of radius 1 about the z axis, along the shorter way around. */
 static double along_cylinder(const double a[3], const double b[3])
 {
     double turn = fabs(atan2(a[1], a[0]) - atan2(b[1], b[0]));
@@ -142,8 +142,8 @@ static double nearest(const struct prepared_body *body, int group, const double 
     return near_m;
 }
 
-/* Returns the field (Shepard or Algorithm 1 of the paper) from distances to sensors that read 0 or 1; where no sensor reaches, the
-   nearest sensor's value. */
+/* Returns the field (Shepard, or Algorithm 1 of the paper) from distances to sensors that read 0 or 1. Where no sensor reaches,
+   returns the nearest sensor's value. */
 static double field(const struct prepared_body *body, int group, bool paper, const double *distance_m, double radius_m, unsigned readings)
 {
     double value = 0, weight = 0, near_m = nearest(body, group, distance_m), reach_m = body->plant.groups[group].reach_m;
@@ -292,7 +292,8 @@ static double shown_field(const struct prepared_body *body, const struct field_s
     return shown;
 }
 
-/* Returns the finest level's error at a random point, which `snap` moves onto the true surface (NULL: the point on the level is used). */
+/* Returns the finest level's error at a random point. `snap` moves the point onto the true surface; NULL: the point on the
+   level is used. */
 static double error_somewhere(const struct prepared_body *body, const struct level *level, uint32_t *seed, void (*snap)(double p[3]))
 {
     const uint32_t *v = level->indices + 3 * (uint32_t)(random_unit(seed) * (level->index_count / 3));
@@ -364,8 +365,8 @@ static bool look(const struct sight_target *seen, const double from[3], const do
     return true;
 }
 
-#define OUTLINE 12.0 /* two neighbouring pixels whose depths differ by more than this many pixels show two surfaces, and so an outline */
-/* Orthographic camera far away, whose pixels are as large as the error of the level of detail: nearer cameras do not draw this level. */
+#define OUTLINE 12.0 /* two neighbouring pixels whose depths differ by more than this many pixels show two surfaces, hence an outline */
+/* A distant orthographic camera whose pixels are as large as the error of the level of detail: nearer cameras do not draw this level. */
 struct outline_camera {
     double along[3], right[3], up[3], pixel_m, back_m;
 };
@@ -381,7 +382,7 @@ static void random_camera(struct outline_camera *camera, double pixel_m, double 
     camera->back_m = 4 * size_m;
 }
 
-/* lowest and highest value, and nearest and farthest depth, that side * side rays at the finest level meet within a pixel */
+/* lowest and highest value, and nearest and farthest depth, where side * side rays within a pixel hit the finest level */
 struct sighted {
     double low, high, nearest, farthest;
     bool missed;
@@ -410,10 +411,10 @@ static struct sighted look_round(const struct prepared_body *body, const struct 
     return sighted;
 }
 
-/* Returns the difference between a pixel of the level and the values that dense rays on the finest level see within a pixel of it; NAN
-   if nothing is visible. *outline: the reference or an object in front of it ends here, so the level may show what lies around the
-   corner. A pixel that seems wrong is checked with more rays, because near a sensor a distant level's pixel is as wide as the field's
-   peak. */
+/* Returns the difference between a pixel of the level and the values that dense rays see on the finest level within that pixel;
+   NAN if nothing is visible. *outline: the reference, or an object in front of it, ends here, so the level may show what lies
+   around the corner. A pixel that seems wrong is checked with more rays, because near a sensor a distant level's pixel is as
+   wide as the field's peak. */
 static double error_as_seen(const struct prepared_body *body, const struct sight_target *level, const struct sight_target *finest,
                             const struct outline_camera *camera, uint32_t *seed, bool *outline)
 {
@@ -456,8 +457,7 @@ static void say_errors(const struct prepared_body *body, size_t level, const cha
 }
 
 #define POINTS sweep(20000, 5000)
-/* Checks the field on the finest level at random points: 99.5 % of the points must be within one colour step of the truth, and all within
-   `most` steps. */
+/* Checks the finest level's field at random points: 99.5 % must be within one colour step of the truth, and all within `most` steps. */
 static void assert_field(const struct prepared_body *body, const char *name, void (*snap)(double p[3]), double most)
 {
     double *errors = mem_array(POINTS, sizeof(*errors));
@@ -471,10 +471,10 @@ static void assert_field(const struct prepared_body *body, const char *name, voi
 }
 
 #define PIXELS 6000
-/* Checks a coarser level from random directions. Inside the outline 99.9 % of the pixels must be within `most` steps, because one ray in
-   thousands slips between triangles, and 99.5 % within one step; at the outline 95 %. Small bodies are mostly outline, and near a sensor
-   a shift of one pixel in depth changes the field much: there the bound is 98 %, or 95 % if at most a tenth of the pixels lie inside the
-   outline. */
+/* Checks a coarser level from random directions. Inside the outline 99.9 % of the pixels must be within `most` steps, because
+   one ray in thousands slips between triangles, and 99.5 % within one step; at the outline 95 %. Small bodies are mostly
+   outline, and near a sensor a depth shift of one pixel changes the field much: there the bound is 98 %, or 95 % if at most a
+   tenth of the pixels lie inside the outline. */
 static void assert_pixels(const struct prepared_body *body, size_t number, const char *name, double most)
 {
     const struct level *level = &body->levels.at[number];
@@ -520,7 +520,8 @@ static void onto_cylinder(double p[3])
     p[1] /= r;
 }
 
-/* Asserts that each edge has as many triangles as before subdivision (two, or one at a border) and that borders lie on the old border. */
+/* Asserts that each edge belongs to as many triangles as before subdivision (two, or one at a border) and that borders lie on
+   the old border. */
 static void assert_no_cracks(const struct prepared_body *body, double border_m)
 {
     struct welded_positions places;
@@ -575,8 +576,8 @@ TEST(nine_triangles_show_the_field)
     finish(&body);
 }
 
-/* Checks the field on a plate, with points drawn by area: where the reaches of two sensors and the data end in one point, the field jumps,
-   and the smallest allowed triangles there would count too much. */
+/* Checks the field on a plate at points drawn by area. The field jumps where the reaches of two sensors and the data end in one
+   point; there the smallest allowed triangles would otherwise count too much. */
 static void assert_plate(const struct prepared_body *body)
 {
     struct sight_target finest;
@@ -619,7 +620,7 @@ TEST(nine_triangles_show_how_far_sensors_reach)
     }
 }
 
-/* Makes a plate of two triangles through a box: the part inside is invisible, and the visible parts must be as accurate as usual. */
+/* Makes a plate of two triangles through a box: the part inside is invisible, and the visible parts must be as accurate as elsewhere. */
 static void make_plate_through_box(struct prepared_body *body)
 {
     static const double rim[4][2] = { { -1.6, -1.3 }, { 1.6, -1.3 }, { 1.6, 1.3 }, { -1.6, 1.3 } };
@@ -665,7 +666,8 @@ static double shown_on_plate(const struct prepared_body *body, const struct leve
     return NAN;
 }
 
-/* Collects errors at random points of the plate outside the other body, with straight distances, because the way around has no formula. */
+/* Collects errors at random points of the plate outside the other body, with straight-line distances, because the way around
+   has no formula. */
 static void find_errors_on_plate(const struct prepared_body *body, const struct level *level, bool (*is_hidden)(const double p[3]),
                                  double *errors)
 {
@@ -729,8 +731,8 @@ static bool is_in_ball(const double p[3])
     return vec_dot(p, p) < 1;
 }
 
-/* Visible parts are as accurate as on other coarser levels, except for the smallest triangles near a sensor. In the coarsest level all
-   triangles are such. */
+/* Visible parts are as accurate as other coarser levels, except for the smallest triangles near a sensor. The coarsest level
+   has only such triangles. */
 TEST(what_stands_out_is_true_on_coarser_levels_too)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 }, { 0, 0.1, 1.1 },
@@ -779,8 +781,8 @@ static bool turns_left(const struct geometry *g, uint32_t a, uint32_t b, uint32_
     return (q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* Makes a rectangle of irregular cells with sensors at random points. Each cell is triangulated without overlap: where surfaces overlap,
-   one point would have two distances. */
+/* Makes a rectangle of irregular cells with sensors at random points. Cells are triangulated without overlap: where surfaces
+   overlap, one point would have two distances. */
 static void make_random_plate(struct prepared_body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
@@ -843,8 +845,8 @@ TEST(a_cylinder_shows_the_field)
     finish(&body);
 }
 
-/* Makes a ring of random size and varying thickness, turned at random, with sensors at distinct random vertices: two readings at one
-   point would leave the field undefined. */
+/* Makes a ring of random size and varying thickness, rotated at random, with sensors at distinct random vertices: two readings
+   at one point would leave the field undefined. */
 static void make_random_ring(struct prepared_body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
@@ -891,7 +893,8 @@ TEST(random_rings_show_the_field_on_every_level)
     }
 }
 
-/* Distances of many sensors take most of the file, so a level is kept only if it has at most half of the triangles. */
+/* Distances of many sensors take up most of the file, so a level is kept only if it has at most half of the next finer level's
+   triangles. */
 TEST(levels_of_many_sensors_have_half_of_the_triangles)
 {
     enum { MANY = 128 };
@@ -935,7 +938,7 @@ TEST(levels_of_many_sensors_have_half_of_the_triangles)
     finish(&body);
 }
 
-/* A packed section of the length of a plain one would be read as plain. Distances without any order do not pack. */
+/* A packed section as long as a plain one would be read as plain. Distances without any order cannot be packed. */
 TEST(distances_that_do_not_pack_stay_plain)
 {
     enum { MANY = 64, FEW_VERTICES = 256 };

@@ -7,7 +7,7 @@
 enum { SIDE_PX = 100, TILES = (SIDE_PX + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX, ROUNDS = 20000, AREA_PX = 20 };
 
 struct lookup_counts {
-    /* number of points in light or shadow: told: decided by the bounds of a tile; open: looked up in texels; half: of those, partly lit */
+    /* number of points in light or shadow: told: decided by a tile's bounds; open: looked up in texels; half: of those, partly lit */
     int told, open, half;
 };
 
@@ -52,7 +52,7 @@ static int whole_within_map(float part)
     return px < 0 ? 0 : px > SIDE_PX - 1 ? SIDE_PX - 1 : (int)px;
 }
 
-/* Makes random points, some slightly beyond the map; depths are random, or close to the depth of a texel of the tile. */
+/* Makes random points, some slightly outside the map; depths are random or close to the depth of a texel of the tile. */
 static void places_at_random(const struct soft_light *light, lanes at[3])
 {
     for (int i = 0; i < LANES; i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances along surfaces compared with formulas, on clean shapes and with every fault of CAD exports; which parts are joined, kept
-   apart and hidden. */
+/* Distances along surfaces, compared with formulas on clean shapes and with every fault of CAD exports; also, which parts are
+   joined, kept separate and hidden. */
 #include "surface/repair/repair.h"
 #include "surface/surface.h"
 
@@ -62,7 +62,7 @@ static double cylinder_distance(const double size[3], const double a[3], const d
     return hypot(turn > M_PI ? 2 * M_PI - turn : turn, a[2] - b[2]);
 }
 
-/* Makes a plate with a slot that spans x from size[0] to size[1] and y from 0 to size[2]. */
+/* Makes a plate with a slot that extends in x from size[0] to size[1] and in y from 0 to size[2]. */
 static void make_slot(struct cad *cad, double size[3], int wide)
 {
     int first = 60 + (int)(40 * cad_random(&chance)), high = 60 + (int)(40 * cad_random(&chance));
@@ -221,7 +221,7 @@ static float *distances_from(struct surface *surface, const struct cad *cad, dou
     return distances;
 }
 
-/* Makes two plates of 1 m in one plane or one above the other. Returns whether the second can be reached from the first. */
+/* Makes two plates of 1 m, in one plane or one above the other. Returns whether the second can be reached from the first. */
 static bool second_plate_reached(double dx, double dz)
 {
     struct cad plate = { 0 }, both = { 0 };
@@ -250,7 +250,7 @@ TEST(gaps_are_closed_and_walls_are_not_passed)
     assert_true(second_plate_reached(0.5, 0.0002)); /* one plate lies on the other */
 }
 
-/* Asserts that every counted bridge is in the debug mesh: across the gap, or where the pipe passes through the shell. */
+/* Asserts that the debug mesh has every counted bridge, either across the gap or where the pipe passes through the shell. */
 static void assert_bridges_are_shown(const struct surface *surface, double low_x, double high_x)
 {
     const struct surface_report *report = surface_report(surface);
@@ -307,7 +307,7 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam));
     assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
     for (size_t v = sphere_count; v < both.vertex_count; v++)
-        /* the pipe's hidden end inside the sphere has distances, too, because triangles that cross the sphere's shell need them */
+        /* the pipe's hidden end inside the sphere has distances too: triangles that cross the sphere's shell need them */
         assert_true(isfinite(distances[v]));
     surface_destroy(&surface);
     cad_finish(&both);
@@ -327,7 +327,7 @@ TEST(nothing_leads_through_a_closed_part)
     float *distances = distances_from(surface, &pipes, 2, 0, 0); /* the source is at one end of the second pipe */
     assert_int_equal(report->components_after, 1);
     assert_true(report->hidden_vertices > 60 * 20);
-    /* The other end is reached along 1.5 m of pipe, half around the first pipe (at best straight over its side), and another 1.5 m. */
+    /* The other end is reached along 1.5 m of pipe, half around the first pipe (at best straight across its side), and another 1.5 m. */
     double least = 2 * 1.5 + 0.5 * (M_PI - 2 * asin(0.6));
     double other_end = INFINITY;
     for (size_t v = first; v < pipes.vertex_count; v++)
@@ -352,7 +352,7 @@ static void add_box(struct cad *all, const double low[3], const double high[3])
     cad_finish(&box);
 }
 
-/* Two ducts end in flanges of 3.9 mm that lie on each other; the tolerance, which follows from the ducts' length, is larger. A part that
+/* Two ducts end in 3.9 mm flanges that lie on each other; the tolerance, derived from the ducts' length, is larger. A part that
    touches one side of a flange is not joined to its other side. */
 TEST(thin_flanges_are_not_bridged)
 {
@@ -376,7 +376,7 @@ TEST(thin_flanges_are_not_bridged)
     mem_free(distances);
 }
 
-/* A plate of 3.9 mm, thinner than the tolerance; one duct ends in it at various depths, and another stands on its far side. */
+/* A 3.9 mm plate, thinner than the tolerance; one duct ends in it at various depths, another stands on its far side. */
 TEST(nothing_leads_through_a_thin_plate)
 {
     enum { DEPTHS = 8 };
@@ -445,8 +445,8 @@ TEST(nearest_is_the_nearest)
     cad_finish(&torus);
 }
 
-/* A search within a limit finds the same point as one without, or nothing if that point is farther away; also where the limit excludes all
-   triangles that face the right way, as for points inside the tube. */
+/* A search with a limit finds the same point as one without, or nothing if that point is farther away. This holds even where
+   the limit excludes all triangles that face the right way, as for points inside the tube. */
 TEST(within_a_limit_is_the_same_spot_or_none)
 {
     struct cad torus = { 0 };
@@ -481,7 +481,7 @@ TEST(within_a_limit_is_the_same_spot_or_none)
     cad_finish(&torus);
 }
 
-/* Sources and points in the middle of strips, far from any vertex of the model: a pipe as CAD programs triangulate it. */
+/* Sources and points in the middle of strips, far from any vertex of the model, on a pipe as CAD programs triangulate it. */
 TEST(long_thin_strips_are_exact_near_a_source_too)
 {
     enum { SOURCES = 8, PLACES = 400 };
@@ -521,8 +521,8 @@ TEST(long_thin_strips_are_exact_near_a_source_too)
     cad_finish(&pipe);
 }
 
-/* Returns the largest relative error of short distances on a plate whose cells are shifted, so that most triangles have a flipped edge
-   after resampling. Near a source a small error is a large share. */
+/* Returns the largest relative error of short distances on a plate whose cells are shifted, so that most triangles have a
+   flipped edge after resampling. Near a source even a small error is relatively large. */
 static double worst_short_way(int across, int up)
 {
     enum { SOURCES = 8, PLACES = 800 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The swinging-door filter: which samples of a stream are kept, and how close the line through them stays to the samples. */
+/* The swinging-door filter: which samples of a stream it keeps, and how close the line through them stays to all samples. */
 #include "tests/support/test.h"
 
 #include "history/swinging_door.h"
@@ -171,8 +171,8 @@ TEST(what_is_held_is_the_newest)
     assert_int_equal(held.t_us, 3 * S);
 }
 
-/* The line to the newest sample, which the filter may not keep, is as close to the samples as the line through kept points: a step must not
-   look like a ramp until the next point is kept. */
+/* The line to the newest sample, which the filter may not keep, is as close to the samples as the line through kept points. A
+   step must not look like a ramp until the next point is kept. */
 TEST(whoever_reads_now_is_promised_the_same)
 {
     srand(20260101);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tag lists in Kepware's format and ours, and every kind of mistake with its line, column and message. */
+/* Tag lists in Kepware's format and in ours, and every kind of mistake, with its line, column and message. */
 #include "tests/support/test.h"
 
 #include "base/text/text.h"
@@ -97,7 +97,7 @@ CASE(byte_orders_are_resolved)
           { "tags.csv", 3, 19, "Byte Order: 'ABCD' contradicts the address '400001#BB'" });
 }
 
-/* An address that is off by one register still yields a plausible value, so it is never guessed. */
+/* An address that is off by one register still yields a plausible value, so addresses are never guessed. */
 CASE(where_long_values_begin_is_never_guessed)
 {
     plant_case_load(c, yaml_no_order,
@@ -136,7 +136,7 @@ CASE(instruments_say_what_they_can_measure)
           { "tags.csv", 4, 10, "found 'open'" }, { "tags.csv", 5, 10, "found '5'" }, { "tags.csv", 6, 10, "found '0x'" });
 }
 
-/* Values of derived and replayed tags are in engineering units, so the columns for raw values have no effect on them. */
+/* Values of derived and replayed tags are in engineering units already, so the columns for raw values do not affect them. */
 CASE(raw_values_are_those_of_devices)
 {
     temp_write_text(c->folder, "r.csv", "t_s,B,D\n0,1,1\n");
@@ -153,7 +153,7 @@ CASE(raw_values_are_those_of_devices)
     assert_non_null(c->plant);
 }
 
-/* Sparkplug nodes and OPC UA servers report that they are lost; other publishers do not, so their silent tags become stale. */
+/* Sparkplug nodes and OPC UA servers report their loss; other publishers do not, so their silent tags become stale. */
 CASE(silent_tags_are_stale_unless_their_loss_is_reported)
 {
     plant_case_load(c, YAML("[{ id: n, type: mqtt, host: h, topic: \"a/{tag}\" },"
@@ -345,8 +345,9 @@ CASE(names_are_unique)
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
 }
 
-/* A float begins one register too early, and 16-bit values are parts of larger ones. An address that states the source's own unit is the
-   same device (1!hr:51). Equal addresses, bits, other tables and other units are good. */
+/* Noticed: a float that begins one register too early, 16-bit values that are parts of larger ones, and an address that states
+   the source's own unit and so means the same device (1!hr:51). Accepted: equal addresses, bits, other tables and other units.
+   */
 CASE(values_that_share_some_registers_are_noticed)
 {
     plant_case_load(c, yaml, "Tag Name,Address,Data Type\nA,hr:10,Float\nB,hr:11,Float\nC,hr:20,Float\nD,hr:21,Int16\n"

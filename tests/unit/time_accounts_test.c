@@ -48,7 +48,7 @@ TEST(who_comes_anew_owes_what_it_had)
     assert_ptr_equal(who_has_had_less(greedy, other), other);
     for (int i = 0; i < 60; i++)
         serve(&accounts, other, 20 * NS_PER_MS);
-    /* the address with less render time in the past has caught up, so nothing about it needs to be remembered */
+    /* the address with less past render time has caught up, so nothing about it needs to be remembered */
     time_accounts_leave(&accounts, &greedy);
     assert_int_equal(accounts.count, 1);
     greedy = time_accounts_join(&accounts, 1);
@@ -57,8 +57,8 @@ TEST(who_comes_anew_owes_what_it_had)
     time_accounts_finish(&accounts);
 }
 
-/* An address draws large frames one after the other and gives each of them up. Another address, which was charged more, refines a session
-   all the time and requests one snapshot. */
+/* An address requests large frames one after another and abandons each. Another address, which was charged more, keeps refining
+   a session and requests one snapshot. */
 TEST(no_request_waits_for_frames_without_end)
 {
     enum { GREEDY, SESSION, SNAPSHOT, CLAIMS };
@@ -89,7 +89,7 @@ TEST(no_request_waits_for_frames_without_end)
         time_accounts_asked(&accounts, account, SCHEDULER_LONG);
     }
     assert_int_equal(turns[SNAPSHOT], 1);
-    /* at most as many frames of 0.9 s as fit into the 5 s that the other address was charged before */
+    /* at most as many frames of 0.9 s as fit into the 5 s charged to the other address beforehand */
     assert_in_range(turns[GREEDY], 1, 7);
     assert_in_range(turns[SESSION], 0, 1);
     time_accounts_finish(&accounts);

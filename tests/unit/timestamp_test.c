@@ -67,7 +67,7 @@ TEST(what_is_not_one_instant_is_refused)
             fail_msg("'%s' was taken", bad[i]);
 }
 
-/* The two equal hours of the night when clocks go back are different instants, independent of this computer's time zone. */
+/* When clocks go back, the two equal hours of that night are different instants, whatever this computer's time zone. */
 TEST(summer_time_does_not_matter)
 {
     int64_t first, second;

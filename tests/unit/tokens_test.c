@@ -186,7 +186,7 @@ CASE(wrong_lines_let_in_nobody_and_leave_the_others)
     tokens_destroy(&tokens);
 }
 
-/* Looks twice, because a changed file is read only once it has stopped changing. Returns whether exactly the second look read it. */
+/* Looks twice, because a changed file is read only once it has stopped changing. Returns whether it was the second look that read it. */
 static bool look_until_read(struct tokens *tokens)
 {
     bool first = tokens_look(tokens);

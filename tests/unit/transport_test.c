@@ -96,8 +96,8 @@ TEST(test_plane)
     finish(&c);
 }
 
-/* A long strip folded like an accordion: a path of 40 m in a box of 2.3 m. It can be unfolded, so a vector keeps its component across
-   the strip to the end. */
+/* A long strip folded like an accordion: a path of 40 m in a box of 2.3 m. It can be unfolded, so a vector's component across
+   the strip stays the same to the end. */
 TEST(test_accordion)
 {
     const double length_m = 40, forth = 0.05, up = sqrt(1 - forth * forth);
@@ -164,7 +164,8 @@ TEST(test_sphere)
     finish(&c);
 }
 
-/* Transport over an edge as if unfolded: a vector in the middle of the top that points to a side points down on that side. */
+/* Transport over an edge as if the faces were unfolded: a vector in the middle of the top that points to a side points down on
+   that side. */
 TEST(test_box)
 {
     static const double middles[4][3] = { { 1, 0.5, 0.5 }, { 0.5, 1, 0.5 }, { 0, 0.5, 0.5 }, { 0.5, 0, 0.5 } };
@@ -194,7 +195,7 @@ TEST(test_box)
 }
 
 /* A sphere with three in five of its triangles, some with a corner moved anywhere. At borders, and at edges with more than two
-   triangles, weights may be negative and rotations around a triangle do not cancel; directions must be known all the same. */
+   triangles, weights may be negative and rotations around a triangle do not cancel; directions must still be known. */
 TEST(test_tangle)
 {
     struct carried c = { 0 };

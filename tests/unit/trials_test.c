@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trial layouts: the field equals that of a plant with its sensors at the trial positions, only for sessions that request the trial. */
+/* Trial layouts: a trial's field equals that of a plant with its sensors at the trial positions, and only sessions that request
+   the trial see it. */
 #include "tests/support/test.h"
 
 #include "field/field.h"
@@ -38,7 +39,7 @@ TEST_FIXTURE(struct trials_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct trials_fixture *f, name, set_up, tear_down)
 
-/* Returns the distances along the surface to vertex `to`, as the synthetic plant defines them: sums of the distances along the axes. */
+/* Returns the distances along the surface to vertex `to` as the synthetic plant defines them: the sum of the distances along the axes. */
 static float *along(const struct trials_fixture *f, size_t to)
 {
     const float(*at)[3] = f->plant->file.view.positions_m;
@@ -76,7 +77,7 @@ static struct scalar *copy_of(struct trials_fixture *f, int asset, uint32_t tria
     return copy;
 }
 
-/* Returns the value of a plant that has the sensor at the trial position: the plain sum in double precision. */
+/* Returns the value in a plant that has the sensor at the trial position: the plain sum in double precision. */
 static double truth(const struct trials_fixture *f, const float *moved_m, size_t vertex)
 {
     double sum = 0, total = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Conversion of units: a value in one unit is never shown in another; the conversion table against known numbers, and every way by which
-   values arrive. */
+/* Conversion of units: a value in one unit is never labelled with another; the conversion table against known numbers, and
+   every path by which values arrive. */
 #include "tests/support/test.h"
 
 #include "base/text/text.h"
@@ -223,8 +223,8 @@ TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_cas
 
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
 
-/* Values in files are in the unit of the tag's row unless the file states another one; an export states its unit and can be imported
-   again unchanged. */
+/* Values in files are in the unit of the tag's row unless the file states another. An export states its unit and can be
+   imported again unchanged. */
 CASE(files_say_their_unit_or_mean_the_row_s)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
@@ -263,7 +263,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
     diag_finish(&diag);
 }
 
-/* Values recorded in one unit are returned in the tag's current unit by every query, and one export file uses one unit. */
+/* Every query returns values recorded in one unit in the tag's current unit, and an export file uses only one unit. */
 CASE(what_was_recorded_is_shown_in_the_unit_of_now)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;

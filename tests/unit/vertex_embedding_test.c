@@ -33,7 +33,8 @@ static int tear_down(void **state)
     return prep_case_tear_down(state);
 }
 
-/* Makes a closed plate, bent about the y axis: a level's edges leave it by more than its thickness, towards the other side. */
+/* Makes a closed plate, bent about the y axis so much that a coarser level's edges leave it by more than its thickness, towards
+   the other side. */
 static void make_bent_plate(struct cad *plate, struct cad_random *random)
 {
     cad_box(plate, random, ACROSS, UP, 1, CELL);
@@ -74,8 +75,7 @@ static void on_side(double turn, double y, double radius, float out[3])
     out[2] = (float)(radius * cos(turn));
 }
 
-/* Points that lie like an edge of a coarser level of the plate's outer side are found on that side, although they are nearer to the inner
-   side. */
+/* Points that lie like an edge of a coarser level of the plate's outer side are found on that side, although the inner side is nearer. */
 TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 {
     enum { COUNT = 200 };
@@ -87,8 +87,7 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
     double worst_m = 0, nearest_m = INFINITY;
     cad_random_start(&chance);
     make_bent_plate(&plate, &chance);
-    /* the first half of the points lies exactly on one side of the plate, as vertices of the finest level do; the second half lies off
-       it */
+    /* the first half of the points lies exactly on one side of the plate, like vertices of the finest level; the second half lies off it */
     for (int i = 0; i < COUNT; i++) {
         double turn = 0.8 * (cad_random(&chance) - 0.5), y = UP * CELL * (0.3 + 0.4 * cad_random(&chance));
         double off_m = CELL * (0.55 + 0.4 * cad_random(&chance));
@@ -162,8 +161,8 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
     return far;
 }
 
-/* The coarsest level's error equals the plate's thickness, and in some places that level intersects itself, so that no side is the right
-   one there. */
+/* The coarsest level's error equals the plate's thickness, and in some places that level intersects itself, so neither side is
+   right there. */
 TEST(coarser_levels_have_the_distances_of_their_own_side)
 {
     struct prep_case *c = *state;

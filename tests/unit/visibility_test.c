@@ -54,7 +54,7 @@ TEST(a_box_keeps_what_is_in_it)
     assert_false(clip_keeps(&clip, (double[3]){ 0, 0, -3.1 }));
 }
 
-/* Random rays and planes: a point of the ray lies within the kept part if and only if every plane keeps it. */
+/* Random rays and planes: a point of the ray lies within the visible part if and only if every plane keeps it. */
 TEST(rays_are_cut_where_planes_are)
 {
     srand(3);

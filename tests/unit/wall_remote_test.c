@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Remote control of walls: one command per pane, kept across a restart; pointers; displays and panes that are not in the plant file. */
+/* Remote control of walls: one command per pane, kept across a restart; pointers; displays and panes missing from the plant file. */
 #include "tests/support/test.h"
 
 #include <jansson.h>

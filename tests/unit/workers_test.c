@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread pool: every job runs once, in submission order; loops cover their range, also from within a job. */
+/* The thread pool: every job runs once, in submission order; loops cover their whole range, even from within a job. */
 #include "base/workers.h"
 
 #include "tests/support/test.h"
