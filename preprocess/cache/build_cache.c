@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names the files of the build cache: for each kind of entry, the ending of the file name and the format of the file. */
+/* Maps each kind of build cache entry to its file name extension and its file format. */
 #include "preprocess/cache/build_cache.h"
 
 #include <inttypes.h>
@@ -9,7 +9,7 @@
 
 static const struct {
     const char *ending;
-    const char *magic; /* first 8 bytes (format and version) of cache files of this kind; NULL: this kind of file has a format of its own */
+    const char *magic; /* first 8 bytes (format and version) of this kind's cache files; NULL: these files have their own format */
     bool needs_sensors;
 } kinds[BUILD_CACHE_KINDS] = {
     [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },           [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTOCK", false },

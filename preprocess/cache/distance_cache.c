@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores each column (distances from one sensor to all surface points) as a record: header and compressed distances. The compression
- * stores differences between neighbouring points, low and high bytes apart, with zstd. */
+/* Stores each column (distances from one sensor to all surface points) as a record: header and compressed distances. To
+ * compress a column, takes differences between neighbouring points, separates their low and high bytes, and applies zstd. */
 #include "preprocess/cache/distance_cache.h"
 
 #include <errno.h>
@@ -17,27 +17,27 @@
 #include "preprocess/cache/file_io.h"
 #include "protocol/asset_distance.h"
 
-#define LEVEL 1          /* zstd level; level 3 takes twice the time and saves nothing */
+#define LEVEL 1          /* zstd level; level 3 takes twice as long and saves no space */
 #define RECORD_STEP 4096 /* sizes of records are multiples of this, so that another sensor's column usually fits a free record */
 
 struct distance_record { /* header of a record; the compressed column follows */
     double place_m[3];   /* position of the record's sensor; NaN: the record is free */
-    /* XXH3-64 of the file's key, the sensor's position and the compressed column; wrong if the record was only partially written or belongs
-     * to another key */
+    /* XXH3-64 of the file's key, the sensor's position and the compressed column; does not match if the record was only
+     * partially written or belongs to another key */
     uint64_t checksum;
-    uint32_t size, packed_bytes; /* size of the record with header; size of the compressed column */
+    uint32_t size, packed_bytes; /* sizes in bytes: record including header; compressed column */
 };
 
 /* --- compression ---------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the compressed column, or NULL if memory is short. The caller frees it. */
+/* Returns the compressed column, or NULL if out of memory. The caller frees it. */
 static void *pack(const uint16_t *codes, size_t length, size_t *packed_bytes)
 {
     size_t bound = ZSTD_compressBound(2 * length);
     uint8_t *low = mem_try_array(length, 2), *high = low ? low + length : NULL;
     void *packed = mem_try_array(bound, 1);
     for (size_t i = 0; i < length && high && packed; i++) {
-        /* stores a small difference of either sign as a small number: 0, -1, 1, -2, ... become 0, 1, 2, 3, ... */
+        /* zigzag coding: stores small differences of either sign as small numbers: 0, -1, 1, -2, ... become 0, 1, 2, 3, ... */
         const uint16_t difference = (uint16_t)(codes[i] - (i ? codes[i - 1] : 0));
         const uint16_t folded = (uint16_t)(difference << 1 ^ (difference & 0x8000 ? 0xffff : 0));
         low[i] = (uint8_t)folded;
@@ -56,7 +56,7 @@ static bool unpack(const void *packed, size_t packed_bytes, float *distances_m, 
     uint8_t *low = mem_try_array(length, 2), *high = low ? low + length : NULL;
     uint16_t *codes = mem_try_array(length, sizeof(*codes));
     bool good = high && codes && ZSTD_decompress(low, 2 * length, packed, packed_bytes) == 2 * length;
-    /* three loops, because the compiler vectorises the first and the last */
+    /* three separate loops, because the compiler can vectorise the first and the last */
     for (size_t i = 0; i < length && good; i++) {
         const uint16_t folded = (uint16_t)(low[i] | high[i] << 8);
         codes[i] = (uint16_t)(folded >> 1 ^ -(folded & 1));
@@ -83,8 +83,8 @@ static uint64_t checksum_of(const struct distance_cache *cache, size_t place, co
     return XXH3_64bits_withSeed(packed, packed_bytes, seed);
 }
 
-/* Finds the sensor positions' records in the cache file, and the free records. A record with an impossible size ends the list: the file is
- * cut off there. */
+/* Looks up the record of each sensor position in the cache file, and lists the free records. The list ends at the first record
+ * with an impossible size; the file is truncated there. */
 static void find_records(struct distance_cache *cache)
 {
     struct stat st;
@@ -111,7 +111,7 @@ static void find_records(struct distance_cache *cache)
         cache->may_write = false;
 }
 
-/* Returns the offset of a free record of at least *size bytes, or of a new one at the end of the file. *size receives its size. */
+/* Returns the offset of a free record of at least *size bytes, or else of a new one at the end. *size receives the record's actual size. */
 static size_t reserve(struct distance_cache *cache, uint32_t *size)
 {
     for (size_t i = 0; i < cache->free_count; i++)
@@ -190,7 +190,7 @@ static bool write_column(struct distance_cache *cache, size_t source, const void
     bool good = cache->may_write;
     if (good && cache->records[source] != SIZE_MAX)
         good = file_write(cache->fd, &free_place, sizeof(free_place), (off_t)cache->records[source]);
-    /* all headers up to the last record are written, even if the program is killed: the list of records has no gap */
+    /* the header is written before the column, so that the list of records has no gap even if the program is killed */
     const size_t at = good ? reserve(cache, &record.size) : 0;
     good = good && file_write(cache->fd, &record, sizeof(record), (off_t)at);
     pthread_mutex_unlock(&cache->lock);

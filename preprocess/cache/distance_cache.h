@@ -26,12 +26,12 @@ struct distance_cache {
     const double (*places_m)[3];
     size_t count;
     size_t *records; /* by sensor position: offset of the record with its column when the file was opened; SIZE_MAX: none */
-    atomic_size_t kept; /* number of sensor positions whose column (distances) was found in the file */
-    atomic_size_t damaged; /* number of sensor positions whose column in the file is damaged, or was not completely written */
+    atomic_size_t kept; /* number of sensor positions whose column was found in the file */
+    atomic_size_t damaged; /* number of sensor positions whose column in the file is damaged or incomplete */
     pthread_mutex_t lock;
     /* --- below: under lock --- */
     struct distance_space *free; /* byte ranges of records that belong to no present sensor position */
-    size_t free_count, free_capacity, end; /* end: byte offset in the file after the last record */
+    size_t free_count, free_capacity, end; /* end: byte offset in the file behind the last record */
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the
@@ -40,9 +40,9 @@ void distance_cache_open(struct distance_cache *cache, struct log *log, const ch
                          const double (*places_m)[3], size_t count);
 /* Closes the cache file, logs how many sensors' distances in it were damaged, and frees the cache's arrays. A zeroed cache is allowed. */
 void distance_cache_close(struct distance_cache *cache);
-/* Returns the distance cache as callbacks for surface_field_init(), which fetches the sensors' distances that the cache contains and stores
- * those it computes. Valid until distance_cache_close(). Thread: the callbacks may run on any thread, each call for a different source
- * (sensor). */
+/* Returns callbacks for surface_field_init() that load the distances of cached sensors and store those newly computed. Valid
+ * until distance_cache_close(). Thread: the callbacks may run on any thread, concurrently only for different sources (sensors).
+ * */
 struct surface_columns distance_cache_for_surface(struct distance_cache *cache);
 
 #endif

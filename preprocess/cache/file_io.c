@@ -4,8 +4,8 @@
 #include <errno.h>
 #include <unistd.h>
 
-/* Advances the byte range that is still to be read or written by the result of one system call. Returns false on an error, or if no bytes
- * were transferred. */
+/* Moves the byte range that remains to be read or written forward by the result of a system call. Returns false on an error, or
+ * if no bytes were transferred. */
 static bool went_on(ssize_t done, size_t *bytes, off_t *at)
 {
     if (done < 0)

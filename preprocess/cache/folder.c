@@ -51,7 +51,7 @@ char *folder_influence_path(const char *folder, uint64_t key)
     return path_of(folder, key, INFLUENCE);
 }
 
-/* Returns the process id that the lock file contains, or 0 if there is none. */
+/* Returns the process id in the lock file, or 0 if there is none. */
 static long holder_of(int fd)
 {
     char text[32] = "";
@@ -205,8 +205,8 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
-/* Adds to an asset's manifest entry a bit mask of the levels of detail in which subdivision left no interpolation error of the field. The
- * daemon need not measure the errors of these levels (server/field/drawn_error.h). */
+/* Adds a bit mask to an asset's manifest entry: the levels of detail that subdivision left without interpolation error of the
+ * field. The daemon need not measure the errors of these levels (server/field/drawn_error.h). */
 static void add_resolved(json_t *asset, struct log *log, const char *folder, uint64_t key)
 {
     json_t *report = folder_report(log, folder, key), *level;
@@ -223,8 +223,9 @@ static void add_resolved(json_t *asset, struct log *log, const char *folder, uin
     json_decref(report);
 }
 
-/* Adds to an asset's manifest entry the texts about its model's textures and extensions that are not drawn. If this run did not parse the
- * model, takes the texts from the asset's entry in the old manifest, if that has the same recipe (hash of model and cutting parameters). */
+/* Adds the list of the model's textures and extensions that are not drawn to an asset's manifest entry. If this run did not
+ * parse the model, copies the list from the asset's entry in the old manifest, provided that its recipe (hash of model and
+ * cutting parameters) is the same. */
 static void add_left_out(json_t *asset, const struct folder_entry *entry, const json_t *old_assets)
 {
     json_t *texts = entry->left_out ? json_array() : NULL;
@@ -277,8 +278,8 @@ static uint64_t cache_key_of(const struct folder_entry *entry, enum build_cache_
     return build_cache_needs_sensors(kind) ? entry->distances_key : entry->geometry_key;
 }
 
-/* Returns whether a file name begins with 16 hexadecimal digits and `ending`. *whole: true if the name ends there. If not, it is the
- * temporary file of an interrupted write. */
+/* Returns whether a file name begins with 16 hexadecimal digits and `ending`. *whole: true if the name ends there; false for
+ * the temporary file of an interrupted write. */
 static bool is_name(const char *name, const char *ending, bool *whole)
 {
     if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ending, strlen(ending)) != 0)

@@ -28,15 +28,15 @@ char *folder_file_name(uint64_t key);
 char *folder_asset_path(const char *folder, uint64_t key);
 char *folder_influence_path(const char *folder, uint64_t key);
 
-/* Takes the folder's lock file, so that only one process at a time prepares into it. Returns the file descriptor, which holds the lock
- * until it is closed. While another process holds the lock, logs its process id and waits until the lock is free or *stop is true (NULL:
- * never). Returns -1 if it was stopped or the lock file cannot be created. */
+/* Locks the folder's lock file, so that only one process at a time prepares into the folder. Returns the file descriptor, which
+ * holds the lock until it is closed. While another process holds the lock, logs its process id and waits until the lock is free
+ * or *stop is true (stop NULL: never stops). Returns -1 if it was stopped or the lock file cannot be created. */
 int folder_lock(const char *folder, struct log *log, const atomic_bool *stop);
 
 /* Maps FOLDER/KEY.asset and checks it. Returns 1 with *file set (until folder_close()), 0 if there is no such file, or -1 if it is damaged,
    with the reason in why. */
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200]);
-/* Unpacks the distances of file->view if the file stores them packed, as it does for many sensors. Returns false if out of memory. */
+/* Unpacks the distances if the file stores them packed, as it does when there are many sensors. Returns false if out of memory. */
 bool folder_unpack(struct folder_file *file);
 /* Unmaps the file. */
 void folder_close(struct folder_file *file);
@@ -50,12 +50,12 @@ struct folder_draft {
 /* Creates an unnamed file of `size` bytes, which will become KEY.asset, reserves its disk space, and maps it for writing. Returns 0 or
  * -errno. */
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);
-/* Starts writing the draft of an asset file to disk, and returns without waiting; folder_put() waits until all contents are written. */
+/* Starts writing the draft of an asset file to disk without waiting; folder_put() waits until everything is written. */
 void folder_draft_send(const struct folder_draft *draft);
 /* Writes KEY.report.json (unless report is NULL), then gives the draft its name KEY.asset, so that every asset file has its report. The
  * draft stays mapped until it is closed. Returns 0 or -errno. */
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);
-/* Unmaps and closes the draft of an asset file. The kernel deletes the file unless folder_put() has named it. A zeroed draft is allowed. */
+/* Unmaps and closes the draft. The kernel deletes the file unless folder_put() has named it. A zeroed draft is allowed. */
 void folder_draft_close(struct folder_draft *draft);
 /* Returns the contents of KEY.report.json, which the caller frees (json_decref). Returns NULL if the file is missing or damaged, logged. */
 json_t *folder_report(struct log *log, const char *folder, uint64_t key);
@@ -69,13 +69,13 @@ struct folder_entry {
     const double *placement; /* matrix of 16 numbers, column-major: transform from the asset frame to the plant frame */
     const char *const *tags; /* tags of the asset's sensors, in the order of the asset file */
     size_t tag_count;
-    /* textures and extensions of the model that are not drawn, for plantcastd --check; NULL: this run did not parse the model, so the
-     * manifest keeps its texts */
+    /* list of the model's textures and extensions that are not drawn, for plantcastd --check; NULL: this run did not parse the
+     * model, so the manifest keeps its old list */
     const char *const *left_out;
     size_t left_out_count;
 };
-/* Writes manifest.json for these assets, unless it is unchanged. Then deletes prepared files whose key no asset has; *removed receives
- * their number (removed NULL: deletes nothing). Logs a damaged old manifest. Returns 0 or -errno. */
+/* Writes manifest.json for these assets if it has changed. Then deletes prepared files whose key belongs to no asset; *removed
+ * receives their number (removed NULL: deletes nothing). Logs a damaged old manifest. Returns 0 or -errno. */
 int folder_finish(struct log *log, const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
 
 #endif

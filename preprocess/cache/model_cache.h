@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of what preparing reads from model files: the geometry hash of each asset cut out of a model, and the positions of nodes that
- * sensors are attached to. With this cache, an unchanged model need not be parsed again. The cache is the file FOLDER/cuts, which can be
- * deleted at any time. Thread: one. */
+/* Caches what plantcast-prep reads from model files: the geometry hash of each asset cut out of a model, and the positions of
+ * nodes that sensors are attached to. With this cache, an unchanged model need not be parsed again. The cache is the file
+ * FOLDER/cuts, which can be deleted at any time. Thread: one. */
 #ifndef PREPROCESS_CACHE_MODEL_CACHE_H
 #define PREPROCESS_CACHE_MODEL_CACHE_H
 #include <stdbool.h>
@@ -10,11 +10,11 @@
 
 #include "base/log/log.h"
 
-/* The geometry hash (geometry_hash()) of a recipe. A recipe is the hash of a model and of the parameters that cut an asset out of the model
- * (build_recipe()). */
+/* Maps a recipe to a geometry hash (geometry_hash()). A recipe is the hash of a model and of the parameters that cut an asset
+ * out of the model (build_recipe()). */
 struct model_cache_geometry {
     uint64_t recipe;   /* hash of a model and of the parameters with which an asset is cut out (build_recipe()) */
-    uint64_t geometry; /* hash of the geometry that is cut out of the model (geometry_hash()) */
+    uint64_t geometry; /* hash of the geometry cut out of the model (geometry_hash()) */
 };
 struct model_cache_node {
     uint64_t recipe, node_hash;
@@ -34,11 +34,11 @@ int model_cache_write(const struct model_cache *cache, const char *folder);
 /* Frees both lists of the model cache and zeroes it. */
 void model_cache_finish(struct model_cache *cache);
 
-/* Returns whether both model caches have equal entries in the same order. */
+/* Returns whether the two model caches have equal entries in the same order. */
 bool model_cache_same(const struct model_cache *a, const struct model_cache *b);
 /* Looks up the geometry hash of a recipe (hash of model and cutting parameters). Returns false if the cache does not contain it. */
 bool model_cache_find(const struct model_cache *cache, uint64_t recipe, uint64_t *geometry);
-/* Looks up the position, in the asset frame in metres, of the node whose name has this hash, in the asset with this recipe. Returns false
+/* Looks up the position (asset frame, metres) of the node whose name has this hash in the asset with this recipe. Returns false
  * if the cache does not contain it. */
 bool model_cache_find_node(const struct model_cache *cache, uint64_t recipe, uint64_t node_hash, double place_m[3]);
 /* Adds the geometry hash of a recipe (hash of model and cutting parameters), unless the cache already contains the recipe. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forks the child, sets its limits and connects pipes. The parent reads the child's output until the child ends, a signal arrives or the
- * time limit is reached. */
+/* Forks the child, sets its limits and connects pipes. The parent reads the child's output until the child ends, a signal
+ * arrives or the time runs out. */
 #include "preprocess/child/child.h"
 
 #include <errno.h>
@@ -62,17 +62,17 @@ static void limit_all(const struct child_params *params)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-/* set no memory limit in builds with a sanitizer, because the sanitizer's shadow memory would count as data */
+/* no memory limit in sanitizer builds: the sanitizer's shadow memory would count as data */
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    /* limit data memory and not address space, because WebAssembly reserves far more address space than it uses */
+    /* limit data memory, not address space: WebAssembly reserves far more address space than it uses */
     limit(RLIMIT_DATA, params->memory_bytes);
 #else
     (void)params;
 #endif
 }
 
-/* Turns the forked process into the child: sets process group, limits, descriptors and confinement, and executes the program. Does not
- * return. */
+/* Turns the forked process into the child: sets its process group, limits, descriptors and confinement, then executes the
+ * program. Does not return. */
 static void become(const struct child_params *params, int out, int errors, const sigset_t *signals, char **environment)
 {
     setpgid(0, 0);
@@ -144,7 +144,7 @@ static bool take(int fd, struct text *text)
     return count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
 }
 
-/* Reads the output that is still in the pipe after the child's end. Never blocks, because a surviving process of the child may hold the
+/* Reads the output left in the pipe after the child's end. Never blocks, because a surviving process of the child may hold the
  * pipe open or write without end. */
 static void drain(int fd, struct text *text)
 {
@@ -195,7 +195,7 @@ static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
             *c = ' ';
 }
 
-/* Returns whether the child probably failed for lack of memory: it used nearly all of its memory limit, or its error output says so. */
+/* Returns whether the child probably ran out of memory: it used nearly all of its memory limit, or its error output says so. */
 static bool ran_out(const struct child *child, const struct child_params *params, const struct rusage *usage)
 {
     static const char *const words[] = { "out of memory", "bad_alloc", "Cannot allocate memory", "allocation failed", "memory exhausted" };

@@ -88,8 +88,8 @@ static void add_settings(struct child_paths *paths)
         closedir(dir);
 }
 
-/* Adds the files that programs in a folder such as ~/.venv/bin load: the files and folders of `parts` in the parent folder. Access to the
- * whole parent folder, such as ~/.local, would be too much. */
+/* Allows the files that programs in a folder such as ~/.venv/bin load: the files and folders listed in `parts` in its parent
+ * folder. Allowing the whole parent folder, such as ~/.local, would be too much. */
 static void add_installation(struct child_paths *paths, const char *programs)
 {
     static const char *const parts[] = { "lib", "lib64", "libexec", "versions", "version", "pyvenv.cfg" };
@@ -100,8 +100,7 @@ static void add_installation(struct child_paths *paths, const char *programs)
     }
 }
 
-/* Adds the absolute paths that a text contains. The text is a shell command or the value of $PATH. separators: the characters that separate
- * its paths. */
+/* Adds the absolute paths in a text, which is a shell command or the value of $PATH. separators: characters that separate the paths. */
 static void add_absolute(struct child_paths *paths, const char *text, const char *separators, bool installed)
 {
     for (const char *at = text; *at;) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A list of the paths that a confined child may use. Thread: any; one at a time for each list. */
+/* A list of the paths that a confined child may use. Thread: any; one at a time per list. */
 #ifndef PREPROCESS_CHILD_CHILD_PATHS_H
 #define PREPROCESS_CHILD_CHILD_PATHS_H
 #include "base/system/confine.h"
@@ -13,13 +13,13 @@ struct child_paths { /* list of paths and the access allowed to each; zero-initi
 void child_paths_add(struct child_paths *paths, const char *path, enum confine_access access);
 /* Adds the folder that contains the file `path`. */
 void child_paths_add_folder_of(struct child_paths *paths, const char *path, enum confine_access access);
-/* Adds, for reading, files with one of these endings (".bin .png", lower case) in the folder of `input` and up to three folder levels
- * below, at most 4096 files. Other files of that folder, such as keys, stay inaccessible. */
+/* Adds, for reading, files with one of these endings (".bin .png", lower case) in the folder of `input` and up to three folder
+ * levels below, at most 4096 files. Other files in these folders, such as keys, stay inaccessible. */
 void child_paths_add_beside(struct child_paths *paths, const char *input, const char *endings);
 /* Adds everything a site's shell command needs: installed programs, the folders of $PATH, configuration in /etc except Plantcast's, and the
  * files and folders that the command names by absolute paths. */
 void child_paths_add_command(struct child_paths *paths, const char *command);
-/* Adds the folders with this program's modules (base/system/module.h): its own folder, and ../lib/plantcast. */
+/* Adds the folders that hold this program's modules (base/system/module.h): the program's own folder, and ../lib/plantcast. */
 void child_paths_add_modules(struct child_paths *paths);
 void child_paths_finish(struct child_paths *paths);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Confines the process: executes the program again from a confined thread. exec makes the kernel end all other threads, which are not
-   confined. */
+/* Confines the process by executing the program again from a confined thread. exec makes the kernel end all other threads,
+   which are not confined. */
 #include "preprocess/child/child_self.h"
 
 #include <dirent.h>

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A temporary folder for output files. If the work succeeds, the files are moved to their target; otherwise nothing remains. Thread:
- * any. */
+/* A temporary folder for output files. On success, the files are moved to their target; on failure, nothing remains. Thread: any. */
 #ifndef PREPROCESS_CHILD_WORK_FOLDER_H
 #define PREPROCESS_CHILD_WORK_FOLDER_H
 #include <signal.h>
@@ -19,7 +18,7 @@ struct work_folder {
 int work_folder_begin(struct work_folder *work, const char *target);
 /* Returns whether SIGINT or SIGTERM is pending, so that the caller should stop. */
 bool work_folder_interrupted(void);
-/* Removes the folder and its contents. With keep false, also removes the target if work_folder_begin() created it and it is empty. */
+/* Removes the folder and its contents. If keep is false, also removes the target if work_folder_begin() created it and it is empty. */
 void work_folder_end(struct work_folder *work, bool keep);
 /* Removes a folder and everything in it, without following symlinks. Returns 0 or -errno. */
 int work_folder_remove(const char *path);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares hashes of inputs and outputs with those of the last run to decide which models must be generated again. */
+/* Decides which models must be generated again by comparing hashes of inputs and outputs with those of the last run. */
 #include "preprocess/convert/convert.h"
 
 #include <errno.h>
@@ -44,8 +44,8 @@ static bool is_made(const json_t *made, const struct plant_conversion *how, cons
     return same;
 }
 
-/* Runs the plant file's command that makes a model, in a temporary folder next to the model, and replaces the model only if the command
- * succeeds. */
+/* Runs the plant file's command that generates a model, in a temporary folder next to the model, and replaces the model only if
+ * the command succeeds. */
 static bool make(const struct plant_conversion *how, char why[CHILD_WHY_BYTES])
 {
     struct work_folder work;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the coloured shapes of a debug view of one asset: its surface, distances, sample points, and the bridges over its gaps. */
+/* Builds the coloured shapes of an asset's debug view: its surface, distances, sample points, and the bridges over its gaps. */
 #include "preprocess/debug/debug_view.h"
 
 #include <math.h>
@@ -13,12 +13,12 @@
 #include "surface/repair/repair.h"
 #include "surface/mesh/trimesh.h"
 
-#define ISOLINES 20 /* maximum number of isolines in one picture */
+#define ISOLINES 20 /* maximum number of isolines in a debug view */
 /* offset of isolines and open edges above and below the surface, so that the surface does not hide them; relative to the asset's size */
 #define LIFT 3e-4
-/* length of the cross that marks a bridge (connection over a gap), in multiples of the spacing of the surface points */
+/* size of the cross that marks a bridge (connection over a gap), as a multiple of the spacing of the surface points */
 #define MARK 0.3
-#define SENSOR 0.012 /* size of the mark at a sensor, relative to the asset's size */
+#define SENSOR 0.012 /* size of a sensor's mark, relative to the asset's size */
 #define DARKEST 0.75 /* brightness of faces seen edge-on */
 static const double light[3] = { 0.36, -0.48, 0.8 };
 
@@ -37,12 +37,12 @@ struct debug_drawing {
 struct soup { /* a shape being built */
     float (*positions)[3];
     uint16_t (*colors)[4];
-    /* vertex_of: by surface point, 1 + index of its vertex in this shape; 0: the shape has no vertex for the point yet */
+    /* vertex_of: by surface point: 1 + index of its vertex in this shape; 0: no vertex yet */
     uint32_t *indices, *vertex_of;
     size_t vertices, indices_used, position_room, color_room, index_room;
 };
 
-/* Adds a vertex to the triangles of a GLB file, converted from Z up to Y up. Returns its index. */
+/* Adds a vertex to the triangles of a GLB file, converting it from Z up to Y up. Returns its index. */
 static uint32_t add_vertex(struct soup *soup, const double p[3])
 {
     mem_grow(&soup->positions, &soup->position_room, soup->vertices + 1, sizeof(*soup->positions));
@@ -85,7 +85,7 @@ static void face_normal(const struct surface_debug_mesh *look, size_t t, double 
     vec_normal(look->points_m[v[0]], look->points_m[v[1]], look->points_m[v[2]], n);
 }
 
-/* Computes a normal for each surface point from the triangles around it, whose orientation may be inconsistent. */
+/* Computes a normal at each surface point from the surrounding triangles, whose orientation may be inconsistent. */
 static double (*find_normals(const struct surface_debug_mesh *look))[3]
 {
     double(*normals)[3] = mem_array(look->point_count, sizeof(*normals));
@@ -251,7 +251,7 @@ static void draw_points(struct debug_drawing *drawing)
 {
     const struct surface_debug_mesh *look = &drawing->look;
     struct soup model = { 0 }, samples = { 0 };
-    /* by surface point: 0: no triangle uses it; 1: a triangle uses it; 2: it is also a vertex of the model */
+    /* by surface point: 0: used by no triangle; 1: used by a triangle; 2: also a vertex of the model */
     char *kind = mem_array(look->point_count, 1);
     for (size_t t = 0; t < look->tri_count; t++)
         for (int i = 0; i < 3; i++)

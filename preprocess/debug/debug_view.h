@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a GLB file that shows how distances were computed on one asset, for any 3D viewer: surface, distances, sensors, and bridges
- * (connections over gaps). REPORT.md explains the nodes of the file. Thread: any, one per call. */
+/* Writes a GLB file, for any 3D viewer, that shows how distances were computed on an asset: surface, distances, sensors, and
+ * bridges (connections over gaps). REPORT.md explains the nodes of the file. Thread: any, one per call. */
 #ifndef PREPROCESS_DEBUG_VIEW_H
 #define PREPROCESS_DEBUG_VIEW_H
 #include "surface/surface.h"

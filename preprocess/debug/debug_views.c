@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the debug views (GLB files) of the assets that the parameters select, one model after the other. */
+/* Writes debug views (GLB files) of the selected assets, one model after the other. */
 #include "preprocess/debug/debug_views.h"
 
 #include <ctype.h>
@@ -21,7 +21,7 @@ struct views {
     bool failed;
 };
 
-struct subject { /* the asset whose pictures are being drawn */
+struct subject { /* the asset whose debug view is being built */
     const struct plant_asset *asset;
     const struct gltf_model *model;
     struct geometry_params params;
@@ -41,7 +41,7 @@ char *debug_views_folder(const struct plant *plant)
     return folder;
 }
 
-/* Returns the path of an asset's debug view; characters unsuitable in file names are written as %XX. The caller frees it. */
+/* Returns the path of an asset's debug view; characters unsuitable in file names are replaced by %XX. The caller frees it. */
 static char *file_of(const char *folder, const char *id)
 {
     struct text name = { 0 };
@@ -137,7 +137,7 @@ static bool is_wanted(const struct views *views, const struct plant_asset *asset
     return tag < 0 || views->plant->tags[tag].asset == (int)(asset - views->plant->assets);
 }
 
-/* Writes the debug views of those assets of one model that the parameters select. A model without such assets is not parsed. */
+/* Writes debug views of the selected assets of one model. A model without such assets is not parsed. */
 static void write_model(struct views *views, struct model_file *model)
 {
     for (size_t i = 0; i < views->plant->asset_count; i++) {

@@ -11,8 +11,8 @@
 
 struct debug_views_params {
     const char *folder;
-    const char *asset; /* id of the only asset to show; NULL: all assets */
-    /* name of a sensor: only its asset is shown, with distances from this sensor; NULL: distances from each asset's first sensor */
+    const char *asset; /* id of the only asset to show; NULL: show all assets */
+    /* tag of a sensor: show only its asset, with distances from this sensor; NULL: distances from each asset's first sensor */
     const char *sensor;
     FILE *say; /* receives the names of the written files; NULL: prints nothing */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes GLB files (glTF 2.0) of coloured triangles, lines and points, unlit (KHR_materials_unlit). Thread: one per writer. */
+/* Writes GLB files (glTF 2.0) of coloured, unlit (KHR_materials_unlit) triangles, lines and points. Thread: one per writer. */
 #ifndef PREPROCESS_DEBUG_GLB_WRITER_H
 #define PREPROCESS_DEBUG_GLB_WRITER_H
 #include <stdint.h>
@@ -19,16 +19,16 @@ struct glb_shape { /* triangles, lines or points of one node; Y is up */
 
 struct glb_writer;
 
-/* Creates an empty scene whose root node has this name. The caller frees it with glb_writer_destroy(). */
+/* Creates an empty scene whose root node is named `name`. The caller frees it with glb_writer_destroy(). */
 struct glb_writer *glb_writer_create(const char *name);
 /* Frees the writer and sets *writer to NULL. *writer may be NULL. */
 void glb_writer_destroy(struct glb_writer **writer);
-/* Copies a shape into the scene as a child of the root with this name. Ignores a shape without vertices. */
+/* Copies a shape into the scene as a child of the root, under this name. Ignores a shape without vertices. */
 void glb_writer_add(struct glb_writer *writer, const char *name, const struct glb_shape *shape);
 /* Writes the scene to `path`. Returns 0 or -errno. */
 int glb_writer_save(struct glb_writer *writer, const char *path);
 
-/* Converts an 8-bit sRGB component to linear, where 65535 is 1.0. */
+/* Converts an 8-bit sRGB component to a linear one, where 65535 is 1.0. */
 uint16_t glb_linear(uint8_t srgb);
 
 #endif

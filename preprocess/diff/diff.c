@@ -79,8 +79,8 @@ static bool equal_shapes(const struct diff_side_shape *a, const struct diff_side
            memcmp(a->indices, b->indices, a->index_count * sizeof(*a->indices)) == 0;
 }
 
-/* Computes the motion in the plant frame from the old asset to the new one. new_to_old: motion that maps the new shape to the old one, each
- * in its own frame. */
+/* Computes the motion of the asset from its old to its new position, in the plant frame. new_to_old: motion that maps the new
+ * shape to the old one, each in its own frame. */
 static void plant_motion(const struct asset_pair *pair, const double new_to_old[16], double motion[16])
 {
     double plant_to_old[16], old_to_new[16], step[16];
@@ -90,7 +90,7 @@ static void plant_motion(const struct asset_pair *pair, const double new_to_old[
     transform_multiply(step, plant_to_old, motion);
 }
 
-/* Returns the largest distance, in metres, between the old and the new position of a corner of the old asset's bounding box. */
+/* Returns the largest movement, in metres, of a corner of the old asset's bounding box. */
 static double moved_by(const struct asset_pair *pair, const double new_to_old[16], double *turned_deg)
 {
     double motion[16], plant_to_old[16], step[16], local[16];
@@ -102,8 +102,7 @@ static double moved_by(const struct asset_pair *pair, const double new_to_old[16
     return diff_shape_moved(pair->old_half.tree, local);
 }
 
-/* Returns whether the old and the new shape of an asset are equal after the motion new_to_old, which means that the asset is unchanged or
- * only moved. */
+/* Returns whether the old shape and the new shape moved by new_to_old are equal: the asset is then unchanged, or only moved. */
 static bool same_shape(struct asset_pair *pair, const double new_to_old[16], bool equal)
 {
     if (!equal && diff_shape_apart(pair->old_half.tree, pair->new_half.tree, new_to_old, pair->tolerance_m) > pair->tolerance_m)
@@ -149,9 +148,9 @@ static double place_sensor(const struct pair_half *half, size_t column, double p
     return distance_m;
 }
 
-/* Returns how far the surface at a sensor moved between the revisions, metres. For a sensor on the axis of a pipe, many surface points are
- * equally near, and rounding decides which one is found. So the surface counts as unmoved if the new surface passes through the old nearest
- * point, and that point is about as near as the new one. */
+/* Returns how far the surface at a sensor moved between the revisions, metres. For a sensor on the axis of a pipe, many surface
+ * points are equally near, and rounding decides which one is found. So the surface also counts as unmoved if it passes through
+ * the old nearest point and that point is about as near as the new one. */
 static double surface_moved(const struct asset_pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
 {
     double plant_to_new[16], at[3], still_m[3], moved_m = vec_distance(old_m, new_m);
@@ -201,8 +200,8 @@ static void compare_sensors(struct diff *diff, struct asset_pair *pair)
     }
 }
 
-/* Searches the new model for a node with another name that has the old asset's shape at the old position. If there is one, writes its name
- * to `why`; otherwise `why` stays as it is and suggests a similar name. */
+/* Searches the new model for a node with another name that has the old asset's shape at the old position. If there is one,
+ * writes its name to `why`; otherwise leaves `why` unchanged, which suggests a similar name. */
 static void find_renamed(struct diff *diff, const struct asset_pair *pair, const struct diff_side_asset *asset, double tolerance_m,
                          char *why)
 {
@@ -238,7 +237,7 @@ static void find_renamed(struct diff *diff, const struct asset_pair *pair, const
     }
 }
 
-/* Reports the tags whose sensors are on an asset of the new plant file that the new model does not contain. */
+/* Reports the tags whose asset is in the new plant file but missing from the new model. */
 static void lose_sensors(struct diff *diff, const char *id, const char *why)
 {
     for (size_t i = 0; i < diff->new_side.tag_count; i++) {

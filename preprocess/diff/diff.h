@@ -13,22 +13,22 @@ extern const char *const diff_changes[DIFF_CHANGES];
 struct diff_asset {
     const char *id;
     enum diff_change change;
-    /* reason why a removed asset counts as removed although the new plant still has its id, such as a missing node; else NULL */
+    /* why an asset counts as removed although the new plant file still lists its id, such as a missing node; NULL: its id was removed */
     char *why;
-    double move_m[3]; /* movement of the centre of the asset's bounding box, metres, plant frame */
+    double move_m[3]; /* movement of the centre of the asset's bounding box, metres, in the plant frame */
     double moved_m;   /* largest movement of a corner of the asset's bounding box, metres */
     double turned_deg;
-    double apart_m;      /* changed assets only: largest distance between both surfaces after they were aligned, metres */
-    double tolerance_m;  /* metres; assets and sensors that differ by less between the revisions count as unchanged */
+    double apart_m;      /* changed assets only: largest distance between the two surfaces after alignment, metres */
+    double tolerance_m;  /* metres; differences below this between the revisions do not count as changes */
     size_t triangles[2]; /* number of triangles in the old [0] and in the new [1] revision */
 };
 
 struct diff_sensor {         /* a tag that is a sensor in both revisions */
-    const char *tag, *asset; /* name of the tag, and id of its asset in the new revision */
-    double moved_m;          /* distance, in metres, between the surface points nearest to the sensor in the two revisions */
-    double place_moved_m;    /* movement, in metres, of the position that the tag list or the sensor's node states */
+    const char *tag, *asset; /* name of the tag, and id of its asset in the new plant */
+    double moved_m;          /* distance between the surface points nearest to the sensor in the old and the new revision, metres */
+    double place_moved_m;    /* movement of the position given by the tag list or the sensor's node, metres */
     double distance_m[2];    /* distance from the sensor's position to the surface in the old [0] and in the new [1] revision, metres */
-    double limit_m;          /* distance from the surface above which the report warns, metres */
+    double limit_m;          /* the report warns if a sensor is farther than this from the surface, metres */
     double tolerance_m;
     bool far_moved; /* true: the surface under the sensor moved by more than the tolerance */
 };
@@ -48,9 +48,9 @@ struct diff {
     size_t asset_room, sensor_room, orphan_room, added_room, removed_room;
 };
 
-/* Reads and compares both plants into *diff. tolerance_m: shapes and positions that differ by at most this count as equal; 0: 10 mm, or 1 %
- * of the asset's diagonal if that is less. Returns false if a plant cannot be read, with the reason in diag. Call diff_finish() in both
- * cases. */
+/* Reads and compares both plants into *diff. tolerance_m: shapes and positions that differ by at most this count as equal; 0:
+ * 10 mm, or 1 % of the asset's diagonal if that is less. Returns false if a plant cannot be read, with the reason in diag. In
+ * either case, call diff_finish(). */
 bool diff_run(struct diff *diff, const char *old_path, const char *new_path, double tolerance_m, struct diag *diag);
 /* Frees the result of diff_run(). */
 void diff_finish(struct diff *diff);

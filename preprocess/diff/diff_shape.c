@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes distances between surfaces, and the motion between equal shapes. */
+/* Computes distances between surfaces, and the rigid motion between equal shapes. */
 #include "preprocess/diff/diff_shape.h"
 
 #include <math.h>
@@ -11,9 +11,9 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-/* number of points along a line as long as the shape's diagonal at which the distance from the other shape is measured */
+/* number of points sampled along a line as long as the shape's diagonal when distances from the other shape are measured */
 #define SPREAD 100.0
-#define PLACES_MAX 64 /* maximum number of points along a side of a triangle at which the distance from the other shape is measured */
+#define PLACES_MAX 64 /* maximum number of points sampled along a side of a triangle when distances from the other shape are measured */
 
 struct diff_shape {
     struct trimesh mesh;
@@ -21,8 +21,8 @@ struct diff_shape {
     double low[3], high[3];
 };
 
-/* Copies the vertices that the asset's triangles use, in their order. A prepared asset has other vertices too, which belong to coarser
- * levels of detail and are not on the surface. */
+/* Copies the vertices that the asset's triangles use, keeping their order. A prepared asset has other vertices too, which
+ * belong to coarser levels of detail and are not on the surface. */
 static void take_points(struct trimesh *mesh, const struct diff_side_shape *from)
 {
     char *used = mem_array(from->vertex_count, 1);
@@ -109,8 +109,8 @@ static bool try_place(struct shape_distance_search *search, const double p[3])
     return search->enough_m > 0 && search->worst_m > search->enough_m;
 }
 
-/* Measures the distance from the other shape at points in a triangle that lie in rows parallel to one side. Larger triangles have more
- * points. Returns true once the distance exceeds enough_m. */
+/* Measures the distance of points in a triangle from the other shape; the points lie in rows parallel to one side. Larger
+ * triangles have more points. Returns true as soon as a distance exceeds enough_m. */
 static bool try_triangle(struct shape_distance_search *search, const double *a, const double *b, const double *c, double spacing_m)
 {
     double longest_m = max_of(vec_distance(a, b), max_of(vec_distance(b, c), vec_distance(c, a)));

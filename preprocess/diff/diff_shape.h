@@ -1,36 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two triangle shapes: largest distance, rigid motion, nearest points. Thread: any. */
+/* Compares two triangle meshes: largest distance, rigid motion, nearest points. Thread: any. */
 #ifndef PREPROCESS_DIFF_SHAPE_H
 #define PREPROCESS_DIFF_SHAPE_H
 #include "preprocess/diff/diff_side.h"
 
-/* A triangle shape with a bounding volume hierarchy. */
+/* A triangle mesh with a bounding volume hierarchy. */
 struct diff_shape;
 
 /* Builds a shape from an asset's triangles, which must outlive it. The caller frees it with diff_shape_destroy(). */
 struct diff_shape *diff_shape_create(const struct diff_side_shape *shape);
 /* Frees the shape and sets *shape to NULL. *shape may be NULL. */
 void diff_shape_destroy(struct diff_shape **shape);
-/* Writes the shape's bounding box in metres. */
+/* Writes the corners of the shape's bounding box, in metres. */
 void diff_shape_box(const struct diff_shape *shape, double low_m[3], double high_m[3]);
 /* Returns the diagonal of the shape's bounding box in metres. */
 double diff_shape_diagonal(const struct diff_shape *shape);
 
-/* Finds the point of the surface nearest to point_m and writes it to place_m. Returns the distance between both in metres. */
+/* Writes the surface point nearest to point_m to place_m, and returns its distance from point_m in metres. */
 double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3], double place_m[3]);
 
-/* Moves shape b by the matrix b_to_a. Returns the largest distance in metres between a point of one surface and the other surface, in both
- * directions. Measures at corners and at points spread over the triangles. If enough_m is not 0, stops once the distance exceeds
- * enough_m. */
+/* Moves shape b by the matrix b_to_a. Returns the largest distance, in metres, of a point of either surface from the other
+ * surface, measured at corners and at points spread over the triangles. If enough_m is not 0, stops as soon as the distance
+ * exceeds enough_m. */
 double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, const double b_to_a[16], double enough_m);
 
-/* Finds the rigid motion that maps the vertices of shape b to those of shape a. Returns false if their numbers of vertices differ; assumes
- * the same order of vertices. */
+/* Finds the rigid motion that maps the vertices of shape b to those of shape a, assuming that both list them in the same order.
+ * Returns false if the vertex counts differ. */
 bool diff_shape_motion(const struct diff_shape *a, const struct diff_shape *b, double b_to_a[16]);
 
-/* Returns the largest distance by which `motion` moves a corner of the shape's bounding box, in metres. */
+/* Returns how far `motion` moves a corner of the shape's bounding box at most, in metres. */
 double diff_shape_moved(const struct diff_shape *shape, const double motion[16]);
-/* Returns the angle, in degrees, by which a rigid motion rotates. */
+/* Returns the rotation angle of a rigid motion, in degrees. */
 double diff_turned_deg(const double motion[16]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the assets of a plant, one at a time, from a plant file with models or from a folder of prepared files. */
+/* Reads a plant's assets, one at a time, from a plant file with models or from a folder of prepared files. */
 #include "preprocess/diff/diff_side.h"
 
 #include <errno.h>
@@ -83,7 +83,7 @@ static struct gltf_model *parse(struct diff_side *side, struct model_file *model
     return &model->parsed;
 }
 
-/* Cuts the geometry of an asset out of the model. The shape takes ownership of its triangles and positions. */
+/* Cuts an asset's geometry out of the model. The shape takes ownership of the geometry's triangles and positions. */
 static bool cut_shape(const struct gltf_model *model, const struct geometry_params *params, struct diff_side_shape *shape, char *why)
 {
     struct geometry g;
@@ -95,7 +95,7 @@ static bool cut_shape(const struct gltf_model *model, const struct geometry_para
                                        .index_count = g.index_count,
                                        .own = true };
     memcpy(shape->origin_m, g.origin_m, sizeof(shape->origin_m));
-    g.positions_m = NULL; /* the shape owns the arrays of positions and triangles from here on: geometry_finish() must not free them */
+    g.positions_m = NULL; /* the shape now owns the position and triangle arrays: keep geometry_finish() from freeing them */
     g.indices = NULL;
     geometry_finish(&g);
     return true;
@@ -234,7 +234,7 @@ static bool shape_of_folder(struct diff_side *side, const struct diff_side_asset
     return true;
 }
 
-/* --- functions for both kinds of side: a plant file, or a folder of prepared files ------------------------------------------------- */
+/* --- functions for either kind of side: a plant file, or a folder of prepared files --------------------------------------------------- */
 
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag)
 {

@@ -9,7 +9,7 @@
 
 struct diff_side_tag {
     const char *name;
-    const char *asset; /* id in the column `asset` of the tag's row in the tag list, even if the plant has no such asset; "": none */
+    const char *asset; /* asset id in the tag's row of the tag list, even if the plant has no such asset; "": none */
     size_t column;     /* index of the tag's sensor among the sensors of its asset */
     bool is_sensor;
 };
@@ -18,7 +18,7 @@ struct diff_side_asset {
     const char *id;
     double placement[16]; /* transform from the asset frame to the plant frame */
     uint64_t work;        /* identifies the asset's model; assets with equal values use the same model */
-    /* members that are set only if the plant was read from a plant file: */
+    /* the members below are set only if the plant was read from a plant file */
     const struct plant_asset *plant;
     size_t model;
     /* key of the asset's prepared file; set only if a folder of prepared files is compared */
@@ -30,15 +30,15 @@ struct diff_side {
     struct diff_side_asset *assets;
     struct diff_side_tag *tags; /* tags of the plant, sorted by name */
     size_t asset_count, tag_count;
-    struct plant *plant; /* the plant that was read; NULL: a folder of prepared files is compared */
+    struct plant *plant; /* the plant read from a plant file; NULL: a folder of prepared files is compared */
     struct model_files models;
-    struct model_file *parsed; /* parsed model file that is in memory now */
+    struct model_file *parsed; /* the parsed model file in memory; only one at a time */
     char *manifest;            /* text of the manifest; the strings of the assets and tags belong to `root`, the parsed manifest */
     void *root;
 };
 
-/* Opens one of the two plants, a plant file or a folder of prepared files, and lists its assets and tags. Returns false with the reason in
- * diag. Call diff_side_finish() in both cases. */
+/* Opens one of the two plants, a plant file or a folder of prepared files, and lists its assets and tags. Returns false with
+ * the reason in diag. In either case, call diff_side_finish(). */
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag);
 /* Frees the lists of assets and tags, and the model in memory. */
 void diff_side_finish(struct diff_side *side);
@@ -53,7 +53,7 @@ struct diff_side_shape { /* triangles and sensor positions of an asset, relative
     double (*places_m)[3]; /* positions of the asset's sensors; NaN if a sensor's node does not exist */
     char **whys;           /* by sensor: reason why its node is missing or ambiguous; NULL: the sensor's position is known */
     size_t sensor_count;
-    bool own; /* true: the shape owns its arrays; false: they point into the mapped file */
+    bool own; /* true: this struct owns its arrays; false: they point into the mapped file */
     struct folder_file file;
 };
 /* Reads an asset's triangles and sensor positions into *shape. Returns false with the reason in why if they cannot be read; otherwise call
@@ -63,15 +63,15 @@ bool diff_side_shape(struct diff_side *side, const struct diff_side_asset *asset
 struct diff_side_box {
     double low_m[3], high_m[3];
 };
-/* Searches the asset's model for a node whose subtree has this bounding box (asset frame) within tolerance_m, from the node with index
- * *node on. Writes the index of the found node to *node, and to name its quoted name, or "#number" if the name is not unique. Returns false
- * if there is no such node, or if this plant is a folder of prepared files. */
+/* Searches the asset's model, from node index *node on, for a node whose subtree has this bounding box (asset frame) within
+ * tolerance_m. Writes the index of the node to *node, and its quoted name to name ("#number" if the name is not unique).
+ * Returns false if there is no such node, or if this plant is a folder of prepared files. */
 bool diff_side_node_in_box(struct diff_side *side, const struct diff_side_asset *asset, const struct diff_side_box *box, double tolerance_m,
                            uint32_t *node, char *name, size_t name_bytes);
-/* Like diff_side_shape(), but with the triangles of model node `node` instead of the asset's own, and without sensors. */
+/* Like diff_side_shape(), but reads the triangles of model node `node` instead of the asset's, and no sensors. */
 bool diff_side_shape_of_node(struct diff_side *side, const struct diff_side_asset *asset, uint32_t node, struct diff_side_shape *shape,
                              char why[MODEL_WHY_BYTES]);
-/* Frees the arrays of the shape, or unmaps the file that they point into. */
+/* Frees the shape's arrays, or unmaps the file that they point into. */
 void diff_side_shape_finish(struct diff_side_shape *shape);
 
 #endif

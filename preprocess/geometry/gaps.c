@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes hair gaps in the drawn mesh with repair_join_points(), which also closes them in the surface on which distances are computed. */
+/* Closes hair gaps in the drawn mesh with repair_join_points(), which also closes them in the surface for distances. */
 #include "preprocess/geometry/gaps.h"
 
 #include "base/math/gap_split.h"
 #include "base/mem.h"
 #include "surface/repair/repair.h"
 
-#define SAME_M 1e-9 /* metres; vertices at most this far apart count as being at the same position */
+#define SAME_M 1e-9 /* metres; vertices at most this far apart are treated as one position */
 
-/* maximum number of rounds of closing gaps. Each round closes at most one gap at a corner where several gaps meet. */
+/* maximum number of passes over the mesh; one pass closes at most one gap at a corner where several gaps meet */
 enum { MAX_ROUNDS = 4 };
 
 static double widest_m(const float (*positions_m)[3], const uint32_t *indices, size_t index_count, double tolerance_m)
@@ -17,7 +17,7 @@ static double widest_m(const float (*positions_m)[3], const uint32_t *indices, s
     return tolerance_m > 0 ? min_of(most_m, tolerance_m) : most_m;
 }
 
-/* Moves each vertex to the position of the mesh point target[p], into which the vertex's own mesh point p was merged. */
+/* Moves the vertices of each mesh point p to the position of target[p], the point into which p was merged. */
 static void move(float (*positions_m)[3], size_t vertex_count, const uint32_t *point_of, const struct trimesh *mesh, const uint32_t *target)
 {
     for (size_t v = 0; v < vertex_count; v++)
@@ -25,7 +25,7 @@ static void move(float (*positions_m)[3], size_t vertex_count, const uint32_t *p
             positions_m[v][axis] = (float)mesh->points[target[point_of[v]]][axis];
 }
 
-/* Closes the hair gaps of a mesh in one round. Returns the number of positions moved, or -1 if out of memory. */
+/* Closes the hair gaps of a mesh in one pass. Returns the number of positions moved, or -1 if out of memory. */
 static int64_t close_once(float (*positions_m)[3], size_t vertex_count, const uint32_t *indices, size_t index_count, double within_m,
                           uint32_t *point_of)
 {

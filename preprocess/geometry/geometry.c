@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cuts the mesh of an asset out of a model. */
+/* Cuts an asset's mesh out of a model. */
 #include "preprocess/geometry/geometry.h"
 
 #include <math.h>
@@ -15,18 +15,18 @@
 
 #define MAX_TRIANGLES 50000000ull /* maximum number of triangles of an asset */
 #define MAX_SIZE_M 1e7
-/* size in metres above which a model uses the median of its vertices as its origin; single-precision positions at the ends of such a model
- * are only accurate to half a millimetre */
+/* metres; in a model larger than this, an asset's origin is the median of its vertices, because single-precision positions
+ * would be accurate to only half a millimetre at the far ends of the model */
 #define COARSE_SIZE_M 1e4
-/* metres; several nodes of the name that a sensor states give an unambiguous position if they are at most this far apart */
+/* metres; if a sensor names several nodes, its position is still unambiguous if they are at most this far apart */
 #define SAME_PLACE_M 1e-3
 #define SHOWN_NODES 6
-/* minimum size of a model in metres; a smaller model certainly has a wrong unit, and fourth powers of its lengths would underflow */
+/* metres; a model smaller than this certainly has the wrong unit, and fourth powers of its lengths would underflow */
 #define MIN_SIZE_M 1e-6
 
 /* --- selecting nodes ----------------------------------------------------------------------------------------------------- */
 
-/* Converts a model's nodes to the form against which node patterns are matched. The caller frees the array with mem_free. */
+/* Converts a model's nodes to the form that node patterns are matched against. The caller frees the array with mem_free. */
 static struct model_node *nodes_of(const struct gltf_model *model)
 {
     struct model_node *nodes = mem_array(model->node_count, sizeof(*nodes));
@@ -43,8 +43,8 @@ static struct model_node *nodes_of(const struct gltf_model *model)
     return nodes;
 }
 
-/* Returns, for each node of the model, whether it belongs to the asset; the caller frees the array with mem_free. Returns NULL with the
- * reason in why if a pattern matches no node. */
+/* Returns an array that says for each node of the model whether it belongs to the asset; the caller frees it with mem_free.
+ * Returns NULL with the reason in why if a pattern matches no node. */
 static bool *taken_nodes(const struct gltf_model *model, const char *patterns, char *why)
 {
     struct model_node *nodes = nodes_of(model);
@@ -139,7 +139,7 @@ static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -
 
 static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
-    /* the bounding box includes all vertices: the glTF reader has already removed those that no triangle uses */
+    /* include all vertices in the bounding box: the glTF reader has already removed those that no triangle uses */
     for (uint32_t i = 0; i < primitive->vertex_count; i++) {
         const float *p = primitive->positions[i];
         double q[3];
@@ -151,8 +151,8 @@ static void box_add_primitive(struct node_box *box, const struct gltf_primitive 
     }
 }
 
-/* Computes the median of the asset's vertices, which becomes its origin, so that a stray vertex far away does not cost precision where most
- * of the asset is. */
+/* Computes the median of the asset's vertices. The median becomes the asset's origin, so that a stray vertex far away does not
+ * cost precision where most of the asset is. */
 static void median_of(const struct node_primitives *parts, const struct geometry_params *params, double median_m[3])
 {
     size_t count = 0, at = 0;
@@ -243,7 +243,7 @@ static bool several_places(const struct gltf_model *model, const char *pattern, 
                  pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 
-/* Removes from the nodes found for a sensor those outside its asset, unless all are outside. */
+/* Removes the nodes outside the sensor's asset from the nodes found for a sensor, unless all are outside. */
 static size_t prefer_own(const struct gltf_model *model, const struct geometry_params *params, uint32_t *found, size_t count)
 {
     char why[MODEL_WHY_BYTES];
@@ -303,7 +303,7 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 
 /* --- joining primitives ---------------------------------------------------------------------------------------------------- */
 
-struct geometry_room { /* state while a geometry's arrays are filled: capacities of the arrays, and flags */
+struct geometry_room { /* state while a geometry's arrays are filled: their capacities, and flags */
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
     float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];
@@ -349,7 +349,7 @@ static void append(struct geometry *geometry, struct geometry_room *room, const 
     room->any_colors |= part->primitive->colors != NULL;
 }
 
-/* Material of models without materials: grey, drawn from both sides because the faces' orientation is not reliable. */
+/* Material for models without materials: grey and double-sided, because the faces' orientation is not reliable. */
 static const struct asset_material plain_material = {
     .base_color = { 0.6f, 0.62f, 0.64f, 1 },
     .roughness = 0.6f,
@@ -364,8 +364,8 @@ static const struct asset_material plain_material = {
     .double_sided = 1,
 };
 
-/* Returns the index of a model's material in the asset. Primitives are sorted by material, so a material is either the one added last,
- * whose index is returned, or a new one, which is added. */
+/* Returns the index of a model's material in the asset, adding the material if it is new. Primitives are sorted by material, so
+ * only the material added last needs to be compared. */
 static uint32_t material_number(struct geometry *geometry, const struct gltf_model *model, int material, int *last)
 {
     if (geometry->material_count && *last == material)

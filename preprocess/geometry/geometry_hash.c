@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes the part of a model that an asset uses, so that the hash is unchanged by a revision that affects other assets only. */
+/* Hashes the part of a model that an asset uses. The hash stays the same if a revision changes only other assets. */
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* makes xxhash declare the type of its hash state, for a state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* xxhash then declares its hash state as a complete type, so that it can be a local variable */
 #include <xxhash.h>
 
 #include "base/mem.h"
@@ -10,13 +10,13 @@
 struct hashing {
     XXH3_state_t state;
     const struct gltf_model *model;
-    uint32_t *texture; /* by texture of the model: its index among the asset's textures + 1; 0: not used yet */
+    uint32_t *texture; /* by texture of the model: 1 + its index among the asset's textures; 0: not used yet */
     uint32_t textures;
 };
 
 static void hash_bytes(struct hashing *h, const void *bytes, size_t count)
 {
-    /* hash the length too, so that bytes cannot move from one field to the next unnoticed */
+    /* hash the length too, so that moving bytes from one field to the next changes the hash */
     XXH3_64bits_update(&h->state, &count, sizeof(count));
     if (count)
         XXH3_64bits_update(&h->state, bytes, count);
@@ -27,7 +27,7 @@ static void add_number(struct hashing *h, uint32_t number)
     XXH3_64bits_update(&h->state, &number, sizeof(number));
 }
 
-/* Adds a texture's index in the asset to the hash, and at its first use the texture's content. */
+/* Hashes a texture's index in the asset, and the texture's content when it is first used. */
 static void add_texture(struct hashing *h, uint32_t number)
 {
     const struct gltf_model *model = h->model;
@@ -80,8 +80,7 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
     XXH3_INITSTATE(&h.state);
     XXH3_64bits_reset(&h.state);
     h.texture = mem_array(model->texture_count + 1u, sizeof(*h.texture));
-    /* adds the counts of nodes, lines and points to the hash, because the report shows them: if they change, the stored report is
-     * outdated */
+    /* also hash the counts of nodes, lines and points: the report contains them, so it is outdated if they change */
     const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points };
     hash_bytes(&h, numbers, sizeof(numbers));
     for (size_t i = 0; good && i < parts.count; i++) {

@@ -4,7 +4,7 @@
 #define PREPROCESS_GEOMETRY_IMPL_H
 #include "preprocess/geometry/geometry.h"
 
-struct node_primitive { /* a primitive of a model, at one of the nodes that use it */
+struct node_primitive { /* a primitive of a model as placed by one of the nodes that use it */
     const struct gltf_node *node;
     const struct gltf_primitive *primitive;
     uint32_t order;
@@ -12,11 +12,11 @@ struct node_primitive { /* a primitive of a model, at one of the nodes that use 
 };
 
 struct node_primitives {
-    struct node_primitive *at; /* primitives of the asset, sorted by material; those with transparent materials come last */
+    struct node_primitive *at; /* primitives of the asset, sorted by material, transparent materials last */
     size_t count, capacity;
 };
-/* Lists the glTF primitives of the nodes that params select. Adds to `geometry` the counts of nodes, and of line and point primitives,
- * which are skipped. Returns false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
+/* Lists the glTF primitives of the nodes that params select. Adds the numbers of nodes, and of skipped line and point
+ * primitives, to `geometry`. Returns false with the reason in why. In either case, the caller frees parts->at (mem_free). */
 bool node_primitives_find(struct node_primitives *parts, struct geometry *geometry, const struct gltf_model *model,
                           const struct geometry_params *params, char *why);
 
@@ -27,16 +27,16 @@ struct geometry_vertex {
 };
 
 struct primitive_mesh {
-    struct geometry_vertex *vertices; /* vertices of the primitive; one per triangle corner until welding removes duplicates */
+    struct geometry_vertex *vertices; /* one vertex per triangle corner, until welding removes duplicates */
     unsigned *indices;
     size_t vertex_count, index_count;
 };
 
-/* Computes the transform from a node's frame to the asset frame: the node's world matrix, then the conversion to metres and Z up. */
+/* Computes the transform from a node's frame to the asset frame: the node's world matrix, followed by the conversion to metres and Z up. */
 void primitive_world(const struct geometry_params *params, const struct gltf_node *node, double out[16]);
 
-/* Builds the triangles of one glTF primitive in the asset frame, relative to the geometry's origin, welded and ordered for the GPU's vertex
- * cache. Returns false if out of memory. Call primitive_mesh_finish() in both cases. */
+/* Builds the triangles of one glTF primitive in the asset frame, relative to the geometry's origin, welded and ordered for the
+ * GPU's vertex cache. Returns false if out of memory. In either case, call primitive_mesh_finish(). */
 bool primitive_mesh(struct primitive_mesh *mesh, const struct node_primitive *part, const struct geometry_params *params,
                     struct geometry *geometry);
 /* Frees the arrays of the primitive's mesh. */

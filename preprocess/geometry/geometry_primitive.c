@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the triangle mesh of one glTF primitive of one node. */
+/* Builds the triangle mesh of one glTF primitive at one node. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -45,8 +45,8 @@ static double determinant(const double m[16])
     return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
 }
 
-/* Computes the matrix that transforms normals: the inverse transpose of m up to a positive factor, which is the cofactors of m, negated if
- * m mirrors. */
+/* Computes the matrix that transforms normals: the inverse transpose of m, except for a positive factor. That is the cofactor
+ * matrix of m, negated if m mirrors. */
 static void normal_matrix(const double m[16], double out[9])
 {
     double sign = determinant(m) < 0 ? -1 : 1;
@@ -85,8 +85,8 @@ bool geometry_node_has_area(const struct gltf_model *model, uint32_t number)
     for (uint32_t p = 0; p < count; p++) {
         const struct gltf_primitive *primitive = &model->primitives[model->meshes[node->mesh].first_primitive + p];
         double corners[3][3];
-        /* corners relative to the first one: single precision then loses no digits, as in geometry_cut(), which computes areas near the
-         * origin */
+        /* corners relative to the first one, so that single precision loses no digits; for the same reason, geometry_cut()
+         * computes areas near the origin */
         float relative[3][3];
         for (uint32_t i = 0; i < primitive->index_count; i++) {
             const float *at = primitive->positions[primitive->indices[i]];
@@ -100,7 +100,7 @@ bool geometry_node_has_area(const struct gltf_model *model, uint32_t number)
     return false;
 }
 
-/* Lists in the output the indices of all triangles that have an area. If the node's transform mirrors, reverses their winding so that the
+/* Writes the indices of all triangles that have an area. If the node's transform mirrors, reverses their winding so that the
  * outside stays outside. Returns the number of indices. */
 static size_t take_triangles(const struct gltf_primitive *primitive, const float (*positions)[3], bool mirrored, uint32_t *out,
                              uint32_t *degenerate)
@@ -119,8 +119,8 @@ static size_t take_triangles(const struct gltf_primitive *primitive, const float
     return count;
 }
 
-/* Reverses a vertex normal that contradicts the winding of its triangle, which defines the outside; some exporters write such normals.
- * Normals that only lean towards a neighbouring face are kept. */
+/* Reverses a vertex normal that contradicts its triangle's winding, which defines the outside; some exporters write such
+ * normals. Keeps normals that only lean towards a neighbouring face. */
 static void turn_outward(const float outward[3], float normal[3])
 {
     if (vecf_dot(normal, outward) < -0.2f)

@@ -10,11 +10,11 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* number of faces at one position up to which all pairs of face normals are compared; with more, a tree is searched (normals_half) */
+/* number of faces at one position up to which all pairs of face normals are compared; above it, a tree is searched (normals_half) */
 #define MANY 256
 #define LEAF 16
-/* cosine of the crease angle, 40 degrees, up to which the normals of neighbouring faces are averaged: a cylinder with ten sides is shaded
- * round, one with eight sides shows its edges */
+/* cosine of the crease angle, 40 degrees; the normals of neighbouring faces at a smaller angle are averaged: a cylinder with
+ * ten sides looks round, one with eight sides shows its edges */
 #define CREASE_COSINE 0.766
 
 static void face_normal(const float a[3], const float b[3], const float c[3], double out[3])
@@ -34,11 +34,11 @@ static double corner_angle(const float at[3], const float b[3], const float c[3]
     return acos(fmin(fmax(vec_dot(ab, ac), -1), 1));
 }
 
-struct around {      /* by position: the triangle corners that are at the position */
+struct around {      /* by position: the triangle corners at that position */
     unsigned *place; /* by vertex: lowest index of a vertex at the same position */
     uint32_t *first, *corners;
     double (*faces)[3];
-    double *angles; /* by triangle corner: angle of the triangle at that corner */
+    double *angles; /* by triangle corner: the triangle's angle there */
 };
 
 static void around_finish(struct around *a)
@@ -77,8 +77,8 @@ static bool around_init(struct around *a, const float (*positions)[3], size_t ve
 
 /* --- computing the mean normal of the faces at one position ------------------------------------------------------------------ */
 
-/* Adds the normal of a corner's face to the sum, weighted by the face's angle at the corner, if it is within the crease angle of the normal
- * `own`. */
+/* Adds the normal of a corner's face to the sum, weighted by the face's angle at the corner. Skips the face if its normal is
+ * more than the crease angle from the normal `own`. */
 static void add_face(const struct around *a, uint32_t corner, const double own[3], double sum[3])
 {
     const double *face = a->faces[corner / 3];
@@ -88,7 +88,7 @@ static void add_face(const struct around *a, uint32_t corner, const double own[3
         sum[axis] += a->angles[corner] * face[axis];
 }
 
-/* Writes the unit vector along the sum of face normals, or the face's own normal if the sum is zero. */
+/* Writes the normalised sum of the face normals, or the face's own normal if the sum is zero. */
 static void take_direction(double sum[3], const double own[3], float out[3])
 {
     if (!(vec_normalize(sum) > 0))
@@ -97,16 +97,16 @@ static void take_direction(double sum[3], const double own[3], float out[3])
         out[axis] = (float)sum[axis];
 }
 
-/* Node of a binary tree over the normals of the faces at one position, for positions where very many faces meet. Each node halves the
- * normals of its parent. A node wholly inside or outside the crease angle is added or skipped without visiting its children. Nodes are
- * stored as in a binary heap. */
+/* Node of a binary tree over the normals of the faces at one position, used where very many faces meet. Each node's normals are
+ * split in half between its children. A node wholly inside or outside the crease angle is added or skipped without visiting its
+ * children. Nodes are stored as in a binary heap. */
 struct normals_half {
-    double low[3], high[3], sum[3]; /* bounding box of the node's normals, and their sum weighted by angles */
+    double low[3], high[3], sum[3]; /* bounding box of the node's normals, and their angle-weighted sum */
 };
 
 struct halves {
     const struct around *around;
-    uint32_t *corners; /* triangle corners at the position, sorted into the halves of the tree */
+    uint32_t *corners; /* triangle corners at the position, ordered so that each tree node has a contiguous range */
     struct normals_half *nodes;
 };
 
@@ -170,8 +170,8 @@ static void halves_sum(const struct halves *halves, size_t node, size_t begin, s
 
 static bool sum_of_many(const struct around *a, uint32_t first, size_t count, float (*corner_normals)[3])
 {
-    /* the two halves of a node differ by at most one normal, so indices of nodes stay below twice the smallest power of 2 above count /
-     * LEAF */
+    /* the two children of a node differ by at most one normal, so node indices stay below twice the smallest power of 2 above
+     * count / LEAF */
     size_t node_count = 4;
     while (node_count < 4 * (count / LEAF + 1))
         node_count *= 2;

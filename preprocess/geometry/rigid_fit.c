@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits the rotation between two sets of points as an eigenvector, found by power iteration. */
+/* Fits the rotation between two point sets as an eigenvector, found by power iteration. */
 #include "preprocess/geometry/rigid_fit.h"
 
 #include <math.h>
@@ -35,8 +35,8 @@ static void horn_matrix(const double (*from)[3], const double (*to)[3], size_t c
     memcpy(n, m, sizeof(m));
 }
 
-/* Finds the eigenvector of the largest eigenvalue by power iteration. A shift of all eigenvalues makes the largest one also the largest in
- * magnitude. */
+/* Finds the eigenvector of the largest eigenvalue by power iteration. First shifts all eigenvalues so that the largest one is
+ * also the largest in magnitude. */
 static void largest_eigenvector(double n[4][4], double q[4])
 {
     double shift = 0;

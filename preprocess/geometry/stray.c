@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds triangles and vertices that lie far from the rest of an asset, and the node they belong to. */
+/* Finds triangles and vertices far from the rest of an asset, and the node they belong to. */
 #include "preprocess/geometry/stray.h"
 
 #include <math.h>
@@ -25,8 +25,8 @@ static double away_from(const struct extent *main, const double place_m[3])
     return vec_length(away_m);
 }
 
-/* Finds the vertex of a glTF primitive that is farthest from the asset's main part, and keeps it if it is farther away than those found
- * before. Includes vertices that only triangles without area use. */
+/* Finds the vertex of a glTF primitive that is farthest from the asset's main part, and keeps it if it is farther away than
+ * those found before. Includes vertices used only by triangles without area. */
 static void look_at(struct farthest *farthest, const struct node_primitive *part, const struct geometry_params *params)
 {
     double world[16], place_m[3];
@@ -43,7 +43,7 @@ static void look_at(struct farthest *farthest, const struct node_primitive *part
     }
 }
 
-/* Returns the name of the node or of its nearest named ancestor; "": they have no names. */
+/* Returns the name of the node or of its nearest named ancestor, or "" if none has a name. */
 static const char *name_of(const struct gltf_model *model, const struct gltf_node *node)
 {
     while (!node->name[0] && node->parent >= 0)
@@ -72,8 +72,8 @@ void stray_text(const struct geometry *geometry, const struct gltf_model *model,
         for (size_t i = 0; i < parts.count; i++)
             look_at(&farthest, &parts.at[i], params);
     mem_free(parts.at);
-    /* ignore a farthest vertex whose distance is mere rounding, or that only triangles without area use and that is close to the main
-     * part */
+    /* ignore the farthest vertex if its distance is mere rounding, or if only triangles without area use it and it is close to
+     * the main part */
     if (stray == 0 && !(farthest.away_m > main_m))
         return;
     if (stray > 0)

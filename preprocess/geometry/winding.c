@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Determines each triangle's orientation relative to its neighbours, and reverses the orientation that covers less area. */
+/* Determines each triangle's orientation relative to its neighbours, and reverses the minority orientation (by area). */
 #include "preprocess/geometry/winding.h"
 
 #include "base/math/vec.h"
@@ -14,7 +14,7 @@
 struct winding {
     const float (*positions)[3];
     size_t tri_count;
-    uint32_t (*places)[3]; /* by triangle: the index of each corner's position (vertices at one position share the index) */
+    uint32_t (*places)[3]; /* by triangle: the position index of each corner; vertices at the same position share an index */
     signed char *facing;   /* by triangle: orientation relative to the first triangle of its group, 1 or -1; 0: not known yet */
     uint32_t *joined;
 };
@@ -31,7 +31,7 @@ static void sum_area(const struct winding *w, const uint32_t *indices, size_t co
     }
 }
 
-/* Reverses those triangles of a connected group whose orientation covers less area. Returns the number of these triangles. */
+/* Reverses the triangles of a connected group that have the minority orientation (by area). Returns their number. */
 static uint32_t turn_smaller(const struct winding *w, uint32_t *indices, size_t count)
 {
     double area_m2[2];

@@ -22,7 +22,7 @@ void glb_file_finish(struct glb_file *file)
     text_finish(&file->bytes);
 }
 
-/* `each` (bytes per element) is a multiple of 4, so every buffer view is aligned */
+/* `each` (bytes per element) is a multiple of 4, so all buffer views are aligned */
 int glb_file_add(struct glb_file *file, const void *bytes, size_t each, size_t count, int component, const char *type, int target)
 {
     json_array_append_new(file->views, json_pack("{s:i,s:I,s:I,s:i}", "buffer", 0, "byteOffset", (json_int_t)file->bytes.length,

@@ -16,10 +16,10 @@ struct glb_file {
 
 void glb_file_init(struct glb_file *file);
 void glb_file_finish(struct glb_file *file);
-/* Copies `count` elements of `each` bytes (a multiple of 4) into the buffer. Returns the index of the accessor for them. */
+/* Copies `count` elements of `each` bytes (a multiple of 4) into the buffer and adds an accessor for them. Returns the accessor's index. */
 int glb_file_add(struct glb_file *file, const void *bytes, size_t each, size_t count, int component, const char *type, int target);
-/* Adds positions as glb_file_add() does, and states their minimum and maximum in the accessor, as glTF requires. Returns the index of the
- * accessor. */
+/* Like glb_file_add(), but for positions: also writes their minimum and maximum to the accessor, as glTF requires. Returns the
+ * accessor's index. */
 int glb_file_add_positions(struct glb_file *file, const float (*positions)[3], size_t count);
 /* Adds accessors and buffer to `root` and writes the file. Returns 0 or -errno (-EFBIG: larger than the 4 GiB limit of GLB). */
 int glb_file_save(struct glb_file *file, json_t *root, const char *path);

@@ -13,7 +13,7 @@ enum { TRIANGLES = 4 }; /* primitive mode of glTF */
 struct glb_scene {
     char *generator;
     json_t *nodes, *meshes, *materials, *roots;
-    json_t *material_numbers; /* index of each material, by its colour as text */
+    json_t *material_numbers; /* index of each material, keyed by its colour as text */
     struct glb_file file;
 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses attribute files of RVM models line by line. Assigns an element of the file to the model node of the same name below the node of
- * the enclosing element; if there is none, to any node of that name. */
+/* Parses attribute files of RVM models line by line. Matches an element of the file with the model node of the same name below
+ * the enclosing element's node; if there is none, with any node of that name. */
 #include "preprocess/import/cad_attributes.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 enum { MAX_DEPTH = 1000 };
 
-struct node_key { /* an entry of one of two sorted indexes of the model's nodes: by parent and name, or by name alone */
+struct node_key { /* an entry of the model's two sorted node indexes: by parent and name, and by name alone */
     const char *name;
     int parent, node;
 };
@@ -67,7 +67,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* Parses one or several "key:= value" entries, separated by `separator`, and adds them to the node's attributes. */
+/* Parses the "key:= value" entries of a line, separated by `separator`, and adds them to the node's attributes. */
 static void take_line(struct cad_model *model, int node, char *line, const char *separator, struct attribute_counts *counts)
 {
     for (char *next; line; line = next) {
@@ -89,7 +89,7 @@ static void take_line(struct cad_model *model, int node, char *line, const char 
     }
 }
 
-/* Reads from the attribute file's header line the text that separates entries: the text after "sep:", such as "&end&". */
+/* Reads the text that separates entries from the attribute file's header line: the text after "sep:", such as "&end&". */
 static void take_separator(const char *line, char *separator, size_t separator_bytes)
 {
     const char *at = strstr(line, "sep:");

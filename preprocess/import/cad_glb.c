@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the nodes of a CAD model as glTF nodes, one after the other, with positions relative to each node's origin. */
+/* Writes a CAD model's nodes as glTF nodes, one after the other, with positions relative to each node's origin. */
 #include "preprocess/import/cad_glb.h"
 
 #include <jansson.h>
@@ -18,8 +18,8 @@ struct cad_writer {
     json_t *materials, *meshes, *nodes;
     struct glb_file file;
     double (*origins)[3]; /* by node: origin in the plant's coordinates */
-    int *material_of;     /* by colour of the CAD model: index of its glTF material */
-    int plain, line;      /* indices of the glTF materials for faces and for lines without a colour; -1: not created yet */
+    int *material_of;     /* by colour of the CAD model: index of the glTF material */
+    int plain, line;      /* indices of the glTF materials for faces and lines without a colour; -1: not created yet */
 };
 
 static int add_material(struct cad_writer *w, const double rgb[3])

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A CAD model in memory, before it is written as glTF: a tree of named nodes with attributes, triangles and lines. Readers of formats
- * (rvm.h) fill it, cad_glb.h writes it. One thread per model. Lengths are metres, Z is up, positions are plant coordinates. */
+/* A CAD model in memory, before it is written as glTF: a tree of named nodes with attributes, triangles and lines. Format
+ * readers (rvm.h) fill it; cad_glb.h writes it. One thread per model. Lengths are in metres, Z is up, positions are plant
+ * coordinates. */
 #ifndef PREPROCESS_IMPORT_CAD_MODEL_H
 #define PREPROCESS_IMPORT_CAD_MODEL_H
 #include <stdbool.h>
@@ -17,8 +18,8 @@ struct cad_attribute {
 };
 
 struct cad_node {
-    char *name; /* name of the node, UTF-8; "": the file states none */
-    int parent; /* index of the parent, lower than the node's own; -1: a root */
+    char *name; /* name of the node, UTF-8; "": it has none */
+    int parent; /* index of the parent, always lower than the node's own; -1: the node is a root */
     uint32_t material;
     struct cad_vertex *vertices;
     uint32_t (*triangles)[3];
@@ -45,8 +46,7 @@ void cad_model_destroy(struct cad_model **model);
 
 /* Appends a node to the model below the node `parent` (-1: a root) and returns its index. Copies `name`. */
 int cad_model_add_node(struct cad_model *model, int parent, const char *name);
-/* Appends a vertex to the node and returns its index in the node. `normal` may have any length and is normalised; a zero vector becomes (0,
- * 0, 1). */
+/* Appends a vertex to the node and returns its index in the node. `normal` need not be normalised; a zero vector becomes (0, 0, 1). */
 uint32_t cad_node_add_vertex(struct cad_node *node, const double position_m[3], const double normal[3]);
 void cad_node_add_triangle(struct cad_node *node, uint32_t a, uint32_t b, uint32_t c);
 void cad_node_add_line(struct cad_node *node, const double from_m[3], const double to_m[3]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements `plantcast import`: converts models in a work folder, and moves those that could be converted to the plant's folder. */
+/* Implements `plantcast import`: converts models in a work folder, and moves the successfully converted ones to the plant's folder. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,20 +22,20 @@
 #include "preprocess/child/work_folder.h"
 #include "preprocess/match/file_set.h"
 
-enum { RVM_ITEM_LEVEL = 3 }; /* level of the tree of an RVM file whose nodes are equipment: file (0), sites, zones, equipment (3) */
+enum { RVM_ITEM_LEVEL = 3 }; /* tree level of an RVM file whose nodes are equipment: file (0), sites, zones, equipment (3) */
 
 struct import_command {
     const char *folder, *name;
-    const char *report; /* path of the JSON file for the readers' reports (findings.h); NULL: none */
+    const char *report; /* path of the JSON file for the readers' findings (findings.h); NULL: none */
     bool undo, force, dry_run;
     int lent; /* descriptor of a folder lock held by the parent process (plant_folder.h); 0: none */
     struct conversion_params conversion;
     struct work_folder work;
     char **paths;
-    json_t *findings; /* array of results of findings_read() (findings.h), one for each model that was read */
+    json_t *findings; /* array of findings_read() results (findings.h), one per model read */
     struct plant_draft_model *models;
-    /* count: number of models to convert, later number of models converted (the length of `models`); unread: number of models that could
-     * not be converted */
+    /* count: number of models to convert, later number of converted models (the length of `models`); unread: number of models
+     * whose conversion failed */
     int count, unread;
     bool anew, interrupted;
 };
@@ -82,9 +82,9 @@ static void print_lines(const char *path, const char *lines)
     }
 }
 
-/* Reads the outline (nodes, sizes) of a converted model, without the triangles of nodes that have no area, because plantcast-prep refuses
- * such nodes. said: output of the reader that converted the model. Returns false with the reason in why; then there is no outline to free.
- * Rejects a model without triangles, which would give a plant without assets. */
+/* Reads the outline (nodes, sizes) of a converted model, leaving out triangles of nodes without area, because plantcast-prep
+ * rejects such nodes. said: output of the reader that converted the model. Returns false with the reason in why; there is then
+ * no outline to free. Rejects a model without triangles, because it would give a plant without assets. */
 static bool read_outline(struct model_outline *outline, const char *glb, const char *said, char why[CONVERSION_WHY_BYTES])
 {
     if (!model_outline_read(outline, glb, why, CONVERSION_WHY_BYTES))
@@ -153,8 +153,8 @@ static enum found_plant find_plant(const struct import_command *import)
     return found;
 }
 
-/* Converts all models. If a model fails, the plant keeps its current copy of the model. With `--anew`, any failure fails the import, since
- * the plant would lose the model's assets. */
+/* Converts all models. If a model fails, the plant keeps its current copy of that model. With `--anew`, any failure fails the
+ * import, because the plant would lose the model's assets. */
 static int convert_all(struct import_command *import)
 {
     int count = import->count;
@@ -173,8 +173,8 @@ static int convert_all(struct import_command *import)
     return 0;
 }
 
-/* Writes the JSON file of the readers' findings (lost shapes, errors). A failure does not fail the import, because the plant does not need
- * the file. */
+/* Writes the JSON file of the readers' findings (lost shapes, errors). A write error does not fail the import, because the
+ * plant does not need this file. */
 static void write_report(const struct import_command *import)
 {
     char *text = json_text(json_pack("{s:O}", "models", import->findings), 0);
@@ -228,8 +228,8 @@ static int run_import(struct import_command *import)
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
         status = import_fail(import->folder, why);
-    /* ignore EEXIST and create the work folder again if it is missing: the previous holder of the folder lock may have deleted it as a
-     * leftover of a dead process */
+    /* ignore EEXIST, and create a missing work folder again: the previous lock holder may have deleted it as a leftover of a
+     * dead process */
     else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST)
         status = import_fail(import->work.path, strerror(errno));
     mem_free(why);
@@ -252,7 +252,7 @@ static int run_import(struct import_command *import)
     return status == 0 && import->unread > 0 ? EXIT_PARTLY : status;
 }
 
-/* Returns whether two models have the same file name without ending, so that their GLB files would have the same name. */
+/* Returns whether two models have the same file name without extension, so that their GLB files would have the same name. */
 static bool two_alike(char **paths, int count)
 {
     bool alike = false;

@@ -28,8 +28,8 @@ static void print_usage(FILE *out)
     fputs("Exit status: 0 success, 1 the model could not be read, 2 wrong usage, 3 no node matched.\n", out);
 }
 
-/* Reads the outline (nodes, sizes) of a model. glTF is read directly; other formats are first converted to GLB, as `plantcast import`
- * does. */
+/* Reads the outline (nodes, sizes) of a model. glTF is read directly; other formats are first converted to GLB, as by
+ * `plantcast import`. */
 static bool read_model(const char *path, const struct conversion_params *params, struct model_outline *outline)
 {
     const struct import_format *format = import_format_of(path);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The commands of plantcast-import. Each takes the arguments that follow its name and returns the exit status of the process. */
+/* The commands of plantcast-import. Each takes the arguments after its name and returns the process's exit status. */
 #ifndef PREPROCESS_IMPORT_COMMANDS_H
 #define PREPROCESS_IMPORT_COMMANDS_H
 

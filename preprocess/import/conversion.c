@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs every reader in a confined child process: the built-in RVM and glTF readers in a fork of this program, other readers as external
- * programs. A second child checks the GLB file that a reader wrote. */
+/* Runs every reader in a confined child process: the built-in RVM and glTF readers in a fork of this program, other readers as
+ * external programs. A second child checks the GLB file that the reader wrote. */
 #include "preprocess/import/conversion.h"
 
 #include <errno.h>
@@ -31,7 +31,7 @@
 enum { MAX_NAMED = 20 };
 static const size_t max_bytes = (size_t)4 << 30;
 
-/* Formats an error message into `why`. Always returns false, so that callers can return the result. */
+/* Formats an error message into `why`. Always returns false, so that callers can write `return fail(...)`. */
 static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...)
 {
@@ -44,7 +44,7 @@ static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...)
 
 /* --- RVM ---------------------------------------------------------------------------------------------------------------------------- */
 
-/* Finds the attribute file of an RVM model in the model's folder. Returns its path, which the caller frees, or NULL if there is none. */
+/* Looks for an RVM model's attribute file in the model's folder. Returns its path, which the caller frees, or NULL if there is none. */
 static char *attributes_beside(const char *path)
 {
     static const char *const endings[] = { ".att", ".ATT", ".txt", ".TXT" };
@@ -134,16 +134,16 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
 
 struct model_reading {
     const struct import_format *format;
-    const char *path, *attributes; /* path: path of the model; attributes: path of an RVM attribute file; NULL: there is none */
+    const char *path, *attributes; /* path of the model; path of its RVM attribute file, NULL: none */
     const char *output;            /* path of the GLB file that the reader writes */
     const char *folder;
     const struct conversion_params *params;
-    /* result of find_encoding(): name of the encoding, in memory shared with the child process; "": names need no conversion */
+    /* result of find_encoding(), in memory shared with the child process: name of the encoding; "": names need no conversion */
     char *encoding;
 };
 
-/* Runs the built-in reader for RVM or glTF; called in the child process. Returns the exit status of the child: 0, or 1 with the reason on
- * stderr. */
+/* Runs the built-in reader for RVM or glTF; runs in the child process. Returns the child's exit status: 0, or 1 with the reason
+ * on stderr. */
 static int read_ourselves(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -158,7 +158,7 @@ static int read_ourselves(void *arg)
     return good ? 0 : 1;
 }
 
-/* Prints a report line (format: findings.h) that counts the nodes of a glTF model whose mesh has no triangles. */
+/* Prints a report line (format: findings.h) that counts the glTF nodes whose mesh has no triangles. */
 static void say_empty_nodes(const struct gltf_model *model)
 {
     struct text names = { 0 };
@@ -178,7 +178,7 @@ static void say_empty_nodes(const struct gltf_model *model)
     text_finish(&names);
 }
 
-/* Prints a report line for each node whose triangles have no area. A node number that instances share counts as one node. */
+/* Prints a report line for each node whose triangles have no area. Instances that share a node number count as one node. */
 static void say_flat_nodes(const struct gltf_model *model)
 {
     for (uint32_t i = 0, next; i < model->node_count; i = next) {
@@ -193,8 +193,8 @@ static void say_flat_nodes(const struct gltf_model *model)
     }
 }
 
-/* Checks the GLB file that a reader wrote; called in a second child process, because the file may come from a compromised reader. Rejects
- * what plantcast-prep would reject. Returns the exit status of the child. */
+/* Checks the GLB file that a reader wrote; runs in a second child process, because a compromised reader may have written the
+ * file. Rejects what plantcast-prep would reject. Returns the child's exit status. */
 static int check(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -234,8 +234,7 @@ static bool run_reading(const struct model_reading *reading, struct child_params
     return good;
 }
 
-/* Unpacks a compressed model to the path from which its reader will read it; called in a child process. Returns the exit status of the
- * child. */
+/* Unpacks a compressed model to the path from which its reader will read it; runs in a child process. Returns the child's exit status. */
 static int unpack_model(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -248,8 +247,8 @@ static int unpack_model(void *arg)
     return good ? 0 : 1;
 }
 
-/* Unpacks a compressed model into the reading's folder, to a file whose name ends in `ending`. Returns the file's path, which the caller
- * frees with mem_free, or NULL with the reason in why. */
+/* Unpacks a compressed model into the reading's folder, to a file whose name ends in `ending`. Returns the path, which the
+ * caller frees with mem_free, or NULL with the reason in why. */
 static char *unpacked(const struct model_reading *packed, const char *ending, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct child_paths paths = { 0 };
@@ -266,8 +265,8 @@ static char *unpacked(const struct model_reading *packed, const char *ending, st
     return path;
 }
 
-/* Detects the encoding of the model's names, for readers that cannot do it themselves; called in a child process. Returns the exit status
- * of the child. */
+/* Detects the encoding of the model's names, for readers that cannot do so themselves; runs in a child process. Returns the
+ * child's exit status. */
 static int find_encoding(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -286,8 +285,8 @@ static int find_encoding(void *arg)
     return 0;
 }
 
-/* Detects the encoding of the model's names in a child process. Accepts the result only if it consists of letters, digits and punctuation
- * that occur in names of encodings, because the child may be compromised. */
+/* Detects the encoding of the model's names in a child process. The child may be compromised, so the result is accepted only if
+ * it consists of letters, digits and the punctuation found in names of encodings. */
 static bool ask_encoding(const struct model_reading *reading, char encoding[CHARSET_NAME_BYTES], struct text *said,
                          char why[CONVERSION_WHY_BYTES])
 {
@@ -310,8 +309,9 @@ static bool ask_encoding(const struct model_reading *reading, char encoding[CHAR
     return good;
 }
 
-/* Runs Open CASCADE on the solids of an IFC file that web-ifc cannot build. It writes them to a folder from which ifc.mjs reads them
- * afterwards. Returns false only if the user interrupted it; if Open CASCADE fails, the model is read without these solids. */
+/* Runs Open CASCADE on the solids of an IFC file that web-ifc cannot build. Open CASCADE writes them to a folder, from which
+ * ifc.mjs then reads them. Returns false only if the user interrupted it; if Open CASCADE fails, the model is read without
+ * these solids. */
 static bool build_curved_solids(const struct model_reading *reading, const char *list, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *program = import_format_program(import_format_of("x.step"));
@@ -340,7 +340,7 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
 /* an external reader program, from the table of formats (formats.h) */
 struct reader_program {
     char *program, *runtime;           /* paths of the reader and of its interpreter; runtime NULL: the reader is an executable */
-    char encoding[CHARSET_NAME_BYTES]; /* name of the encoding of names that is passed to the reader; "-": the reader chooses */
+    char encoding[CHARSET_NAME_BYTES]; /* encoding of names that is passed to the reader; "-": the reader decides */
 };
 
 static bool run_reader(const struct model_reading *reading, const struct reader_program *reader, struct child_paths *paths,
@@ -366,8 +366,8 @@ static bool run_reader(const struct model_reading *reading, const struct reader_
     return good;
 }
 
-/* Reads an IFC file with web-ifc. If web-ifc lists elements that it cannot build, Open CASCADE builds them and web-ifc reads the file a
- * second time with the results. */
+/* Reads an IFC file with web-ifc. If web-ifc lists elements that it cannot build, Open CASCADE builds them, and web-ifc reads
+ * the file again together with the results. */
 static bool read_ifc(const struct model_reading *reading, struct reader_program *reader, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     char *list = mem_printf("%s/asked.txt", reading->folder);
@@ -430,7 +430,7 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
 static bool read_model(const struct import_format *format, const char *path, const char *glb, const char *folder,
                        const struct conversion_params *params, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
-    /* each run of a reader has a separate folder, so that a compromised reader cannot replace models that were read earlier */
+    /* each reader runs in a separate folder, so that a compromised reader cannot replace models that were read earlier */
     char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
     bool made = mkdir(own, 0700) == 0;
     char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;

@@ -15,9 +15,9 @@ struct conversion_params {
     double chord_m;
     const char *units, *up; /* length unit and up axis to assume for formats that do not state them; NULL: guess and print the guess */
     const char *mesh_units; /* length unit to assume for OBJ, STL, PLY and 3DS if `units` is NULL; NULL: guess and print the guess */
-    /* encoding of names in the model; "": the encoding that the file states, else a detected one, which is printed */
+    /* encoding of names in the model; "": the encoding given in the file, else a detected one, which is printed */
     char encoding[CHARSET_NAME_BYTES];
-    bool keep_covered;   /* RVM: true keeps faces that the face of a neighbouring primitive covers; false leaves them out */
+    bool keep_covered;   /* true: RVM faces covered by the face of a neighbouring primitive are kept; false: they are left out */
     int timeout_s;       /* time limit for an external reader program, seconds */
     size_t memory_bytes; /* memory limit for an external reader program, bytes */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses between the text encoding that the user stated, the one that the file states, and the detected one. */
+/* Chooses between the text encoding given by the user, the one given in the file, and the detected one. */
 #include "preprocess/import/encoding.h"
 
 #include <stdio.h>

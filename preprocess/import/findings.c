@@ -14,7 +14,7 @@ enum { MAX_FIELDS = 6, MAX_LISTED = 20000 };
 
 static const char flat_node[] = "flat\t#";
 
-/* Returns a copy of the text in which invalid UTF-8 and control characters other than tabs are '?'. The caller frees it with mem_free. */
+/* Returns a copy of the text; invalid UTF-8 and control characters except tabs become '?'. The caller frees it with mem_free. */
 static char *clean(const char *text, size_t length)
 {
     struct text out = { 0 };
@@ -28,7 +28,7 @@ static char *clean(const char *text, size_t length)
     return out.at;
 }
 
-/* Splits a line of a reader's output at its tabs, which it overwrites. Missing fields become "". */
+/* Splits a line of a reader's output at its tabs, which are overwritten. Missing fields become "". */
 static void split(char *line, const char *fields[MAX_FIELDS])
 {
     for (int i = 0; i < MAX_FIELDS; i++) {

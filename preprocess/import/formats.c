@@ -15,7 +15,7 @@
 #define BY_ASSIMP "plantcast-import-assimp", NULL, "this Plantcast was built without Assimp: install libassimp-dev and build again"
 #define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "this Plantcast was built without web-ifc: install npm and build again"
 
-/* file endings of buffers and images that a glTF model may refer to */
+/* endings of buffer and image files that a glTF model may refer to */
 #define OF_GLTF ".bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga .tif .tiff .exr .hdr"
 
 static const struct import_format formats[] = {
@@ -53,7 +53,7 @@ const struct import_format *import_format_of(const char *path)
         if (has_ending(formats[i].endings, dot))
             found = &formats[i];
     if (found && found->reader == FORMAT_GLTF && strcmp(plain, path) != 0)
-        found = NULL; /* refuse a compressed glTF file: it is unpacked in another folder, but its buffers lie next to the original */
+        found = NULL; /* refuse a compressed glTF file: it would be unpacked in another folder, away from its buffers */
     mem_free(plain);
     return found;
 }

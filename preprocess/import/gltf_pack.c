@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Merges all buffers of a glTF model into one, and turns image files into buffer views. */
+/* Merges all buffers of a glTF model into one, and converts image files to buffer views. */
 #include "preprocess/import/gltf_pack.h"
 
 #include <string.h>
@@ -16,7 +16,7 @@ struct pack {
     json_t *root;
     struct model_bytes binary;
     struct text bytes;
-    json_int_t *offsets; /* by buffer of the original model: its offset in `bytes`, the merged buffer */
+    json_int_t *offsets; /* by buffer of the original model: its offset in the merged buffer, `bytes` */
     char *why;
 };
 
@@ -57,7 +57,7 @@ static bool take_buffers(struct pack *pack)
         const char *uri = uri_of(json_array_get(list, i));
         size_t size = pack->binary.size;
         if (!uri && standins[i])
-            continue; /* leave out an empty buffer that is only a fallback (EXT_meshopt_compression): its data is in compressed buffers */
+            continue; /* omit an empty buffer that is only a fallback (EXT_meshopt_compression): the data is in compressed buffers */
         if (!uri && (i > 0 || !pack->binary.at)) {
             good = wrong(pack->why, "buffer %zu has no data: export the model again, as a GLB file", i);
             break;
@@ -73,8 +73,8 @@ static bool take_buffers(struct pack *pack)
     return good;
 }
 
-/* Changes the buffer index and the offset of a buffer view, or of the compressed view in its meshopt extension, to those in the merged
- * buffer. Returns false if the view is invalid. */
+/* Redirects a buffer view, or the compressed view in its meshopt extension, to the merged buffer by changing its buffer index
+ * and offset. Returns false if the view is invalid. */
 static bool move_view(struct pack *pack, json_t *view)
 {
     const json_t *number = json_object_get(view, "buffer");
@@ -120,7 +120,7 @@ static bool take_images(struct pack *pack)
         if (!uri)
             continue;
         unsigned char *bytes = model_uri_read(pack->source->folder, uri, &size, uri_why);
-        if (!bytes) /* leave out an image that cannot be read: plantcast-prep, which reads the packed model, reports the missing texture */
+        if (!bytes) /* omit an image that cannot be read: plantcast-prep will report the missing texture */
             continue;
         json_array_append_new(views, json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", append(pack, bytes, size), "byteLength",
                                                (json_int_t)size));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The error message of plantcast-import for a file or folder. */
+/* The error message by which plantcast-import reports a failed file or folder. */
 #ifndef PREPROCESS_IMPORT_IMPORT_FAIL_H
 #define PREPROCESS_IMPORT_IMPORT_FAIL_H
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-import`: converts CAD exports to one GLB file each, with names, hierarchy and attributes. `plantcast import` and `plantcast
- * nodes` run this program under their own names; the name (argv[0]) selects the command. */
+/* `plantcast-import`: converts CAD exports to GLB, one file each, with names, hierarchy and attributes. `plantcast import` and
+ * `plantcast nodes` run this program; the name it is run under (argv[0]) selects the command. */
 #include <string.h>
 
 #include "preprocess/import/commands.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of a GLB file in depth-first order. Then adds each node's triangles and bounding box to those of its parent, from the
- * last node to the first, so that children are complete before their parents. */
+/* Reads the nodes of a GLB file in depth-first order. Then adds each node's triangles and bounding box to those of its parent,
+ * from the last node to the first, so that a node is complete before it is added. */
 #include "preprocess/import/model_outline.h"
 
 #include <stdio.h>
@@ -121,8 +121,8 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
     return true;
 }
 
-/* Returns whether plantcast-import wrote the model. Its unit, metres, is then certain: the source file stated its unit, or the import has
- * printed its guess. */
+/* Returns whether plantcast-import wrote the model. Its unit is then certainly metres: the source file gave its unit, or the
+ * import has printed its guess. */
 static bool knows_units(const struct model_outline *outline)
 {
     const char *generator = json_string_value(json_object_get(json_object_get(outline->header.json, "asset"), "generator"));

@@ -9,7 +9,7 @@
 #include "plant/models/model_header.h"
 
 struct outline_node {
-    const char *name;       /* the node's own name, else its mesh's name, else ""; not owned */
+    const char *name;       /* the node's name, else its mesh's name, else ""; not owned */
     const json_t *extras;   /* glTF extras of the node; NULL: none */
     uint64_t triangles;     /* number of triangles of the node's own mesh */
     uint64_t all_triangles; /* number of triangles of the node and of all nodes below it */
@@ -28,10 +28,10 @@ struct model_outline {
     size_t unnamed;
 };
 
-/* Reads a GLB or glTF file. Returns false with the reason in why; then model_outline_finish() need not be called. */
+/* Reads a GLB or glTF file. Returns false with the reason in why; model_outline_finish() then need not be called. */
 bool model_outline_read(struct model_outline *outline, const char *path, char *why, size_t why_bytes);
 void model_outline_finish(struct model_outline *outline);
-/* Sets the number of triangles to 0 for each node whose number (index in the glTF file's list of nodes) is marked in by_number. */
+/* Sets the triangle count of each node to 0 whose number (index in the glTF file's list of nodes) is marked in by_number. */
 void model_outline_leave_out(struct model_outline *outline, const bool *by_number);
 
 /* Returns the value of the text property `name` of a node, from its glTF extras or from a group in them, or NULL if there is none. */
@@ -40,16 +40,17 @@ const char *model_outline_property(const struct outline_node *node, const char *
 /* Appends text to `out`. Control characters and invalid UTF-8 become U+FFFD. */
 void model_outline_add_printable(struct text *out, const char *text);
 
-/* Appends the node's path from the root of the scene: names separated by slashes, "#12" for a node without a name. Control characters
- * become U+FFFD. */
+/* Appends the node's path from the root of the scene: names separated by slashes, with "#12" for a node without a name. Control
+ * characters become U+FFFD. */
 void model_outline_path(const struct model_outline *outline, size_t node, struct text *out);
 
-/* Appends a summary of the model without a line end: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if the unit is metres
- * and Y is up; 310 m from the origin". If a plant can hardly be that large or small, a hint follows that the units may be different. */
+/* Appends a summary of the model without a line end: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if the
+ * unit is metres and Y is up; 310 m from the origin". If the size is implausible for a plant, adds a hint that the units may be
+ * wrong. */
 void model_outline_summary(const struct model_outline *outline, struct text *out);
 
-/* Converts a model's bounding box to size and centre in plant axes: Z up, so the last number is the height. Returns false for an empty
- * box. */
+/* Converts a model's bounding box to size and centre in plant axes (Z up: the last number is the height). Returns false for an
+ * empty box. */
 bool model_outline_extent(const struct model_box *box, double size[3], double centre[3]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints a model's nodes line by line without building the whole text: a model may have a hundred thousand nodes. */
+/* Prints a model's nodes line by line, without building the whole text first: a model may have a hundred thousand nodes. */
 #include "preprocess/import/node_list.h"
 
 #include <stdlib.h>
@@ -105,7 +105,7 @@ static void print_head(const struct model_outline *outline, bool json, FILE *out
     text_finish(&summary);
 }
 
-/* Returns the last component of a node's path, which a tree prints in place of the whole path. */
+/* Returns the last component of a node's path; a tree prints it in place of the whole path. */
 static const char *own_part(const struct model_outline *outline, size_t i, const struct text *path)
 {
     struct text above = { 0 };

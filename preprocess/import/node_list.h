@@ -8,8 +8,8 @@
 #include "preprocess/import/model_outline.h"
 
 struct node_list_params {
-    const regex_t *grep; /* regular expression: only nodes whose path or one of whose properties matches are printed; NULL: all nodes */
-    int levels;          /* number of levels of the tree that is printed; 0: a table of paths is printed */
+    const regex_t *grep; /* regular expression: print only nodes whose path or one of whose properties matches; NULL: print all nodes */
+    int levels;          /* number of tree levels to print; 0: print a table of paths */
     bool json;
 };
 

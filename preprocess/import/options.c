@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses the command-line options that `import` and `nodes` share: numbers within ranges, words of fixed lists. */
+/* Parses the command-line options shared by `import` and `nodes`: numbers in ranges, words from fixed lists. */
 #include "preprocess/import/options.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Command-line options that the commands `import` and `nodes` share. */
+/* Command-line options shared by the commands `import` and `nodes`. */
 #ifndef PREPROCESS_IMPORT_OPTIONS_H
 #define PREPROCESS_IMPORT_OPTIONS_H
 #include <getopt.h>
@@ -20,8 +20,8 @@
 extern const struct conversion_params options_default;
 /* Prints the help text of the shared options. */
 void options_print(FILE *out);
-/* Applies one shared option to params. Returns false if the option is not a shared one, or if its value is wrong; in that case the error
- * has been printed. */
+/* Applies a shared option to params. Returns false if the option is not a shared one, or if its value is invalid; an error has
+ * then been printed. */
 bool options_take(struct conversion_params *params, const char *command, int option, const char *value);
 
 #endif

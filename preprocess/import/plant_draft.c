@@ -51,9 +51,9 @@ static bool is_printable(const char *text)
     return is;
 }
 
-struct draft_choice {    /* for each node of a model's outline: whether it becomes an asset, and whether its name is unique */
+struct draft_choice {    /* for each node of a model's outline: does it become an asset, and is its name unique? */
     bool *item, *unique; /* by node: item: the node becomes an asset; unique: no other node has the same name */
-    bool typed, classed; /* typed: the model has nodes whose property for the type is ZONE; classed: it has nodes with IFC classes */
+    bool typed, classed; /* typed: some nodes have the type property ZONE; classed: some nodes have IFC classes */
 };
 
 static int by_name(const void *a, const void *b)
@@ -76,7 +76,7 @@ static void find_unique(const struct model_outline *outline, bool *unique)
     mem_free(sorted);
 }
 
-/* Returns the tree level nearest to the root that has at least two nodes with geometry, or the deepest level if there is none. */
+/* Returns the topmost tree level that has at least two nodes with geometry, or the deepest level if there is none. */
 static int branching_level(const struct model_outline *outline)
 {
     int deepest = 0, level = 0;
@@ -97,7 +97,7 @@ static bool is_type(const struct model_outline *outline, int node, const char *t
     return own && !strcmp(own, type);
 }
 
-/* Returns whether an IFC class is a spatial container (site, building, storey, room ...), which holds elements but is no equipment. */
+/* Returns whether an IFC class is a spatial container (site, building, storey, room ...), which contains elements but is not equipment. */
 static bool is_spatial(const char *class)
 {
     static const char *const spatial[] = { "IfcProject",        "IfcSite",
@@ -115,9 +115,9 @@ static bool is_spatial(const char *class)
     return false;
 }
 
-/* Chooses the nodes of a model that become assets: the children of ZONE nodes; else the IFC elements; else the nodes of one level of the
- * tree (equipment, pipes, structures). A node above a chosen one is chosen too if it has triangles of its own. Nodes below a chosen node
- * are not chosen. */
+/* Chooses the nodes of a model that become assets: the children of ZONE nodes; else the IFC elements; else the nodes of one
+ * tree level (equipment, pipes, structures). A node above a chosen one is also chosen if it has triangles of its own. Nodes
+ * below a chosen node are not chosen. */
 static void choose(const struct plant_draft_model *from, struct draft_choice *choice)
 {
     const struct model_outline *outline = &from->outline;
@@ -159,7 +159,7 @@ static void add_asset(struct text *out, const struct plant_draft_model *from, si
     int parent = outline->header.nodes[i].parent;
     unsigned number = outline->header.nodes[i].number;
     char *id = unique ? mem_strdup(without_slash(name)) : mem_printf("%s #%u", *name ? name : "unnamed", number);
-    /* an asset of another model already has this id: adds the model's file name and the node's number to the id */
+    /* an asset of another model already has this id: append the model's file name and the node's number */
     if (json_object_get(ids, id)) {
         char *other = mem_printf("%s (%s #%u)", id, from->file, number);
         mem_free(id);
@@ -261,7 +261,7 @@ int plant_draft_write(const struct plant_draft *draft)
     return status;
 }
 
-/* Writes the model of the starter plant, a person made of boxes, as GLB: feet on the ground at the origin, facing the viewer, Y up. */
+/* Writes the starter plant's model, a person made of boxes, as GLB: feet on the ground at the origin, facing the viewer, Y up. */
 static int write_person(const char *path)
 {
     static const float parts[][2][3] = { /* centre and size in metres of each box */

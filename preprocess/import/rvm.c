@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads RVM files in two passes. The first reads chunks into primitives. When it is known which faces are covered, the second turns
- * primitives into triangles. */
+/* Reads RVM files in two passes. The first converts chunks to primitives. It is then known which faces are covered, and the
+ * second converts primitives to triangles. */
 #include "preprocess/import/rvm.h"
 
 #include <math.h>
@@ -20,15 +20,14 @@ enum { MAX_DEPTH = 1000, HEADER = 24 };
 struct primitive {
     struct rvm_shape shape;
     int node;
-    size_t byte; /* byte offset in the file of the primitive's chunk */
-    /* indices of the primitive's first contour and first point in the reader's arrays; pointers would become invalid, because the arrays
-     * still grow */
+    size_t byte; /* byte offset of the primitive's chunk in the file */
+    /* indices of the primitive's first contour and first point in the reader's arrays; not pointers, because the arrays still grow */
     size_t first_contour, first_point;
 };
 
 struct facet_face {
     struct rvm_face flat;
-    int axis[3]; /* normal of the face's plane in hundredths, rounded to integers so that equal planes compare equal */
+    int axis[3]; /* normal of the face's plane in hundredths, as integers so that equal planes compare equal */
     double offset_m;
     size_t primitive;
     int number;
@@ -46,7 +45,7 @@ struct rvm_reader {
     struct rvm_losses losses;
     size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
     int stack[MAX_DEPTH], depth;
-    char *encoding; /* text encoding that the RVM file's header states; NULL: none */
+    char *encoding; /* text encoding given in the RVM file's header; NULL: none */
     char *why;
     size_t why_bytes;
 };
@@ -94,8 +93,8 @@ static bool read_float(struct rvm_reader *r, double *out)
     return true;
 }
 
-/* Reads a word count and that many 4-byte words of text, which ends at the first zero byte. Returns the text in the file's encoding with
- * control characters replaced by blanks; the caller frees it with mem_free. Returns NULL on failure. */
+/* Reads a word count and that many 4-byte words of text; the text ends at the first zero byte. Returns it in the file's
+ * encoding, with control characters replaced by blanks; the caller frees it with mem_free. Returns NULL on failure. */
 static char *read_text(struct rvm_reader *r)
 {
     uint32_t words;
@@ -123,7 +122,7 @@ static bool read_head(struct rvm_reader *r)
     uint32_t version;
     if (!read_word(r, &version))
         return false;
-    for (int i = 0; i < 4; i++) { /* skip four texts of the file's header: info, note, date and user */
+    for (int i = 0; i < 4; i++) { /* skip the four texts in the file's header: info, note, date and user */
         char *ignored = read_text(r);
         if (!ignored)
             return false;
@@ -187,7 +186,7 @@ static bool read_facets(struct rvm_reader *r, struct primitive *primitive)
                 for (int axis = 0; axis < 3; axis++)
                     if (!read_float(r, &r->points[r->point_count][axis]))
                         return false;
-                r->at += 12; /* the vertex normal that the file states is ignored; each polygon's own normal is used */
+                r->at += 12; /* ignore the vertex normal in the file: each polygon's own normal is used */
             }
         }
     }
@@ -278,7 +277,7 @@ static bool read_chunks(struct rvm_reader *r)
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
             return fail(r, "expected the header of a chunk");
-        if (!strcmp(id, "END:")) /* stops at the chunk END: without reading its header, because some files omit header fields there */
+        if (!strcmp(id, "END:")) /* stop at the chunk END: without reading its header, because some files omit header fields there */
             return true;
         if (r->count - from < HEADER)
             return fail(r, "the file ends within chunk %s", id);
@@ -296,7 +295,7 @@ static bool read_chunks(struct rvm_reader *r)
     return true;
 }
 
-/* Decodes the names of all nodes together in one text encoding, because a single short name has too few letters to detect the encoding. */
+/* Decodes the names of all nodes together, because a short name alone has too few letters for its encoding to be detected. */
 static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
 {
     struct text all = { 0 };
@@ -312,11 +311,11 @@ static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
     text_finish(&all);
 }
 
-/* --- finding faces that a face of a neighbouring primitive covers ------------------------------------------------------------------- */
+/* --- finding faces covered by a face of a neighbouring primitive ---------------------------------------------------------------------- */
 
 static const double near_m = 0.001;
 
-/* Compares flat faces by plane: first by normal, then by distance from the origin. After sorting, faces in one plane are neighbours. */
+/* Compares flat faces by plane: first by normal, then by distance from the origin. Sorting makes faces in the same plane neighbours. */
 static int by_plane(const void *a, const void *b)
 {
     const struct facet_face *x = a, *y = b;
@@ -336,7 +335,7 @@ static bool contains(const struct rvm_face *face, const double point[3])
            fabs(vec_dot(d, face->directions[1])) <= face->half_m[1] + near_m / 10;
 }
 
-/* Returns whether `cover` hides `face`: both lie in one plane with opposite normals, and all of `face` lies within `cover`. */
+/* Returns whether `cover` hides `face`: they lie in the same plane with opposite normals, and all of `face` is within `cover`. */
 static bool covers(const struct rvm_face *cover, const struct rvm_face *face)
 {
     double d[3];
@@ -375,8 +374,8 @@ static void add_faces(struct rvm_reader *r, size_t primitive)
     }
 }
 
-/* Marks faces that are covered by a face of another primitive: they lie inside the solid, where neither light nor heat reaches. A pair of
- * coincident faces is missed if their normals round to different hundredths; both then stay in the model, which is harmless. */
+/* Marks faces covered by a face of another primitive: they lie inside the solid, where neither light nor heat reaches. Misses
+ * coincident faces whose normals round to different hundredths; both faces then stay in the model, which is harmless. */
 static void leave_out_covered_faces(struct rvm_reader *r)
 {
     for (size_t p = 0; p < r->primitive_count; p++)
@@ -431,7 +430,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            if (r->points) /* skipped if no primitive of the file has points: then all contours are empty */
+            if (r->points) /* false if no primitive of the file has points; all contours are then empty */
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     if (!params->keep_covered)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts the primitives of an RVM file that could not be read by group and prints one report line (format: findings.h) per group. */
+/* Sorts the unreadable primitives of an RVM file by group, and prints one report line (format: findings.h) per group. */
 #include "preprocess/import/rvm_losses.h"
 
 #include <stdlib.h>
@@ -34,7 +34,7 @@ static const char *name_of(int kind)
     return kind > RVM_UNKNOWN_KIND && kind <= RVM_FACETS ? names[kind] : "primitive";
 }
 
-/* Reports the lost primitives of one group: `count` entries from `first` on. */
+/* Reports the lost primitives of one group: `count` entries, starting at `first`. */
 static void say_group(const struct rvm_loss *first, size_t count, const struct cad_node *node, size_t primitives, struct text *said)
 {
     const char *name = *node->name ? node->name : "a group without a name";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tessellates the primitives of RVM files: surfaces of revolution ring by ring, flat primitives face by face, polygons with holes by GLU's
- * tessellator. */
+/* Tessellates the primitives of RVM files: surfaces of revolution ring by ring, flat primitives face by face, polygons with
+ * holes with GLU's tessellator. */
 #include "preprocess/import/rvm_shape.h"
 
 #include <GL/glu.h>
@@ -19,8 +19,8 @@ const int rvm_numbers[RVM_FACETS + 1] = {
 
 struct primitive_frame { /* transform from an RVM primitive's frame to the plant's frame */
     const double *m;
-    double normal_of[9]; /* transforms normals: inverse transpose of the linear part up to a factor, by columns */
-    double scale;        /* largest factor by which the transform scales lengths along an axis */
+    double normal_of[9]; /* transforms normals: inverse transpose of the linear part, up to a factor; by columns */
+    double scale;        /* largest factor by which the transform scales a length along an axis */
     bool mirrored;
 };
 
@@ -78,8 +78,8 @@ static void add_quad(struct cad_node *node, const struct primitive_frame *frame,
     add_triangle(node, frame, a, c, d);
 }
 
-/* Returns the number of corners by which a full circle is approximated. The number is a multiple of 4, so that corners lie on both axes of
- * the section. Then the corners of two primitives that meet coincide even if one section is mirrored. */
+/* Returns the number of corners that approximate a full circle. The number is a multiple of 4, so that corners lie on both axes
+ * of the section. Therefore the corners of two adjoining primitives coincide even if one section is mirrored. */
 static int corners_of(double radius_m, double chord_m)
 {
     double cosine = radius_m > 0 ? 1 - chord_m / radius_m : -1;
@@ -87,8 +87,8 @@ static int corners_of(double radius_m, double chord_m)
     return (int)fmin(MAX_CORNERS, fmax(MIN_CORNERS, 4 * ceil(corners / 4)));
 }
 
-/* Returns the angle of a round section's first corner, measured from direction `x` to direction `y` of the primitive's frame. In the
- * plant's frame, the direction of this corner depends only on the section's plane. */
+/* Returns the angle of a round section's first corner, measured from direction `x` to direction `y` of the primitive's frame.
+ * The corner is chosen so that its direction in the plant's frame depends only on the section's plane. */
 static double phase_of(const struct primitive_frame *frame, const double x[3], const double y[3])
 {
     double u[3], v[3], n[3];
@@ -106,7 +106,7 @@ static double phase_of(const struct primitive_frame *frame, const double x[3], c
 
 /* --- rings ------------------------------------------------------------------------------------------------------------------------ */
 
-struct corner_ring { /* a circle or ellipse of corners in the primitive's frame; a corner at an angle is centre + cos * x + sin * y */
+struct corner_ring { /* a circle or ellipse of corners in the primitive's frame; the corner at an angle is centre + cos * x + sin * y */
     double centre[3], x[3], y[3], phase;
 };
 
@@ -140,8 +140,8 @@ static void add_cap(struct cad_node *node, const struct primitive_frame *frame, 
             add_triangle(node, frame, first, first + i, first + i + 1);
 }
 
-/* Joins two rows of `corners` vertices around a closed cross-section by triangles; row `high` lies farther along the axis than row
- * `low`. */
+/* Joins two rows of `corners` vertices around a closed cross-section with triangles; row `high` lies farther along the axis
+ * than row `low`. */
 static void join_rows(struct cad_node *node, const struct primitive_frame *frame, uint32_t low, uint32_t high, uint32_t corners)
 {
     for (uint32_t i = 0; i < corners; i++) {
@@ -152,7 +152,7 @@ static void join_rows(struct cad_node *node, const struct primitive_frame *frame
 
 /* --- the primitives --------------------------------------------------------------------------------------------------------------- */
 
-/* Adds the six faces between two rectangles, one above the other. */
+/* Adds the six faces of a prism between two rectangles, one above the other. */
 static void add_prism(struct cad_node *node, const struct primitive_frame *frame, const double corners[8][3], uint32_t open_faces)
 {
     static const int faces[RVM_MAX_FACES][4] = { { 0, 3, 2, 1 }, { 4, 5, 6, 7 }, { 0, 1, 5, 4 },
@@ -162,7 +162,7 @@ static void add_prism(struct cad_node *node, const struct primitive_frame *frame
         double u[3], v[3], n[3];
         for (int i = 0; i < 4; i++)
             p[i] = corners[faces[f][i]];
-        vec_sub(p[2], p[0], u); /* use the diagonals of the quadrilateral, so that the normal is right even if a side has zero length */
+        vec_sub(p[2], p[0], u); /* take the normal from the quadrilateral's diagonals: it is then right even if a side has zero length */
         vec_sub(p[3], p[1], v);
         vec_cross(u, v, n);
         if (vec_dot(n, n) == 0 || (open_faces >> f & 1))
@@ -203,7 +203,7 @@ static void add_rectangular_torus(struct cad_node *node, const struct primitive_
     double inner = n[0], outer = n[1], half = n[2] / 2, angle = n[3];
     int steps = steps_of(angle, outer * frame->scale, chord_m);
     const double section[4][2] = { { inner, -half }, { outer, -half }, { outer, half }, { inner, half } };
-    /* the four sides of the torus's rectangular section: below, outside, above, inside of the bend */
+    /* the four sides of the torus's rectangular section: bottom, outside, top, inside of the bend */
     for (int side = 0; side < 4; side++) {
         const double *from = section[side], *to = section[(side + 1) % 4];
         double radial = to[1] - from[1], vertical = from[0] - to[0];
@@ -272,13 +272,13 @@ static void add_circular_torus(struct cad_node *node, const struct primitive_fra
     ends[1].phase = ends[0].phase + turn;
     if (fabs(angle) > 2 * M_PI - 1e-3)
         return;
-    /* the normal (x cross y) of the end of a torus points against the direction in which a bend of positive angle runs */
+    /* the normal (x cross y) at either end of a torus points against the direction of a bend with a positive angle */
     for (int end = 0; end < 2; end++)
         if (!(open_faces >> end & 1))
             add_cap(node, frame, &ends[end], corners, (end == 1) == (angle > 0));
 }
 
-struct dome {          /* part of an ellipsoid of revolution about the Z axis, from the angle `low` above the equator up to the pole */
+struct dome {          /* part of an ellipsoid of revolution about the Z axis: from the angle `low` above the equator to the pole */
     double across, up; /* across: radius of the ellipsoid; up: its height */
     double centre_z, low, phase;
     int corners;
@@ -352,8 +352,8 @@ static void add_sphere(struct cad_node *node, const struct primitive_frame *fram
     }
 }
 
-/* Joins two rings by triangles. The rings may have different numbers of corners: each triangle advances on the ring whose next corner has
- * the smaller angle. A ring of radius 0 is a single point and contributes no edges. */
+/* Joins two rings with triangles. The rings may have different numbers of corners: each triangle advances on the ring whose
+ * next corner has the smaller angle. A ring of radius 0 is a single point and contributes no edges. */
 static void join_rings(struct cad_node *node, const struct primitive_frame *frame, const uint32_t rows[2], const int corners[2],
                        const double radii[2])
 {
@@ -371,8 +371,8 @@ static void join_rings(struct cad_node *node, const struct primitive_frame *fram
     }
 }
 
-/* Adds the side of a snout: a cone between two circles that may be offset and tilted. A circle of radius 0 gets as many corners as the
- * other circle, all at one point. */
+/* Adds the side of a snout: a cone between two circles that may be offset and tilted. A circle of radius 0 gets as many corners
+ * as the other one, all at the same point. */
 static void add_snout(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m, uint32_t open_faces)
 {
     double height = n[2], radii[2] = { n[0], n[1] };
@@ -419,7 +419,7 @@ struct tessellated_polygon { /* state shared by GLU's callbacks */
     const double (*corner)[3];
     uint32_t three[3];
     int count;
-    double (*made)[3]; /* vertices that GLU's tessellator requests where edges of the polygon cross */
+    double (*made)[3]; /* vertices that GLU's tessellator requests where polygon edges cross */
     size_t made_count;
 };
 
@@ -446,7 +446,7 @@ static void on_combine(GLdouble at[3], void *of[4], GLfloat weight[4], void **ou
     (void)of;
     (void)weight;
     struct tessellated_polygon *polygon = user;
-    if (polygon->made_count == MAX_CROSSINGS) { /* the array must not be reallocated, because GLU keeps pointers into it */
+    if (polygon->made_count == MAX_CROSSINGS) { /* do not reallocate the array: GLU keeps pointers into it */
         *out = polygon->made[MAX_CROSSINGS - 1];
         return;
     }
@@ -454,7 +454,7 @@ static void on_combine(GLdouble at[3], void *of[4], GLfloat weight[4], void **ou
     *out = polygon->made[polygon->made_count++];
 }
 
-/* Computes the normal of a contour by Newell's method, which allows contours that are not planar or convex. */
+/* Computes the normal of a contour by Newell's method, which works for contours that are not planar or convex. */
 static void contour_normal(const double (*points)[3], const struct rvm_contour *contour, double out[3])
 {
     memset(out, 0, 3 * sizeof(*out));
@@ -577,7 +577,7 @@ static void circle_of(const struct primitive_frame *frame, const double centre[3
     vec_normalize(face->outward);
 }
 
-/* Writes the rectangular face of a primitive. u, v: half sides as vectors in the primitive's frame. */
+/* Computes the rectangular face of a primitive. u, v: half sides as vectors in the primitive's frame. */
 static void rectangle_of(const struct primitive_frame *frame, const double centre[3], const double outward[3], const double u[3],
                          const double v[3], struct rvm_face *face)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Links the given files into the plant's folder of exports, prepares the plant, and replaces this process by the daemon. */
+/* Links the given files into the plant's folder of exports, prepares the plant, and replaces this process with the daemon. */
 #include "preprocess/import/serve.h"
 
 #include <errno.h>
@@ -23,8 +23,7 @@ static int make_folder(const char *path)
     return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : import_fail(path, strerror(errno));
 }
 
-/* Adds to the folder of exports a symlink to the file. The file itself stays where it is, because it may refer to files in its own
- * folder. */
+/* Adds a symlink to the file to the folder of exports. The file stays where it is, because it may refer to files in its own folder. */
 static int add_link(const char *exports, const char *file)
 {
     char target[PATH_MAX];
@@ -91,7 +90,7 @@ int import_serve(const struct serve_params *params)
     int status = make_folder(params->folder);
     if (status == 0)
         status = make_folder(exports);
-    /* take the lock of the plant's folder, to be sure that no other program holds it; keep it until this process becomes the daemon */
+    /* lock the plant's folder, so that no other program uses it; keep the lock until this process becomes the daemon */
     if (status == 0) {
         char *why = NULL;
         if (plant_folder_lock(&(struct plant_folder_params){ .folder = params->folder }, &why) < 0)

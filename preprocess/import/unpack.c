@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Unpacks models compressed as ZIP with minizip, and as gzip with zlib. */
+/* Unpacks ZIP-compressed models with minizip and gzip-compressed ones with zlib. */
 #include "preprocess/import/unpack.h"
 
 #include <errno.h>
@@ -16,8 +16,8 @@
 
 enum {
     BLOCK_BYTES = 1 << 16,
-    /* largest accepted ratio of unpacked to packed size; models shrink to about a tenth, so a file with a larger ratio is rejected as a
-     * decompression bomb */
+    /* largest accepted ratio of unpacked to packed size; models compress to about a tenth, so a file with a larger ratio is
+     * rejected as a decompression bomb */
     MAX_RATIO = 200,
     NAME_BYTES = 512
 };
@@ -33,7 +33,7 @@ static const char *ending_of(const char *path)
     return dot && (!slash || dot > slash) ? dot : "";
 }
 
-/* Returns whether a file begins with the bytes that mark a ZIP or gzip file. */
+/* Returns whether a file begins with the magic bytes of a ZIP or gzip file. */
 static bool begins_packed(const char *path)
 {
     unsigned char head[4] = { 0 };
@@ -82,7 +82,7 @@ static const char *copy(const struct archive_reading *from, FILE *to, size_t mos
     return total > 0 ? NULL : "the archive is empty";
 }
 
-/* Closes an archive. Returns whether its data was complete and matched the checksum. */
+/* Closes an archive. Returns whether its data was complete and its checksum correct. */
 static bool finish(const struct archive_reading *from)
 {
     bool good = true;
@@ -93,7 +93,7 @@ static bool finish(const struct archive_reading *from)
     return (!from->gzip || gzclose(from->gzip) == Z_OK) && good;
 }
 
-/* Copies to `root` the file name that the manifest.xml of a COLLADA archive gives its first document, or "". */
+/* Copies the name of the first document in a COLLADA archive's manifest.xml to `root`, or "" if there is none. */
 static void read_root(unzFile zip, char root[NAME_BYTES])
 {
     char text[4096];
@@ -123,8 +123,8 @@ static bool is_named(const char *name, const char *root)
     return *base && !strcmp(text_base_name(name), base);
 }
 
-/* Opens the file of a ZIP archive with this ending: the one that the archive's manifest names, else the first. Returns NULL, or the reason
- * if there is none. */
+/* Opens a file of a ZIP archive with this ending: the one named in the archive's manifest, else the first. Returns NULL, or the
+ * reason if there is none. */
 static const char *open_file(unzFile zip, const char *ending, struct text *said)
 {
     char name[NAME_BYTES], root[NAME_BYTES], taken[NAME_BYTES] = "";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements the heat method on a point cloud: sampling of points, their neighbours, the two linear systems, and interpolation between
- * points. */
+/* Implements the heat method on a point cloud: samples points, finds their neighbours, solves the two linear systems, and
+ * interpolates between points. */
 #include "preprocess/influence/cloud_heat.h"
 
 #include <float.h>
@@ -13,15 +13,15 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/mesh/trimesh.h"
 
-#define PACKING 0.7    /* expected number of sample points (Poisson disc) in a square whose side is the points' spacing */
-#define HEAT_TIME 2.25 /* diffusion time t of the heat method, in multiples of the squared spacing of the sample points */
-/* maximum length of a connected component of the point cloud, in multiples of sqrt(t), t: diffusion time; a longer component gets a larger
- * t. Heat falls by the factor e per sqrt(t), and underflows (DBL_MIN) at 708. */
+#define PACKING 0.7    /* expected number of Poisson-disc sample points in a square whose side is the point spacing */
+#define HEAT_TIME 2.25 /* diffusion time t of the heat method, in squared spacings of the sample points */
+/* maximum length of a connected component of the point cloud, in multiples of sqrt(t) (t: diffusion time); for a longer
+ * component, t is increased. Heat falls by a factor of e per sqrt(t) and would underflow (DBL_MIN) at 708. */
 #define LONGEST 400.0
-/* added to the diagonal of the Laplacian, relative to the diagonal element, so that rounding does not make the matrix singular */
+/* added to the Laplacian's diagonal, relative to the diagonal element, so that rounding does not make the matrix singular */
 #define REGULARISATION 1e-9
-/* PITCHES: candidate points per spacing, in each direction of the lattice on a triangle; PLACES: number of sample points that the value at
- * a position is interpolated from */
+/* PITCHES: candidate points per spacing, in each direction of a triangle's lattice; PLACES: number of sample points from which
+ * a value is interpolated */
 enum { PITCHES = 3, PLACES = 4 };
 
 struct heat_link {
@@ -87,7 +87,7 @@ static double area_of(const struct surface_debug_mesh *mesh, size_t t)
     return vec_length(n) / 2;
 }
 
-/* Generates candidates for sample points on the triangles of a surface. The triangle corners come first, so that narrow parts keep their
+/* Generates candidates for sample points on a surface's triangles: first the triangle corners, so that narrow parts keep their
  * ends; then a lattice in each triangle. */
 static void sample(struct cloud_heat *cloud, const struct surface_debug_mesh *mesh)
 {
@@ -142,8 +142,8 @@ static uint32_t other_end(const struct heat_link *link, size_t point)
     return link->from == point ? link->to : link->from;
 }
 
-/* Visits all points of the cloud connected to point `from`, breadth first. Returns the number of points reached; queue[] lists them, the
- * farthest last, and hops[] the number of steps to each. */
+/* Visits all points of the cloud that are connected to point `from`, breadth first. Returns their number; queue[] lists them,
+ * the farthest last, and hops[] receives the number of steps to each. */
 static size_t spread(const struct cloud_heat *cloud, uint32_t from, uint32_t *queue, uint32_t *hops)
 {
     size_t count = 1;
@@ -185,9 +185,9 @@ static double find_pieces(struct cloud_heat *cloud)
     return most * CLOUD_REACH * cloud->spacing_m;
 }
 
-/* Computes two axes of the tangent plane at a sample point, perpendicular to the direction in which the neighbouring points spread least.
- * The largest cofactor vector of the covariance approximates that direction if the smallest eigenvalue is near 0; inverse iteration refines
- * it. */
+/* Computes two axes of the tangent plane at a sample point, perpendicular to the direction in which the neighbouring points
+ * spread least. If the smallest eigenvalue is near 0, the covariance's largest cofactor vector approximates that direction;
+ * inverse iteration refines it. */
 static void find_plane(struct cloud_heat *cloud, size_t point)
 {
     double c[3][3] = { { 0 } }, normal[3] = { 0, 0, 1 }, trace = 0;
@@ -229,7 +229,7 @@ static void find_plane(struct cloud_heat *cloud, size_t point)
 
 /* --- systems ---------------------------------------------------------------------------------------------------------------- */
 
-/* Assembles the sparse matrix diagonal + scale * L (L: Laplacian); only its lower triangle. */
+/* Assembles the lower triangle of the sparse matrix diagonal + scale * L (L: Laplacian). */
 static cholmod_sparse *assemble(struct cloud_heat *cloud, const double *diagonal, double scale)
 {
     cholmod_triplet *t =
@@ -355,8 +355,8 @@ double cloud_heat_spacing_m(const struct cloud_heat *cloud)
 
 /* --- distances -------------------------------------------------------------------------------------------------------------- */
 
-/* Computes the gradient of a function, given by its values at the sample points, at one of the points, in its tangent plane, by weighted
- * least squares. */
+/* Computes the gradient of a function at a sample point, in the point's tangent plane, by weighted least squares. values: the
+ * function's values at the sample points. */
 static void slope_at(const struct cloud_heat *cloud, size_t point, const double *values, double slope[3])
 {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
@@ -387,8 +387,8 @@ struct nearby {
     int count;
 };
 
-/* Finds the PLACES sample points nearest to position p, nearest first. At least one lies within two spacings, because the candidates for
- * sample points cover the surface. */
+/* Finds the PLACES sample points nearest to position p, nearest first. At least one is within two spacings, because the
+ * candidates for sample points cover the surface. */
 static void find_nearby(const struct cloud_heat *cloud, const double p[3], struct nearby *near)
 {
     near->count = 0;
@@ -437,8 +437,8 @@ static cholmod_dense *solve(const struct cloud_heat *cloud, cholmod_factor *fact
     return x;
 }
 
-/* Converts the heat u at the sample points into the unit vectors X (cloud_heat.h): tangent vectors that point away from the source. Writes
- * to b the right-hand side of the linear system for the distances. */
+/* Converts the heat u at the sample points into the unit vectors X (cloud_heat.h): tangent vectors that point away from the
+ * source. Writes the right-hand side of the linear system for the distances to b. */
 static void flow(const struct cloud_heat *cloud, double *u, double (*slopes)[3], double *b)
 {
     for (size_t i = 0; i < cloud->count; i++)
@@ -483,7 +483,7 @@ bool cloud_heat_distances(const struct cloud_heat *cloud, const double source_m[
         double start = values[near.at[0]];
         for (size_t i = 0; i < cloud->count; i++)
             slope_at(cloud, i, values, slopes[i]);
-        double zero = near.away_m[0]; /* distance between the source and the nearest point of the cloud */
+        double zero = near.away_m[0]; /* distance between the source and the nearest sample point */
         for (size_t v = 0; v < count; v++) {
             const double p[3] = { (double)positions_m[v][0], (double)positions_m[v][1], (double)positions_m[v][2] };
             find_nearby(cloud, p, &near);

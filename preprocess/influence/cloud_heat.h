@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes distances along the surface by the method of Kim & Suh (Electronics 2025, 14(15), 2938), for comparison with our distances on
- * the mesh. It is the heat method (Crane, Weischedel, Wardetzky 2013) on points sampled from the surface, whose neighbours are the nearest
- * points, not those connected by the mesh. Therefore these distances cross thin walls, and gaps narrower than CLOUD_REACH spacings. The
- * comparison is meant to show this error.
- *
- * 1. Points: about CLOUD_POINTS Poisson-disc samples, at least one spacing apart.
- * 2. Neighbours of a point: all points within r = CLOUD_REACH spacings (FLANN). Tangent plane: least-squares plane through them.
- * 3. Laplacian L (Belkin, Sun & Wang 2009), made symmetric: w_ij = A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2). w_ij is the weight
- *    of the points at p_i and p_j, tau the diffusion time, and A_i = pi r^2 / (neighbours + 1) the area of a point.
- * 4. Heat u from the source: (A + t L) u = source, with time t and the areas on the diagonal of A.
- * 5. X_i: unit direction of the heat flow in the tangent plane of point i, by weighted least squares.
- * 6. Distances d minimise sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2. */
+/* Computes distances along the surface by the method of Kim & Suh (Electronics 2025, 14(15), 2938), for comparison with our
+ * distances on the mesh. It is the heat method (Crane, Weischedel, Wardetzky 2013) on points sampled from the surface;
+ * neighbours are the nearest points, whether or not the mesh connects them. Therefore these distances cross thin walls, and
+ * gaps narrower than CLOUD_REACH spacings. The comparison is meant to show this error. 1. Points: about CLOUD_POINTS
+ * Poisson-disc samples, at least one spacing apart. 2. Neighbours of a point: all points within r = CLOUD_REACH spacings
+ * (FLANN). Tangent plane: least-squares plane through them. 3. Laplacian L (Belkin, Sun & Wang 2009), made symmetric: w_ij =
+ * A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2). w_ij is the weight of the points at p_i and p_j, tau the diffusion time,
+ * and A_i = pi r^2 / (neighbours + 1) the area of a point. 4. Heat u from the source: (A + t L) u = source, with time t and the
+ * areas on the diagonal of A. 5. X_i: unit direction of the heat flow in the tangent plane of point i, by weighted least
+ * squares. 6. Distances d minimise sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2. */
 #ifndef PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #define PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #include "base/log/log.h"
@@ -21,7 +19,7 @@
 
 struct cloud_heat;
 
-/* Samples the visible triangles of the surface and factors both linear systems. Returns NULL after logging if out of memory. */
+/* Samples the visible triangles of the surface and factorises both linear systems. Returns NULL after logging if out of memory. */
 struct cloud_heat *cloud_heat_create(struct log *log, const struct surface *surface);
 /* Frees the point cloud and sets *cloud to NULL. *cloud may be NULL. */
 void cloud_heat_destroy(struct cloud_heat **cloud);

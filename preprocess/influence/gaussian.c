@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves the Gaussian process (letters: gaussian.h) with one sparse factorisation of k^2 C + G, two solves for each sensor and one for each
- * random sample. All else is dense algebra. */
+/* Solves the Gaussian process (letters: gaussian.h) with one sparse factorisation of k^2 C + G, two solves per sensor and one
+ * per random sample. All other algebra is dense. */
 #include "preprocess/influence/gaussian.h"
 
 #include <cblas.h>
@@ -18,8 +18,8 @@
 #define BLOCK 32 /* number of right-hand sides per solve; fixed, so that random samples do not depend on the thread count */
 #define TILE 256 /* number of mesh points that one thread processes at a time */
 #define STRIP 64 /* number of vertices that one thread processes at a time */
-/* fixed-point scale of the sums of the samples' squared errors, in units of the squared standard deviation; integer sums do not depend on
- * the order of addition */
+/* fixed-point scale for the sums of the samples' squared errors, in units of the squared standard deviation; unlike floating
+ * point, integer sums do not depend on the order of addition */
 #define FIXED 1e9
 #define FIXED_MAX 1e7
 
@@ -33,18 +33,18 @@ struct solving {
     cholmod_factor *factor;
     struct gaussian_bodies bodies;
     double *covariance;  /* covariance between the sensors before scaling, [sensor][sensor] */
-    double *root_mass_m; /* by row of the sparse system: square root of the area of its mesh point */
+    double *root_mass_m; /* by row of the sparse system: square root of its mesh point's area */
     double *root_scale;  /* by connected component: square root of its factor `scale` */
-    /* by connected component: factor from the variance in the sparse system to the variance that the plant file states; 0: the component
-     * has no sensor */
+    /* by connected component: factor from the variance in the sparse system to the variance given in the plant file; 0: the
+     * component has no sensor */
     double *scale;
     double *means;             /* by sensor: weight of its reading in the estimated mean of its body (connected component) */
-    /* by sensor: the smallest variance that a weighted mean of the readings on its body can have (mean_variance()) */
+    /* by sensor: smallest possible variance of a weighted mean of the readings on its body (mean_variance()) */
     double *levels;
-    /* [mesh point][sensor]: covariances of the field at the point with the sensor's reading ("kernels"), later the weights H */
+    /* [mesh point][sensor]: covariance of the field at the point with the sensor's reading ("kernel"), later the weights H */
     float *at_points;
-    float *taken;              /* by vertex: the part of the field's variance before any reading that the readings remove */
-    _Atomic uint64_t *squares; /* by vertex: sum of the squared errors of the random samples, in fixed point */
+    float *taken;              /* by vertex: reduction of the field's prior variance by the readings */
+    _Atomic uint64_t *squares; /* by vertex: sum of the random samples' squared errors, in fixed point */
     atomic_bool failed;
 };
 
@@ -111,7 +111,7 @@ static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
 
 /* --- kernels ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the constant part of a body's prior covariance. Callers subtract it from each solution of the sparse system immediately:
+/* Returns the constant part of a body's prior covariance. Subtract it from each solution of the sparse system immediately:
  * subtracting it from later results would lose digits to cancellation. */
 static double constant_of(const struct solving *solving, uint32_t body)
 {
@@ -128,8 +128,8 @@ static void take_covariance(const struct solving *solving, size_t sensor, const 
         solving->covariance[sensor * count + other] = solving->bodies.of_sensor[other] == body ? on_disc(solving, other, u) - constant : 0;
 }
 
-/* Converts solutions u of the sparse system, one column for each of the `width` sensors from index `first` on, to kernels: covariances
- * between each mesh point and the sensor's reading. Subtracts the constant part. */
+/* Converts solutions u of the sparse system to kernels: the covariances of each mesh point with each sensor's reading. u has
+ * one column for each of the `width` sensors from index `first` on. Subtracts the constant part. */
 static void take_kernels(const struct solving *solving, size_t first, size_t width, const double *u)
 {
     const size_t count = solving->mesh->source_count, rows = solving->laplacian.row_count;
@@ -180,8 +180,8 @@ static double variance_of(const struct solving *solving, size_t sensor)
     return solving->params.deviation * solving->params.deviation * solving->scale[solving->bodies.of_sensor[sensor]];
 }
 
-/* Returns the smallest variance of a weighted mean of the readings of this sensor's body. That is the sensor's element of the product S m
- * (S: covariance of the readings, m: weights of the mean), which is equal for all sensors of a body. */
+/* Returns the smallest possible variance of a weighted mean of the readings on this sensor's body. That is the sensor's element
+ * of S m (S: covariance of the readings, m: weights of the mean), which is equal for all sensors of a body. */
 static double mean_variance(const struct solving *solving, size_t sensor)
 {
     const size_t n = solving->influence->count;
@@ -192,8 +192,8 @@ static double mean_variance(const struct solving *solving, size_t sensor)
     return sum;
 }
 
-/* Replaces the kernels k (covariances of mesh points with readings) by the influence H = P k + m (P: precision matrix, m: weights of the
- * estimated mean), for mesh points [begin * TILE, end * TILE). */
+/* For mesh points [begin * TILE, end * TILE), replaces the kernels k (covariances of mesh points with readings) by the
+ * influence H = P k + m (P: precision matrix, m: weights of the estimated mean). */
 static void weigh_tiles(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -245,8 +245,8 @@ static void turn_to_shares(const struct solving *solving, size_t first, size_t w
             solving->influence->shares[i * vertices + first + v] = strip[v * n + i];
 }
 
-/* Writes the kernels (covariances with each sensor's reading) at vertices [begin * STRIP, end * STRIP) to `shares`, where weigh_strips()
- * replaces them by H, the weights of the readings in the estimate at each vertex. */
+/* Writes the kernels (covariances with each sensor's reading) at vertices [begin * STRIP, end * STRIP) to `shares`;
+ * weigh_strips() then replaces them by H, the weights of the readings in the estimate at each vertex. */
 static void keep_kernels(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -261,8 +261,8 @@ static void keep_kernels(void *arg, size_t begin, size_t end)
     mem_free(strip_h);
 }
 
-/* Replaces the kernels k at vertices [begin * STRIP, end * STRIP) by H, and computes the variance removed by the sensors: k' P k + 2 m' k -
- * m' S m (P: precision matrix, m: weights of the estimated mean, S: covariance of the readings). */
+/* At vertices [begin * STRIP, end * STRIP), replaces the kernels k by H, and computes the variance removed by the readings: k'
+ * P k + 2 m' k - m' S m (P: precision matrix, m: weights of the estimated mean, S: covariance of the readings). */
 static void weigh_strips(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -276,7 +276,7 @@ static void weigh_strips(void *arg, size_t begin, size_t end)
         double taken[STRIP] = { 0 };
         for (size_t v = 0; v < width; v++)
             at_vertex(solving, first + v, strip_h + v * n);
-        for (size_t i = 0; i < n; i++) /* the influence H (weights of the sensors) at a vertex is 0 for sensors of other bodies */
+        for (size_t i = 0; i < n; i++) /* a vertex's influence H (weights of the sensors) is 0 for sensors of other bodies */
             for (size_t v = 0; v < width; v++)
                 if (body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i])
                     taken[v] += variance_of(solving, i) * (double)solving->influence->shares[i * vertices + first + v] *
@@ -304,8 +304,8 @@ static bool find_precision(struct solving *solving)
 
 /* --- standard error ---------------------------------------------------------------------------------------------------------- */
 
-/* SplitMix64 (Steele, Lea & Flood, 2014), used as a source of random signs, of which the samples of the prior are made. Random signs in
- * place of normal numbers give the same variance, with an estimation error no larger (Hutchinson, 1990). */
+/* SplitMix64 (Steele, Lea & Flood, 2014), as a source of the random signs from which samples of the prior are made. Random
+ * signs give the same variance as normally distributed numbers, with an estimation error no larger (Hutchinson, 1990). */
 struct signs {
     uint64_t state, bits;
     int left;
@@ -326,9 +326,9 @@ static double next_sign(struct signs *signs)
     return sign;
 }
 
-/* Simulates readings: takes a random field u, drawn from the prior, and computes the reading that each sensor would have, in units of the
- * standard deviation, with the sign reversed, because callers subtract the prediction from the field. To keep digits, each body's level
- * (the value at its first sensor, returned in levels[component]) is subtracted first; this does not change the prediction error. */
+/* Simulates readings: takes a random field u, drawn from the prior, and computes each sensor's reading in units of the standard
+ * deviation, negated, because callers subtract the prediction from the field. To keep digits, first subtracts each body's level
+ * (the value at its first sensor, returned in levels[component]); this does not change the prediction error. */
 static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {
     const size_t n = solving->mesh->source_count;

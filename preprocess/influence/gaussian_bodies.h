@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The connected bodies of a surface, each with an independent Gaussian process and mean. Thread: any. */
+/* The connected bodies of a surface; each has an independent Gaussian process and mean. Thread: any. */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_BODIES_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_BODIES_H
 #include "preprocess/influence/influence_mesh.h"
@@ -23,8 +23,8 @@ static inline double gaussian_bodies_constant(const struct gaussian_bodies *bodi
     return bodies->area_m2[component] > 0 ? 1 / bodies->area_m2[component] : 0;
 }
 
-/* Makes the covariance matrix [sensor][sensor] symmetric, and scales it so that the mean variance of each body's sensors is 1. Writes the
- * scale factor of each body (connected component) to scale[]; 0: the body has no sensor. */
+/* Makes the covariance matrix [sensor][sensor] symmetric, and scales it so that the variances of each body's sensors average 1.
+ * Writes the scale factor of each body (connected component) to scale[]; 0: the body has no sensor. */
 void gaussian_bodies_scale(const struct gaussian_bodies *bodies, size_t count, double *covariance, double *scale);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-/* LAPACK routines, with Fortran's calling convention. Fortran's columns are our rows, so "U" means our lower triangle. */
+/* LAPACK routines, with Fortran's calling convention. Fortran's columns are our rows, so "U" selects our lower triangle. */
 void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 void dpotri_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the prior covariance as a derivative with respect to k^2 (gaussian_covariance.h), by a central difference of values at log k^2 -
- * STEP and log k^2 + STEP. */
+/* Computes the prior covariance as a derivative with respect to k^2 (gaussian_covariance.h), by a central difference between
+ * log k^2 - STEP and log k^2 + STEP. */
 #include "preprocess/influence/gaussian_covariance.h"
 
 #include <math.h>
@@ -13,10 +13,11 @@
 /* step of log k^2; the relative error of the central difference is STEP^2 / 6; a smaller step would lose digits to cancellation */
 #define STEP 0.02
 
-/* --- preparation that does not depend on the correlation range, and is therefore done only once -------------------------------- */
+/* --- preparation that does not depend on the correlation range, done only once -------------------------------------------------- */
 
-/* A sensor's disc is the set of mesh points that its reading averages. Lists for each row of the Laplacian (a mesh point) the sensors whose
- * discs contain the point, in the order of their indices: the list of row r is sensors[first[r]] .. sensors[first[r + 1] - 1]. */
+/* Lists, for each row of the Laplacian (a mesh point), the sensors whose discs contain the point, ordered by index. A sensor's
+ * disc is the set of mesh points that its reading averages. The list of row r is sensors[first[r]] .. sensors[first[r + 1] -
+ * 1]. */
 static void list_sensors(const struct influence_mesh *mesh, const struct laplacian *laplacian, size_t *first, uint32_t *sensors,
                          double *shares)
 {
@@ -37,8 +38,8 @@ static void list_sensors(const struct influence_mesh *mesh, const struct laplaci
     mem_free(at);
 }
 
-/* Returns an upper bound of the norm k^2 |D' A^-1 D| (D: sensor weights, A = k^2 C + G, C: areas, G: stiffness): |D' C^-1 D|, estimated
- * from the weights of sensors that share a mesh point. */
+/* Returns an upper bound of the norm k^2 |D' A^-1 D| (D: sensor weights, A = k^2 C + G, C: areas, G: stiffness). The bound is
+ * |D' C^-1 D|, estimated from the weights of sensors that share a mesh point. */
 static double find_bound(size_t rows, const size_t *first, const uint32_t *sensors, const double *shares, const double *mass_m2,
                          size_t count)
 {
@@ -56,8 +57,8 @@ static double find_bound(size_t rows, const size_t *first, const uint32_t *senso
     return bound;
 }
 
-/* Builds the bordered matrix: G, below it one row of D' per sensor, and one column per sensor, of which only the diagonal element is stored
- * (letters: gaussian_covariance.h). */
+/* Builds the bordered matrix: G, one row of D' per sensor below it, and one column per sensor, of which only the diagonal
+ * element is stored (letters: gaussian_covariance.h). */
 static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, const size_t *first, const uint32_t *sensors,
                                   const double *shares, cholmod_common *common)
 {
@@ -89,7 +90,7 @@ static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, con
     return matrix;
 }
 
-/* Computes an elimination order of the rows of the bordered matrix that keeps the factor sparse: mesh points first, sensors last. */
+/* Computes an elimination order for the rows of the bordered matrix that keeps the factor sparse: mesh points first, sensors last. */
 static cholmod_factor *analyze(cholmod_sparse *inner, cholmod_sparse *bordered, cholmod_common *common)
 {
     cholmod_factor *points = cholmod_analyze(inner, common);
@@ -171,7 +172,7 @@ struct slope {
     /* [sensor][sensor], lower triangle: D' A^-1 D (letters: gaussian_covariance.h) minus its constant part, for the lower and the upper k^2
      * of the central difference */
     double *between[2];
-    atomic_int status; /* first status other than CHOLMOD_OK that CHOLMOD returned to any thread */
+    atomic_int status; /* the first CHOLMOD status other than CHOLMOD_OK in any thread */
 };
 
 static size_t sensor_of(const struct gaussian_covariance *covariance, const cholmod_factor *factor, int row)

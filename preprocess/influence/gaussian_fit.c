@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits the parameters of a Gaussian process. Searches a grid of ranges with a subset of the sensors, then refines the best range by
- * parabolas with all sensors. For each range, searches a grid of noise shares (noise / deviation) and a finer grid around the best. The
- * deviation follows from range and noise. */
+/* Fits the parameters of a Gaussian process. Searches a grid of ranges with a subset of the sensors, then refines the best
+ * range with all sensors by fitting parabolas. For each range, searches a grid of noise shares (noise / deviation), then a
+ * finer grid around the best one. The deviation follows from range and noise. */
 #include "preprocess/influence/gaussian_fit.h"
 
 #include <math.h>
@@ -17,13 +17,13 @@
 #include "preprocess/influence/gaussian_covariance.h"
 
 #define RANGES 9  /* number of correlation ranges in the search grid, evenly spaced in logarithms */
-#define FEW 96    /* maximum number of sensors in the grid search of the correlation range */
-#define CLOSER 3  /* number of parabola steps that refine the best correlation range of the grid */
+#define FEW 96    /* maximum number of sensors used in the grid search for the correlation range */
+#define CLOSER 3  /* number of parabola steps that refine the grid's best correlation range */
 #define SHARES 13 /* number of noise shares (noise / deviation) in the search grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE */
 #define MAX_SHARE 3.0
-/* correlation ranges whose logarithms differ by less than this count as equal, because readings cannot distinguish them */
+/* ranges whose logarithms differ by less than this count as equal: readings cannot distinguish them */
 #define SAME 0.02
-#define MIN_INSTANTS 8 /* minimum number of instants (lines of readings); fewer cannot determine three parameters */
+#define MIN_INSTANTS 8 /* minimum number of instants (lines of readings); fewer do not determine three parameters */
 
 /* --- the table --------------------------------------------------------------------------------------------------------------- */
 
@@ -140,8 +140,8 @@ static size_t count_bodies(const uint32_t *body, size_t count)
     return bodies;
 }
 
-/* Evaluates the likelihood of the readings for the covariance s^2 (K + share^2 I), and keeps the best parameters. K: covariance for
- * deviation 1 and no noise; s: deviation, as stated in the plant file or else the most likely value; I: identity matrix. */
+/* Evaluates the likelihood of the readings for the covariance s^2 (K + share^2 I), and keeps the best parameters. K: covariance
+ * for deviation 1 without noise; s: the deviation given in the plant file, or else the most likely one; I: identity matrix. */
 static void try_share(struct gaussian_fit *fit, double range_m, double share, double deviation)
 {
     const size_t n = fit->table->count;
@@ -163,8 +163,8 @@ static void try_share(struct gaussian_fit *fit, double range_m, double share, do
     fit->best = (struct gaussian_params){ range_m, share * sqrt(variance), sqrt(variance) };
 }
 
-/* Finds the best noise share (noise / deviation) for a range. Parameters stated in the plant file stay fixed. With a stated noise, the
- * search varies the deviation, and the share is noise / deviation. */
+/* Finds the best noise share (noise / deviation) for a range. Parameters given in the plant file stay fixed. If the noise is
+ * given, the search varies the deviation instead, and the share is noise / deviation. */
 static void try_range(struct gaussian_fit *fit, double range_m)
 {
     const struct gaussian_params *stated = fit->stated;
@@ -187,12 +187,12 @@ static double logarithm(double x) /* log(), callable where a parameter named `lo
     return log(x);
 }
 
-struct range_trial { /* likelihood that was found for one correlation range */
+struct range_trial { /* likelihood found for one correlation range */
     double log_range, likelihood;
 };
 
-/* Finds the best noise and deviation for one range and keeps them if they are the best so far. Returns false after logging if out of
- * memory. */
+/* Finds the best noise and deviation for a range, and keeps them if they are the best so far. Returns false after logging if
+ * out of memory. */
 static bool try_one(struct gaussian_fit *fit, double log_range, struct range_trial *trial)
 {
     const struct gaussian_params best = fit->best;
@@ -209,7 +209,7 @@ static bool try_one(struct gaussian_fit *fit, double log_range, struct range_tri
     return true;
 }
 
-/* Prepares a fit of the Gaussian process to readings. Returns false after logging if out of memory. Call finish_fit() in both cases. */
+/* Prepares a fit of the Gaussian process to readings. Returns false after logging if out of memory. In either case, call finish_fit(). */
 static bool begin_fit(struct gaussian_fit *fit, const struct gaussian_params *stated, const struct gaussian_data *data)
 {
     const size_t n = data->table->count;
@@ -251,7 +251,7 @@ static void pick_few(const struct influence_mesh *mesh, const struct readings_ta
     }
 }
 
-/* Finds the best range of the grid with a subset of the sensors (pick_few()). */
+/* Finds the best range in the grid with a subset of the sensors (pick_few()). */
 static bool look_around(const struct gaussian_params *stated, const struct gaussian_data *data, double first, double step,
                         double *log_range)
 {
@@ -271,7 +271,7 @@ static bool look_around(const struct gaussian_params *stated, const struct gauss
     return good;
 }
 
-/* Returns the x coordinate of the maximum of the parabola through three points, or NAN if it is not between them. */
+/* Returns the x coordinate of the maximum of the parabola through three points, or NAN if it is outside them. */
 static double summit(const struct range_trial at[3])
 {
     double a = at[1].log_range - at[0].log_range, b = at[1].log_range - at[2].log_range;
@@ -280,8 +280,7 @@ static double summit(const struct range_trial at[3])
     return over != 0 && isfinite(up / over) ? at[1].log_range - up / over / 2 : NAN;
 }
 
-/* Refines the best range: evaluates three ranges one step apart, then three with a smaller step around the maximum of their parabola, and
- * so on. */
+/* Refines the best range: evaluates three ranges one step apart, then three closer ones around the maximum of their parabola, and so on. */
 static bool close_in(struct gaussian_fit *fit, double start, double step, double first, double last)
 {
     struct range_trial at[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves heat conduction between the sensors' discs on a surface: one sparse Cholesky factorisation, and solves for blocks of sensors. */
+/* Solves heat conduction between the sensors' discs on a surface: one sparse Cholesky factorisation, then solves for blocks of sensors. */
 #include "preprocess/influence/influence.h"
 
 #include <math.h>
@@ -11,10 +11,10 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* contact conductance between a disc and the surface, relative to the surface's conductance; at this value, the field deviates from a
- * reading by about 1e-5 of the difference between neighbouring readings */
+/* contact conductance between a disc and the surface, relative to the surface's conductance; with this value, the field
+ * deviates from a reading by about 1e-5 of the difference between neighbouring readings */
 #define CONTACT 1e5
-/* share of a body's area that is added to the diagonal of the matrix, so that rounding does not make the matrix singular */
+/* added to the diagonal, as a share of the body's area, so that rounding does not make the matrix singular */
 #define REGULARISATION 1e-9
 /* minimum number of right-hand sides per solve; with more per solve, the sparse factor is read from memory less often */
 #define MIN_BLOCK 8

@@ -32,40 +32,40 @@ namespace
 {
 
 constexpr size_t MOST_NAMED = 20;
-/* metres; if a model without a stated unit would be larger than this in metres, its unit is assumed to be millimetres */
+/* metres; a model without a unit that would be larger than this in metres is assumed to be in millimetres */
 constexpr double LONGEST_IN_METRES = 300;
 
 struct format {
     const char *ending;
-    const char *unit, *up; /* unit and up axis of the data that Assimp returns for this format; NULL: the file does not state them */
-    /* true: use the normals that the file states; false: they are normals of flat facets, so smooth normals are computed */
+    const char *unit, *up; /* unit and up axis of the data that Assimp returns for this format; NULL: the file does not give them */
+    /* true: use the file's normals; false: they belong to flat facets, so smooth normals are computed */
     bool own_normals;
 };
 
-/* Assimp converts COLLADA and 3DS to Y up and applies the units of COLLADA. For FBX, older versions of Assimp convert neither axes nor
- * units: see fbx_axes(). */
+/* Assimp converts COLLADA and 3DS to Y up and applies COLLADA's units. For FBX, older versions of Assimp convert neither axes
+ * nor units: see fbx_axes(). */
 const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr, nullptr, false }, { ".ply", nullptr, nullptr, true },
                            { ".fbx", "cm", "y", true },        { ".dae", "m", "y", true },          { ".3ds", nullptr, "y", true } };
 
 struct assimp_reader {
     const aiScene *scene;
     struct glb_scene *out;
-    text_encoding encoding;     /* text encoding of the names, which Assimp returns as the file's raw bytes */
+    text_encoding encoding;     /* text encoding of the names; Assimp returns them as the file's raw bytes */
     /* by index of the Assimp material: index of the material in the written GLB file (glb_scene.h); -2: not created yet */
     std::vector<int> materials;
-    /* by the list of Assimp meshes of a node: index of the mesh in the written GLB file; nodes with the same list share a mesh */
+    /* by a node's list of Assimp meshes: index of the mesh in the written GLB file; nodes with the same list share a mesh */
     std::map<std::vector<unsigned>, int> meshes;
-    size_t triangles = 0, lost = 0; /* lost: number of triangles left out because a corner is not finite */
-    std::vector<std::string> lines; /* names of nodes left out because they consist only of lines or points */
-    std::vector<std::string> holed; /* names of nodes of which some triangles were left out */
+    size_t triangles = 0, lost = 0; /* lost: number of triangles omitted because a corner is not finite */
+    std::vector<std::string> lines; /* names of nodes omitted because they consist only of lines or points */
+    std::vector<std::string> holed; /* names of nodes some of whose triangles were omitted */
 };
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
 
-constexpr size_t PLY_HEAD = 100; /* number of bytes at the start of a PLY file within which it states its format */
-constexpr char BLANK = 0x1f; /* character that replaces blanks within names of an OBJ or STL file, because Assimp ends a name at a blank */
+constexpr size_t PLY_HEAD = 100; /* number of bytes at the start of a PLY file that are searched for its format */
+constexpr char BLANK = 0x1f; /* replaces blanks inside names of an OBJ or STL file, because Assimp ends names at a blank */
 
-/* Replaces the blanks inside names by BLANK: in lines `o NAME` and `g NAME` of an OBJ file, `solid NAME` of an STL file. */
+/* Replaces blanks inside names with BLANK: in lines `o NAME` and `g NAME` of an OBJ file, `solid NAME` of an STL file. */
 void keep_blanks(char *bytes, size_t count, bool stl)
 {
     const size_t word = stl ? 5 : 1;
@@ -85,8 +85,8 @@ void keep_blanks(char *bytes, size_t count, bool stl)
     }
 }
 
-/* Returns the text encoding stated in an XML declaration and overwrites the statement with blanks, because the text is converted to UTF-8
- * before parsing. */
+/* Returns the text encoding from an XML declaration, and overwrites the encoding with blanks in the text, because the text is
+ * converted to UTF-8 before it is parsed. */
 std::string take_declared(std::string *text)
 {
     size_t end = text->compare(0, 5, "<?xml") == 0 ? text->find("?>") : std::string::npos, from = text->find("encoding=");
@@ -100,8 +100,8 @@ std::string take_declared(std::string *text)
     return name;
 }
 
-/* Returns whether an STL file is text. Some binary files also begin with "solid" as text files do, but their size is exactly 50 bytes per
- * triangle plus the header. */
+/* Returns whether an STL file is text. Some binary files also begin with "solid", like text files, but their size is exactly
+ * the header plus 50 bytes per triangle. */
 bool is_text_of_stl(const std::string &bytes)
 {
     uint32_t triangles = 0;
@@ -113,7 +113,7 @@ bool is_text_of_stl(const std::string &bytes)
 /* Converts the keywords of an STL text to lower case, the only case Assimp accepts. The names of solids stay unchanged. */
 std::string with_small_words(std::string text)
 {
-    /* blank: the current line has only had blanks so far; named: the position is inside the name of a solid */
+    /* blank: only blanks have been read so far in the current line; named: the position is inside the name of a solid */
     bool blank = true, named = false;
     for (size_t i = 0; i < text.size(); i++) {
         bool space = isspace(static_cast<unsigned char>(text[i])) != 0;
@@ -142,13 +142,13 @@ Assimp::IOStream *of_text(const std::string &text)
     return new Assimp::MemoryIOStream(copy, text.size(), true);
 }
 
-/* Supplies Assimp with the contents of the model and of the files that it names, converted to UTF-8 and with blanks in names replaced
- * (BLANK). The encoding found for the first file (the model) applies to all others, because names in material files must match those in the
+/* Supplies Assimp with the model and the files it refers to, converted to UTF-8 and with BLANK for blanks in names. The
+ * encoding found for the first file (the model) applies to all others, because names in material files must match those in the
  * model. */
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
     const char *asked;
-    /* true: the file was already searched for lost shapes; Assimp opens it several times, but one search is enough */
+    /* true: the file has been searched for lost shapes; Assimp opens it several times, but one search is enough */
     bool searched = false;
 
     files(text_encoding *encoding_of_all, const char *asked_for) : encoding(encoding_of_all), asked(asked_for)
@@ -260,7 +260,7 @@ double fbx_axes(const aiScene *scene, const char **axis)
     return std::isfinite(centimetres) && centimetres > 0 ? centimetres : 1;
 }
 
-/* Computes the transform of the root node from the model's unit and up axis: the user's choice, else what the file states, else a guess. */
+/* Computes the root node's transform from the model's unit and up axis: the user's choice, else the file's, else a guess. */
 void root_matrix(const aiScene *scene, const format &from, const char *units, const char *up, double out[16])
 {
     const char *unit = strcmp(units, "-") != 0 ? units : from.unit;
@@ -348,8 +348,7 @@ void add_primitive(assimp_reader *r, int to, const aiMesh *mesh, const std::vect
     r->triangles += corners.size() / 3;
 }
 
-/* Returns an Assimp name in UTF-8. Names in angle brackets, such as <STL_BINARY>, come from Assimp and not from the file, so they become
- * "". */
+/* Returns an Assimp name in UTF-8. Names in angle brackets, such as <STL_BINARY>, are added by Assimp and become "". */
 std::string name_of(const assimp_reader *r, const aiString &from)
 {
     std::string name = from.C_Str()[0] == '<' ? "" : r->encoding.utf8(from.C_Str());
@@ -372,7 +371,7 @@ void say_empty(assimp_reader *r, const aiNode *node)
                types == 0 ? "the node's mesh has no triangles" : "none of the node's triangles has finite corners");
 }
 
-/* Returns the mesh of a node in the written GLB file, creating it if necessary, or -1 if the node has no triangles. */
+/* Returns the mesh for a node in the written GLB file, creating it if necessary. Returns -1 if the node has no triangles. */
 int mesh_of(assimp_reader *r, const aiNode *node)
 {
     std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
@@ -432,7 +431,7 @@ void matrix_of(const aiNode *node, const transform &place, double matrix[16])
         }
 }
 
-/* Appends to *out the names and text properties of a node and its subtree, one a line, from which the encoding is detected. */
+/* Appends the names and text properties of a node and its subtree to *out, one per line; the encoding is detected from them. */
 void collect(const aiScene *scene, const aiNode *node, std::string *out)
 {
     *out += std::string(node->mName.C_Str()) + "\n";
@@ -448,8 +447,8 @@ void collect(const aiScene *scene, const aiNode *node, std::string *out)
         collect(scene, node->mChildren[i], out);
 }
 
-/* Returns whether the node is one of the chain of nodes into which Assimp splits the transform of one FBX node. This program merges such a
- * chain into one node again. */
+/* Returns whether Assimp made this node by splitting the transform of an FBX node into a chain of nodes. This program merges
+ * such a chain into one node again. */
 bool is_step(const aiNode *node)
 {
     return strstr(node->mName.C_Str(), "_$AssimpFbx$_") != nullptr;
@@ -458,7 +457,7 @@ bool is_step(const aiNode *node)
 void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
-    /* true: this is the root node that Assimp adds to every model; it is left out of the output */
+    /* true: the root node that Assimp adds to every model; it is omitted from the output */
     bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity();
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);
@@ -490,7 +489,7 @@ const format &format_of(const char *path)
     refuse("unknown file ending");
 }
 
-/* Rejects an STL text file that is cut off, because Assimp would accept its beginning without a message. */
+/* Rejects a truncated STL text file, because Assimp would silently read the part that is there. */
 void check_end_of_stl(const char *path)
 {
     char head[512] = "", tail[512] = "";
@@ -514,7 +513,7 @@ std::string listed(const std::vector<std::string> &names)
     return all + (names.size() > MOST_NAMED ? ", ..." : "");
 }
 
-/* Prints that the textures of a model are ignored: this program keeps only the colours of materials. */
+/* Prints that a model's textures are ignored: this program keeps only the colours of materials. */
 void say_textures(const aiScene *scene)
 {
     std::set<std::string> names;
@@ -538,9 +537,9 @@ void convert(const char *input, const char *output, const char *units, const cha
     unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-    /* keep FBX pivots as nodes: without them, children would inherit a node's GeometricTranslation, which applies to its own mesh only */
+    /* keep FBX pivots as nodes: otherwise children would inherit a node's GeometricTranslation, which applies only to its own mesh */
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
-    text_encoding of_file;                             /* encoding of the content of text files, which is decoded before Assimp reads it */
+    text_encoding of_file;                             /* encoding in which text files are decoded before Assimp reads them */
     importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership of the object */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
@@ -548,7 +547,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     Assimp::DefaultLogger::get()->attachStream(new assimp_log(logged), Assimp::Logger::Err | Assimp::Logger::Warn);
     steps |= from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent);
     const aiScene *scene = importer.ReadFile(input, steps);
-    /* Assimp refuses a whole model because of one empty mesh: read the model again without the post-processing steps that check this */
+    /* Assimp refuses a whole model because of one empty mesh: read the model again without the post-processing steps that check for it */
     if (!scene && strstr(importer.GetErrorString(), "contains no "))
         scene = importer.ReadFile(input, steps & ~static_cast<unsigned>(aiProcess_ValidateDataStructure | aiProcess_SortByPType));
     if (!scene || !scene->mRootNode)

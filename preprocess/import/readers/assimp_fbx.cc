@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds models and values of an FBX file that Assimp silently omits, duplicates or misreads. */
+/* Finds models and values in an FBX file that Assimp silently omits, duplicates or misreads. */
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -11,7 +11,7 @@
 #include "preprocess/import/readers/assimp_losses.hh"
 #include "preprocess/import/readers/reader.hh"
 
-/* Returns the name that ends at `end` in a binary FBX file. "S" and a length of four bytes precede the name. */
+/* Returns the name that ends at `end` in a binary FBX file. In the file, "S" and a four-byte length precede the name. */
 static std::string name_before(const std::string &bytes, size_t end)
 {
     constexpr size_t MAX_NAME = 512, HEAD = 5;
@@ -19,7 +19,7 @@ static std::string name_before(const std::string &bytes, size_t end)
         const char *head = bytes.data() + end - length - HEAD;
         uint32_t said;
         memcpy(&said, head + 1, sizeof(said));
-        /* the stated length includes two control characters and the class name "Model", which follow the name */
+        /* the length includes two control characters and the class name "Model", which follow the name */
         if (*head == 'S' && said == length + strlen("??Model"))
             return bytes.substr(end - length, length);
     }
@@ -51,17 +51,17 @@ void assimp_losses_of_fbx(const std::string &bytes)
 namespace
 {
 
-constexpr const char *SCENE = "0"; /* id of the scene's root node in the connections of an FBX file */
+constexpr const char *SCENE = "0"; /* id of the scene's root node in an FBX file's connections */
 
 /* The models of an FBX file in text form, and the connections between them. Keys are FBX ids. */
 struct fbx_graph {
     std::map<std::string, std::string> models; /* names of the FBX models, by id */
-    std::set<std::string> geometries, shown;   /* ids of geometries, and of models that have a geometry (shown) */
+    std::set<std::string> geometries, shown;   /* ids of geometries; ids of models that have a geometry and are therefore visible */
     std::multimap<std::string, std::string> children;
     std::map<std::string, size_t> parents; /* number of parents of each FBX model, by id */
 };
 
-/* Returns the part of a line between two marks, the second of which may be missing; "" if the line lacks the first. */
+/* Returns the part of a line between two marks; if the second is missing, up to the end. Returns "" if the first is missing. */
 std::string between(std::string_view line, const char *first, char second)
 {
     const size_t at = line.find(first), from = at + strlen(first);
@@ -81,8 +81,8 @@ void add_link(fbx_graph *graph, std::string_view line)
     graph->parents[child]++;
 }
 
-/* Overwrites a line that states a property a second time with blanks: of several statements of a property the last one counts, but Assimp
- * takes the first one. known: positions of the properties of one list, by name. */
+/* Overwrites a line with blanks if it states a property again: the last statement of a property counts, but Assimp takes the
+ * first. known: positions of a list's properties, by name. */
 void keep_last(std::string *text, size_t at, std::string_view line, std::map<std::string, size_t> *known, const std::string &owner,
                bool say)
 {

@@ -45,9 +45,9 @@ void assimp_log::write(const char *message)
         return;
     const size_t place = text.find(" (TOK_"), end = place == text.npos ? place : text.find(')', place);
     if (end != text.npos)
-        /* remove the position in the file from the error text, so that equal errors are counted together */
+        /* remove the file position from the error text, so that equal errors are counted together */
         text.erase(place, end + 1 - place);
-    const size_t source = text.find(": "); /* skip the start of Assimp's log line, such as "Error, T0" */
+    const size_t source = text.find(": "); /* skip the beginning of Assimp's log line, such as "Error, T0" */
     counts[source == std::string::npos ? text : text.substr(source + 2)]++;
 }
 

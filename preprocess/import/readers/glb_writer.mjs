@@ -12,7 +12,7 @@ export function multiplied(a, b) {
     return out;
 }
 
-function inverted(m) { // returns the inverse of an affine matrix; null: not invertible
+function inverted(m) { // Returns the inverse of an affine matrix, or null if it is not invertible.
     const [a, b, c, , d, e, f, , g, h, i] = m;
     const determinant = a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
     if (!(Math.abs(determinant) > 1e-300))
@@ -25,8 +25,7 @@ function inverted(m) { // returns the inverse of an affine matrix; null: not inv
     return out;
 }
 
-// Returns inverse(frame) * place, which is the placement `place` relative to the placement `frame`. If `frame` is not invertible, returns
-// `place`.
+// Returns inverse(frame) * place: the placement `place` relative to `frame`. If `frame` is not invertible, returns `place`.
 export function relativeTo(frame, place) {
     const inverse = inverted(frame);
     return inverse ? multiplied(inverse, place) : place;
@@ -63,8 +62,8 @@ export class GlbWriter {
         return this.materials.get(key);
     }
 
-    // Adds triangles, transformed by the matrix `place`, to the file as a glTF primitive. vertices: six numbers per vertex, position and
-    // normal. corners: vertex indices. Returns null if no triangle remains.
+    // Transforms triangles by the matrix `place` and adds them to the file as a glTF primitive. vertices: six numbers per
+    // vertex, position and normal. corners: vertex indices. Returns null if no triangle remains.
     addPrimitive({ vertices, corners }, place, color) {
         const count = Math.floor(vertices.length / 6), positions = new Float32Array(count * 3), normals = new Float32Array(count * 3);
         const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], good = new Uint8Array(count);

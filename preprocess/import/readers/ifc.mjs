@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads IFC in its own process, with web-ifc, which is installed in the same
-// folder. The spatial tree becomes nodes with GUID, class, storey and property sets; equal geometry of several elements is stored once. On
-// failure the last line on stderr is the reason.
+// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads IFC with web-ifc, in its own process; web-ifc is installed
+// in the same folder. The spatial tree becomes nodes with GUID, class, storey and property sets; geometry that several elements
+// share is stored once. On failure the last line on stderr is the reason.
 import { createRequire } from 'node:module';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
@@ -11,9 +11,9 @@ import { collectErrors, findDamaged, findLosses, misplacedLines } from './ifc_lo
 import { openingLines, uncutOpenings } from './ifc_openings.mjs';
 import { readSolids, takeSolids, withPlacements } from './ifc_solids.mjs';
 
-const CORNERS = 24; // number of corners by which a full circle is approximated
+const CORNERS = 24; // number of segments that approximate a full circle
 const MAX_NAMED = 20;
-const MAX_DEPTH = 400; // maximum levels of the tree of nodes; plantcast-prep reads at most 512
+const MAX_DEPTH = 400; // maximum depth of the tree of nodes; plantcast-prep reads at most 512 levels
 const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
 
 const webIfc = createRequire(import.meta.url)('./web-ifc-api-node.js');
@@ -38,7 +38,7 @@ class Model {
             try {
                 line = this.api.GetLine(this.id, id);
             } catch {
-                line = null; // null, because the file refers to this id but has no statement with it
+                line = null; // null: the file refers to this id but has no statement with it
             }
             this.lines.set(id, line);
         }
@@ -51,7 +51,8 @@ class Model {
             yield ids.get(i);
     }
 
-    // Calls f(relating, related) for each pair that an IFC relationship of this type states, with the ids of both objects.
+    // Calls f(relating, related) with the ids of both objects, for each pair of objects related by an IFC relationship of this
+    // type.
     relate(type, one, many, f) {
         for (const id of this.ofType(type)) {
             const line = this.line(id), relating = line?.[one]?.value, related = [line?.[many] ?? []].flat();
@@ -127,7 +128,8 @@ function meshOf(glb, geometries, parts, name) {
     return { mesh: geometries.made.get(key), matrix: frame };
 }
 
-// Reads the triangles of all IFC elements from web-ifc. Copies each mesh while web-ifc streams it, because web-ifc does not keep it.
+// Reads the triangles of all IFC elements from web-ifc. Copies each mesh while web-ifc streams it, because web-ifc frees it
+// afterwards.
 function readGeometry(api, id, model) {
     const shown = new Map(), known = new Map(), cutters = new Map();
     const copy = (geometryId) => {
@@ -188,7 +190,7 @@ function addTree(glb, model, { shown, geometries }, root) {
     for (const id of model.ofType(webIfc.IFCPROJECT))
         add(id, root, '', 0);
     for (const id of shown.keys())
-        add(id, root, '', 0); // add the elements that are outside the spatial tree below the root
+        add(id, root, '', 0); // add the elements outside the spatial tree below the root
     return { drawn, storeys };
 }
 
@@ -205,8 +207,8 @@ function inUtf8(bytes, encoding) {
     return Buffer.from(decoder.decode(bytes));
 }
 
-// Writes the list of elements that Open CASCADE should build in place of web-ifc; plantcast-import then runs this program a second time. If
-// the list exists already, this is the second run.
+// Writes the list of elements that Open CASCADE should build instead of web-ifc; plantcast-import then runs this program again.
+// If the list already exists, this is the second run.
 function askForSolids(list, elements) {
     if (elements.length > 0 && !existsSync(list))
         writeFileSync(list, `${[...new Set(elements)].join('\n')}\n`);
@@ -221,7 +223,7 @@ async function main([input, output, , , , encoding]) {
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
         throw new Error('it is cut off: it does not end with END-ISO-10303-21');
-    // must run before web-ifc is initialised, because web-ifc keeps references to the console functions that it finds at that time
+    // must precede the initialisation of web-ifc, which keeps references to the console functions it finds at that time
     const errors = collectErrors();
     const api = new webIfc.IfcAPI();
     api.SetWasmPath(`${folder}/`, true);
@@ -264,7 +266,7 @@ async function main([input, output, , , , encoding]) {
 }
 
 main(process.argv.slice(2)).catch((error) => {
-    // only exceptions that this program throws are Error objects with a message for users; others come from web-ifc, so their text is only
+    // exceptions of this program are Error objects with a message for users; others come from web-ifc, so their text is only
     // quoted
     const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error;
     process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);

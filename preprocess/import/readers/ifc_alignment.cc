@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds alignments of IFC 4.3: plan curves made of curve segments, and gradient curves, which add heights to a plan curve. */
+/* Builds IFC 4.3 alignments: plan curves made of curve segments, and gradient curves, which add heights to a plan curve. */
 #include <GeomAPI_Interpolate.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_Circle.hxx>
@@ -18,13 +18,13 @@ namespace ifc
 namespace
 {
 
-constexpr double STEP_RAD = 0.05;    /* largest turn of a curve, in radians, between two interpolated points */
-constexpr double MOST_TURN_RAD = 50; /* maximum turn of one alignment segment, in radians */
+constexpr double STEP_RAD = 0.05;    /* largest change of a curve's direction between two interpolated points, in radians */
+constexpr double MOST_TURN_RAD = 50; /* maximum change of direction along one alignment segment, in radians */
 constexpr double LEAST_MM = 1e-3;    /* millimetres; a segment shorter than this only marks the end of its curve */
 constexpr double JOINT_MM = 1;       /* millimetres; the grades of an alignment must begin this close to the start of its plan curve */
 
-/* A segment of the plan curve of an alignment. turn(d): direction at d millimetres from its start minus the direction at the start, in
- * radians. */
+/* A segment of an alignment's plan curve. turn(d): direction at d millimetres from its start minus the direction at the start,
+ * in radians. */
 struct plan_segment {
     gp_XY start;
     double heading_rad, length_mm;
@@ -32,8 +32,8 @@ struct plan_segment {
     bool straight;
 };
 
-/* One grade of an alignment. It ends where the next grade begins. height(d): height in millimetres, and slope, d millimetres after at_mm,
- * which is a length along the plan curve. */
+/* One grade of an alignment; it ends where the next grade begins. height(d): height in millimetres, and slope, at d millimetres
+ * after at_mm. at_mm: length along the plan curve at which the grade begins. */
 struct grade {
     double at_mm;
     std::function<gp_XY(double)> height;
@@ -44,12 +44,12 @@ struct grade {
 struct segment_values {
     entity parent;
     gp_XY start;
-    /* from_mm: length along the segment's parent curve at which the segment starts; length_mm: negative if the segment runs against the
-     * parent curve's direction */
+    /* from_mm: where the segment starts, as a length along its parent curve; length_mm: negative if the segment runs against
+     * the parent curve's direction */
     double heading_rad, from_mm, length_mm;
 };
 
-/* Converts an IFC measure, which is a length or a parameter of the parent curve, to a length along the parent curve in millimetres. */
+/* Converts an IFC measure (a length or a parameter of the parent curve) to a length along the parent curve in millimetres. */
 double measure_of(const ifc_model &in, const entity &parent, const value &measure)
 {
     double number = file::number(measure);
@@ -81,12 +81,12 @@ segment_values segment_of(const ifc_model &in, const value &reference)
 
 /* --- the plan */
 
-/* Returns a function: the direction in radians of a segment's parent curve at a length from the parent curve's origin. */
+/* Returns a function that maps a length from the parent curve's origin to the curve's direction there, in radians. */
 std::function<double(double)> heading_of(const ifc_model &in, const entity &parent)
 {
     if (parent.is("IFCLINE"))
         return [](double) { return 0; };
-    double size = in.length * file::number(parent[1]); /* radius of a circle, or constant of a clothoid, in millimetres */
+    double size = in.length * file::number(parent[1]); /* radius of a circle, or clothoid constant, in millimetres */
     if (!(std::fabs(size) > LEAST_MM))
         throw unsupported("unsupported: a curve without a radius");
     if (parent.is("IFCCIRCLE"))
@@ -145,8 +145,8 @@ std::function<gp_XY(double)> arc_of(double height, double heading, double radius
     };
 }
 
-/* Returns a function for the heights along an IfcPolynomialCurve, such as a parabola. Throws `unsupported` unless the curve's x coordinate
- * is its parameter. */
+/* Returns a function for the heights along an IfcPolynomialCurve, such as a parabola. Throws `unsupported` unless the curve's
+ * parameter is its x coordinate. */
 std::function<gp_XY(double)> polynomial_of(const ifc_model &in, const segment_values &segment)
 {
     const std::vector<value> &x = segment.parent[1].list, &y = segment.parent[2].list;
@@ -183,7 +183,7 @@ grade grade_of(const ifc_model &in, const segment_values &segment)
     return { at, arc_of(height, heading, std::copysign(radius, segment.length_mm)), false };
 }
 
-/* Returns the grades of an IfcGradientCurve. *end_mm receives the distance at which they end, if a segment without length states it. */
+/* Returns the grades of an IfcGradientCurve. *end_mm receives the distance at which they end, if a segment without length gives it. */
 std::vector<grade> grades_of(const ifc_model &in, const entity &curve, double *end_mm)
 {
     std::vector<grade> out;
@@ -203,8 +203,8 @@ std::vector<grade> grades_of(const ifc_model &in, const entity &curve, double *e
 
 /* --- curves in space */
 
-/* Returns the point `to` millimetres after the start of a plan segment, given the point `at`, which is `from` millimetres after it.
- * Integrates the direction by Simpson's rule. */
+/* Given the point `at`, `from` millimetres after the start of a plan segment, returns the point `to` millimetres after the
+ * start. Integrates the direction by Simpson's rule. */
 gp_XY advanced(const plan_segment &along, const gp_XY &at, double from, double to)
 {
     gp_XY sum(0, 0);
@@ -216,8 +216,8 @@ gp_XY advanced(const plan_segment &along, const gp_XY &at, double from, double t
     return at + sum * ((to - from) / 6);
 }
 
-/* Builds the part of a plan segment between two distances from its start, with the heights of one grade. before_mm: distance of the
- * segment's start from the start of the plan curve. *at: the plan curve's point at `from`; receives the point at `to`. */
+/* Builds the part of a plan segment between two distances from its start, with the heights of one grade. before_mm: length of
+ * the plan curve before the segment. *at: the plan curve's point at `from`; receives the point at `to`. */
 curve_piece piece_of(const ifc_model &in, const plan_segment &along, const grade &heights, double before_mm, double from, double to,
                      gp_XY *at)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds an IfcAdvancedBrep. IFC has the entities of STEP (ISO 10303-42) under other names, so this code writes them as a STEP file, which
- * Open CASCADE reads and repairs. */
+/* Builds an IfcAdvancedBrep. IFC has the entities of STEP (ISO 10303-42) under other names, so this code writes them to a STEP
+ * file, which Open CASCADE reads and repairs. */
 #include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
 #include <Interface_InterfaceModel.hxx>
@@ -48,7 +48,7 @@ const char *const names[][2] = { { "IFCADVANCEDBREP", "MANIFOLD_SOLID_BREP" },
                                  { "IFCVECTOR", "VECTOR" },
                                  { "IFCVERTEXPOINT", "VERTEX_POINT" } };
 
-/* Number of statements (#1 to #9) in the fixed head of the STEP file: units, set to those of the IFC file, and schema. IFC statement #ID
+/* Number of statements (#1 to #9) in the fixed head of the STEP file: the IFC file's units, and the schema. IFC statement #ID
  * becomes #(ID+9). */
 constexpr int SHIFT = 9;
 
@@ -63,7 +63,7 @@ class step_writer
     {
         add(root);
         std::ostringstream head;
-        /* showpoint: a STEP file requires a decimal point in real numbers, also in whole ones */
+        /* STEP requires a decimal point in real numbers, even in whole ones */
         head << std::showpoint << std::setprecision(17);
         head << "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
              << "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n"
@@ -85,7 +85,7 @@ class step_writer
     const ifc_model &in;
     std::ostringstream out;
     std::set<int> done;
-    int made = 0; /* number of STEP statements without a counterpart in the IFC file; their ids are 2000000000, 1999999999, ... */
+    int made = 0; /* number of STEP statements without a counterpart in the IFC file; they get the ids 2000000000, 1999999999, ... */
 
     void write(std::ostream &to, const value &from)
     {
@@ -111,7 +111,7 @@ class step_writer
         }
     }
 
-    /* Writes a number to the STEP file. STEP wants whole numbers without a decimal point (`whole_numbers`) and real numbers with one. */
+    /* Writes a number to the STEP file: without a decimal point if integers are expected (`whole_numbers`), else with one. */
     void write_number(std::ostream &to, double number)
     {
         char text[40];
@@ -176,7 +176,7 @@ class step_writer
             write_values(to, from, knots, weights, whole);
             to << ')' << (curve ? "CURVE()" : "") << "GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_" << kind << '(';
             write_values(to, from, weights, weights + 1, whole);
-            /* STEP requires the parts of a complex entity in alphabetical order */
+            /* STEP requires the parts of a complex entity to be in alphabetical order */
             to << ")REPRESENTATION_ITEM('')" << (curve ? ")" : "SURFACE())");
             return to.str();
         }
@@ -189,7 +189,7 @@ class step_writer
             std::string swept = swept_curve(from);
             return "SURFACE_OF_REVOLUTION(''," + swept + ',' + text_of(from[2]) + ')';
         }
-        /* always write three coordinates to the STEP file, because IFC may omit the third */
+        /* always write three coordinates to the STEP file: IFC may omit the third */
         if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") {
             for (size_t i = 0; i < 3; i++) {
                 to << (i > 0 ? "," : "");
@@ -210,8 +210,8 @@ class step_writer
                 to << ')';
                 return to.str();
             }
-        /* 3D curves with additional curves in the parameter space of surfaces (IFCSURFACECURVE, IFCSEAMCURVE) are not converted: web-ifc
-           builds the item instead */
+        /* 3D curves that also have curves in the parameter space of surfaces (IFCSURFACECURVE, IFCSEAMCURVE) are not converted:
+           web-ifc builds the item instead */
         throw unsupported(type);
     }
 

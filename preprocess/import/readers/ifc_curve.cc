@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads points, placements and curves from an IFC file. A curve becomes a list of consecutive pieces, each an Open CASCADE curve. */
+/* Reads points, placements and curves from an IFC file. A curve becomes a list of consecutive Open CASCADE curves (pieces). */
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <GCPnts_AbscissaPoint.hxx>
@@ -31,8 +31,8 @@ namespace ifc
 namespace
 {
 
-constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, because sweeping a profile along them fails */
-/* millimetres; the ends of two consecutive pieces of a curve are joined if they are nearer to each other than this */
+constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, because a profile cannot be swept along them */
+/* millimetres; the ends of consecutive pieces of a curve are joined if the gap between them is smaller */
 constexpr double JOINT_MM = 1;
 
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth);
@@ -57,7 +57,7 @@ bool straight(const gp_Pnt &from, const gp_Pnt &to, double span, std::vector<cur
 void add_arc(const gp_Pnt &from, const gp_Pnt &through, const gp_Pnt &to, std::vector<curve_piece> *out)
 {
     GC_MakeArcOfCircle arc(from, through, to);
-    if (!arc.IsDone()) { /* the three points are collinear, so no arc passes through them: use a straight line */
+    if (!arc.IsDone()) { /* the three points are collinear, so there is no arc through them: use a straight line */
         straight(from, to, 1, out);
         return;
     }
@@ -96,8 +96,8 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
     return out;
 }
 
-/* Returns the parameter, in units of the curve, that an IfcTrimmingSelect states. The select holds a parameter, a point or both. by_point:
- * the file prefers the point. */
+/* Returns the parameter, in the curve's units, given by an IfcTrimmingSelect, which holds a parameter, a point or both.
+ * by_point: the file prefers the point. */
 double trim_at(const ifc_model &in, const curve_piece &basis, const value &select, bool by_point, double per_unit)
 {
     const value *parameter = nullptr, *point = nullptr;
@@ -114,7 +114,7 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
     return file::number(*parameter) * per_unit;
 }
 
-/* Returns the whole basis curve of a trimmed curve as one piece. Throws `unsupported` if it consists of several pieces. */
+/* Returns the whole basis curve of a trimmed curve as one piece. Throws `unsupported` if it has several pieces. */
 curve_piece basis_of(const ifc_model &in, const entity &curve);
 
 std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve, int depth)
@@ -378,7 +378,7 @@ std::vector<curve_piece> rounded(const std::vector<gp_Pnt> &points, const std::v
 {
     std::vector<curve_piece> out;
     size_t count = points.size();
-    /* by corner: the points on its two lines at which the arc that rounds the corner begins and ends */
+    /* by corner: where the arc that rounds the corner begins and ends on the corner's two lines */
     std::vector<gp_Pnt> before = points, after = points;
     for (size_t i = closed ? 0 : 1; i + (closed ? 0 : 1) < count; i++) {
         gp_Vec in(points[i], points[(i + count - 1) % count]), on(points[i], points[(i + 1) % count]);

@@ -18,7 +18,7 @@ namespace ifc
 namespace
 {
 
-constexpr size_t MAX_SEWN_FACES = 20000; /* number of faces above which they are not sewn to a solid, because sewing would take minutes */
+constexpr size_t MAX_SEWN_FACES = 20000; /* maximum number of faces that are sewn to a solid; sewing more would take minutes */
 constexpr double SEWN_MM = 1e-3;
 
 using polygon = std::vector<gp_Pnt>;
@@ -45,8 +45,8 @@ TopoDS_Wire wire_through(const polygon &points)
     return wire.IsDone() ? wire.Wire() : TopoDS_Wire();
 }
 
-/* Adds a flat face to the compound `to`. A face whose corners are not in a plane becomes a fan of triangles. Returns false, and adds
- * nothing, if the face has no area. */
+/* Adds a flat face to the compound `to`. A face whose corners do not lie in a plane becomes a fan of triangles. Returns false,
+ * and adds nothing, if the face has no area. */
 bool add_face(const flat_face &from, TopoDS_Compound *to)
 {
     BRep_Builder builder;
@@ -110,8 +110,8 @@ polygon loop_of(const ifc_model &in, const entity &bound)
     return out;
 }
 
-/* Reads an IFC face and appends it to `out`. A face with several outer bounds becomes several faces. If no bound is marked as outer, the
- * largest bound is taken as the outer one. */
+/* Reads an IFC face and appends it to `out`. A face with several outer bounds becomes several faces. If no bound is marked as
+ * outer, the largest one counts as the outer bound. */
 void take_face(const ifc_model &in, const entity &face, std::vector<flat_face> *out)
 {
     std::vector<polygon> inner;

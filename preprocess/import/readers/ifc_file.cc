@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the position of every statement of an IFC file in one pass; parses the values of a statement on demand. */
+/* Finds all statements of an IFC file in one pass; parses the values of a statement on demand. */
 #include "preprocess/import/readers/ifc_file.hh"
 
 #include <cctype>
@@ -13,9 +13,9 @@ namespace ifc
 namespace
 {
 
-constexpr int MAX_NESTING = 64; /* largest nesting depth of lists in an IFC file */
+constexpr int MAX_NESTING = 64; /* maximum nesting depth of lists in an IFC file */
 
-/* Returns the offset after the string, the comment or the single character of an IFC file that begins at `at`. */
+/* Returns the offset behind the string, comment or single character of an IFC file that begins at `at`. */
 size_t skip_one(const std::string &bytes, size_t at)
 {
     size_t end = at + 1;

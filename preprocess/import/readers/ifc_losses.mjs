@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc prints.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
-const REFERENCE = 5; // web-ifc's type code of values that refer to a statement
-// Formats values as a line of the readers' output, with tabs between them (format: findings.h).
+const REFERENCE = 5; // web-ifc's type code for a value that refers to a statement
+// Formats values as a tab-separated line of the reader's output (format: findings.h).
 export const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const GRID = 'IfcGridPlacement';
-const MAX_IDS = 20; // maximum number of IFC statement ids that are listed per kind of error
+const MAX_IDS = 20; // maximum number of IFC statement ids listed per kind of error
 
 // Returns the ids of the given IFC statements and of all statements that they refer to, directly or indirectly.
 function reached(model, ids) {
@@ -22,9 +22,9 @@ function reached(model, ids) {
     return found;
 }
 
-// Captures the console output of web-ifc, its only way to report omissions. Returns { stop, at, lines }: stop() ends the capture; at()
-// returns the ids of statements with errors; lines() returns the lines to print, without the errors in items that Open CASCADE built
-// instead.
+// Captures web-ifc's console output, the only place where web-ifc reports omissions. Returns { stop, at, lines }: stop() ends
+// the capture; at() returns the ids of statements with errors; lines() returns the lines to print, without errors in items that
+// Open CASCADE built instead.
 export function collectErrors() {
     const { log, error } = console, found = new Map();
     console.log = console.error = (...words) => {
@@ -45,8 +45,8 @@ export function collectErrors() {
     return { stop: () => Object.assign(console, { log, error }), at: () => new Set([...found.values()].flat()), lines };
 }
 
-// Returns the geometry items of an IFC shape, including those of mapped representations. Visits each representation once, because a damaged
-// file may map one into itself.
+// Returns the geometry items of an IFC shape, including those of mapped representations. Visits each representation only once,
+// because in a damaged file one may map itself.
 function itemsOf(model, shape) {
     const items = new Set(), seen = new Set(), open = [model.line(shape)?.Representations ?? []].flat().map((one) => one?.value);
     while (open.length > 0) {
@@ -78,9 +78,9 @@ export function findDamaged(model, product, errors) {
     });
 }
 
-// Returns { lost, lines, ids, drawn }, of which `lost` and `drawn` are report lines (format: findings.h). lost: elements that have a shape
-// but no triangles. lines: names of elements that consist only of lines and points. ids: statement ids of the lost elements. drawn: items
-// that Open CASCADE cannot build and web-ifc draws.
+// Returns { lost, lines, ids, drawn }; `lost` and `drawn` are report lines (format: findings.h). lost: elements that have a
+// shape but no triangles. lines: names of elements that consist only of lines and points. ids: statement ids of the lost
+// elements. drawn: items that Open CASCADE cannot build and web-ifc draws instead.
 export function findLosses(model, product, isShown, failed) {
     const lost = [], lines = [], ids = [], named = new Set();
     for (const id of model.ofType(product)) {
@@ -104,7 +104,8 @@ export function findLosses(model, product, isShown, failed) {
     return { lost, lines, ids, drawn };
 }
 
-// Returns findings.h lines that name the elements whose place is wrong, because it depends on a grid placement that was not computed.
+// Returns findings.h lines that name the misplaced elements: their position depends on a grid placement that could not be
+// computed.
 export function misplacedLines(model, { product, grid }, isShown, failed) {
     const found = new Map(); // names of the misplaced elements, by reason
     for (const id of model.ofType(grid).next().done ? [] : model.ofType(product)) {

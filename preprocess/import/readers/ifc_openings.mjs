@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks that each opening is cut from its element: no point inside the opening may lie inside the element.
+// Checks that each opening is cut out of its element: no point inside the opening may lie inside the element.
 import { fields } from './ifc_losses.mjs';
 
-const SAMPLES = 24; // points tested within each opening
-// directions of the rays that test whether a point is inside an element; parallel to no usual face
+const SAMPLES = 24; // number of points tested within each opening
+// directions of the rays that test whether a point is inside an element; chosen so that faces are rarely parallel to them
 const RAYS = [[0.2672612, 0.5345225, 0.8017837], [-0.6337502, 0.4436252, -0.6337502]];
-const SHARE = 0.1; // an opening is not cut if more than this share of its points is inside the element
+const SHARE = 0.1; // an opening counts as not cut if more than this share of its points is inside the element
 
 const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -39,7 +39,7 @@ const isInside = (point, triangles) => RAYS.every((ray) => {
     return crossings % 2 === 1;
 });
 
-// Returns points well inside closed triangles: middles between the centres of two triangles.
+// Returns points well inside closed triangles: midpoints between the centres of two triangles.
 function innerPoints(triangles) {
     const points = [], count = triangles.length;
     const centre = (i) => [0, 1, 2].map((axis) => (triangles[i][0][axis] + triangles[i][1][axis] + triangles[i][2][axis]) / 3);
@@ -52,12 +52,12 @@ function innerPoints(triangles) {
     return points;
 }
 
-// Returns the elements from which an opening of `host` is cut: the host, or, if it has no shape, the elements that it consists of.
+// Returns the elements that an opening of `host` is cut out of: the host, or, if it has no shape, the elements it consists of.
 export const voidedElements = (model, host) => (model.line(host)?.Representation?.value ? [host] : model.children.get(host) ?? []);
 
-// Returns the openings of an IFC file that are not cut from their element: [{ opening, host, elements, why }]. elements: see
-// voidedElements(). why: the reason, or ''. geometry: what readGeometry() of ifc.mjs returns; `cutters` are the openings that web-ifc
-// built, by id.
+// Returns the openings of an IFC file that are not cut out of their element: [{ opening, host, elements, why }]. elements: see
+// voidedElements(). why: the reason, or ''. geometry: the result of ifc.mjs's readGeometry(); its `cutters` are the openings
+// that web-ifc built, by id.
 export function uncutOpenings(model, voids, geometry, solids) {
     const { shown, known, cutters } = geometry;
     const out = [], triangles = new Map(), geometryOf = (id) => known.get(id);
@@ -69,7 +69,7 @@ export function uncutOpenings(model, voids, geometry, solids) {
             return { geometryExpressID: `solid ${item}`, flatTransformation: place };
         });
         if (!model.line(opening)?.Representation?.value || elements.every((element) => !shown.has(element)))
-            return; // nothing to check: the opening has no shape, or none of the elements from which it is cut has one
+            return; // nothing to check: the opening has no shape, or none of the elements it is cut out of has one
         const points = cutter ? innerPoints(of(opening, cutter)) : [];
         const hosts = elements.filter((element) => shown.has(element)).map((element) => of(element, shown.get(element)));
         const filled = points.filter((point) => hosts.some((host) => isInside(point, host))).length;

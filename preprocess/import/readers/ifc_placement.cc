@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the placements of IFC objects, and restates placements in a grid, which web-ifc does not compute, as local placements. */
+/* Computes the placements of IFC objects, and rewrites placements in a grid, which web-ifc does not compute, as local placements. */
 #include <GeomAPI.hxx>
 #include <Geom2dAPI_InterCurveCurve.hxx>
 #include <Geom2d_TrimmedCurve.hxx>
@@ -19,9 +19,9 @@ namespace
 {
 
 constexpr double NEAR_MM = 1e-6; /* tolerance of intersections, millimetres */
-constexpr size_t AXES = 7, AXES_END = 10; /* indices of the lists of axes in an IFCGRID statement; the index of its placement is 5 */
+constexpr size_t AXES = 7, AXES_END = 10; /* indices of the axis lists in an IFCGRID statement; the index of its placement is 5 */
 
-/* A point where two axes of a grid meet, and the direction of the first axis there. */
+/* An intersection of two grid axes, and the direction of the first axis there. */
 struct crossing {
     gp_Pnt at;
     gp_Vec along;
@@ -56,7 +56,7 @@ Handle(Geom2d_Curve) in_plane(const curve_piece &piece, bool whole)
     return new Geom2d_TrimmedCurve(curve, std::fmin(piece.first, piece.last), std::fmax(piece.first, piece.last));
 }
 
-/* Finds the first point where two grid axes meet. whole: also beyond the ends of the axes. */
+/* Finds the first intersection of two grid axes. whole: also beyond the ends of the axes. */
 bool find_crossing(const std::vector<curve_piece> &first, const std::vector<curve_piece> &second, bool whole, crossing *out)
 {
     for (const curve_piece &one : first)
@@ -92,7 +92,7 @@ crossing crossing_of(const ifc_model &in, const value &reference)
     return out;
 }
 
-/* Returns the id of the placement of the grid that has an axis, or 0. */
+/* Returns the id of the placement of the grid that contains an axis, or 0. */
 int grid_placement(const ifc_model &in, int axis)
 {
     auto found = in.grids.find(axis);
@@ -109,7 +109,7 @@ struct relative_placement {
 
 relative_placement in_grid(const ifc_model &in, const entity &from)
 {
-    /* IFC 4.3 adds a first value to the statement: the placement to which this one is relative */
+    /* IFC 4.3 inserts a first value into the statement: the placement that this one is relative to */
     size_t at = from.values.size() > 2 ? 1 : 0;
     crossing origin = crossing_of(in, from[at]);
     relative_placement out;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds profiles (cross-sections that are swept to solids): outlines of lines and arcs, or outlines that are curves of the file. Ignores
- * the slopes of flanges. */
+/* Builds profiles (cross-sections that are swept to solids), whose outlines consist of lines and arcs, or of curves in the
+ * file. Ignores the slopes of flanges. */
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
@@ -69,10 +69,10 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
     return { fix.Face() };
 }
 
-/* dimensions of a parametrised profile in millimetres: the values of its statement from the third on; 0: absent */
+/* dimensions of a parametrised profile in millimetres: its statement's values from the third on; 0: absent */
 using lengths = std::vector<double>;
 
-/* Dimensions of an I profile, whose flanges may differ in width. The fillet radii are those between the web and each flange. */
+/* Dimensions of an I profile, whose flanges may differ in width. Each fillet radius is that between the web and one flange. */
 struct i_profile {
     double depth, web, bottom, bottom_thick, bottom_fillet, top, top_thick, top_fillet;
 };
@@ -155,7 +155,7 @@ std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
     throw unsupported(type);
 }
 
-/* Returns points along the pieces of a curve. The chords between the points deviate from the curve by at most chord_mm. */
+/* Returns points along the pieces of a curve. The chords between them deviate from the curve by at most chord_mm. */
 std::vector<gp_Pnt> points_along(const std::vector<curve_piece> &pieces, double chord_mm)
 {
     std::vector<gp_Pnt> out = { pieces.front().start() };
@@ -168,8 +168,8 @@ std::vector<gp_Pnt> points_along(const std::vector<curve_piece> &pieces, double 
     return out;
 }
 
-/* Returns the outline of a strip of constant thickness along a centre line in the XY plane. Corners are mitred, ends are perpendicular to
- * the line. */
+/* Returns the outline of a strip of constant thickness along a centre line in the XY plane. Corners are mitred; the ends are
+ * perpendicular to the line. */
 TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, double chord_mm)
 {
     std::vector<gp_Pnt> line = points_along(pieces, chord_mm), right;
@@ -191,7 +191,7 @@ TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, 
 
 std::vector<TopoDS_Face> profile_within(const ifc_model &in, const entity &profile, int depth);
 
-/* Returns the faces of an IFC derived or composite profile: a profile that is moved, or several profiles together. */
+/* Returns the faces of a derived or composite IFC profile: a transformed profile, or several profiles together. */
 std::vector<TopoDS_Face> assembled(const ifc_model &in, const entity &profile, int depth)
 {
     std::vector<TopoDS_Face> out;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds solids that are swept along a curve through several cross-sections. */
+/* Builds solids swept along a curve through several cross-sections. */
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_GTransform.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
@@ -45,7 +45,7 @@ std::vector<TopoDS_Wire> wires_of(const TopoDS_Face &face)
     return out;
 }
 
-/* --- IfcSectionedSpine: each section has a placement of its own */
+/* --- IfcSectionedSpine: each section has its own placement */
 
 TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
 {
@@ -61,8 +61,8 @@ TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
 /* --- IfcSectionedSolidHorizontal: sections stand upright at distances along a curve */
 
 struct station {
-    double along_mm; /* position of the section along the curve from its start, millimetres */
-    gp_Vec offset;   /* offset of the section from the curve to the left, up and ahead, millimetres */
+    double along_mm; /* distance of the section from the curve's start, along the curve, millimetres */
+    gp_Vec offset;   /* offset of the section from the curve, as components to the left, up and ahead, millimetres */
     int profile;
 };
 
@@ -77,7 +77,7 @@ double parameter_at(const curve_piece &part, double distance_mm)
     return point.Parameter();
 }
 
-/* Returns the placement of a section that stands upright on the curve: X points left, Y up. */
+/* Returns the placement of a section upright on the curve: X points left, Y up. */
 gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
 {
     double left_mm = at.along_mm;
@@ -116,18 +116,18 @@ station station_of(const ifc_model &in, const value &reference, const value &pro
     return { length(0), gp_Vec(length(1), length(2), length(3)), profile.id };
 }
 
-/* Returns the number of chords by which a piece of a curve is approximated. length_mm: the piece's length. */
+/* Returns the number of chords that approximate a piece of a curve. length_mm: length of the piece. */
 int chords_of(const ifc_model &in, const curve_piece &piece, double length_mm)
 {
     if (piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
         return 1;
     double turn = std::acos(std::fmax(-1, std::fmin(1, piece.tangent(false).Dot(piece.tangent(true)))));
-    /* half the angle in radians by which the curve may turn along one chord without exceeding chord_mm */
+    /* half the angle, in radians, that the curve may turn within one chord without exceeding chord_mm */
     double chord = std::acos(1 - std::fmin(0.5, in.chord_mm * turn / length_mm));
     return std::max(8, static_cast<int>(std::ceil(turn / chord)));
 }
 
-/* Adds stations between two stations that have the same profile, where the curve between them is not straight. */
+/* Inserts further stations between two stations with the same profile where the curve between them is not straight. */
 void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, station from, const station &to, std::vector<station> *out)
 {
     double at = 0;
@@ -190,7 +190,7 @@ section_frame frame_at(const curve_piece &piece, double parameter, const gp_Dir 
     return { at, gp_Dir(along), gp_Ax3(at, gp_Dir(along), reference).XDirection(), gp_Dir(along) };
 }
 
-/* Returns the transform from the XY plane to a section's plane. At a corner the profile is moved along its curve into that plane. */
+/* Returns the transform from the XY plane to a section's plane. At a corner, moves the profile along its curve into that plane. */
 gp_GTrsf section_place(const section_frame &from)
 {
     gp_Trsf upright;
@@ -200,7 +200,7 @@ gp_GTrsf section_place(const section_frame &from)
     for (int row = 1; row <= 3; row++)
         for (int column = 1; column <= 3; column++)
             shear.SetValue(row, column, (row == column) - from.along.Coord(row) * from.plane.Coord(column) / share);
-    /* add a translation, so that the shear leaves the point of the corner where it is */
+    /* add a translation so that the shear does not move the corner point */
     gp_XYZ at = from.at.XYZ(), moved = at;
     shear.Transforms(moved);
     shear.SetTranslationPart(at - moved);
@@ -215,8 +215,8 @@ bool same_section(const section_frame &a, const section_frame &b)
     return (first - second).Modulus() < 1e-3;
 }
 
-/* Returns the frames of the sections of one or more solids. A corner of the curve where the profile would turn about the curve ends one
- * solid and begins the next. */
+/* Returns the frames of the sections of one or more solids. At a corner where the profile would rotate about the curve, one
+ * solid ends and the next begins. */
 std::vector<std::vector<section_frame>> frames_of(const ifc_model &in, const std::vector<curve_piece> &pieces, const gp_Dir &reference)
 {
     std::vector<std::vector<section_frame>> out(1);

@@ -22,7 +22,7 @@ namespace
 {
 
 constexpr const char *GRID_PLACEMENT = "IFCGRIDPLACEMENT";
-constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices, in a product statement's values, of its representation and its placement */
+constexpr size_t REPRESENTATION = 6, PLACEMENT = 5; /* indices of the representation and the placement among a product statement's values */
 
 /* --- units */
 
@@ -75,19 +75,19 @@ ifc_model model_of(const file &in, double chord_mm)
 
 struct ifc_part {
     int mesh;
-    /* origin of the mesh's vertices, millimetres; near the item, so that single-precision positions of an item far from its element's
-     * origin stay exact */
+    /* millimetres; the mesh's vertices are relative to this point near the item, so that single precision is exact enough even
+     * far from the element's origin */
     double origin[3];
 };
 
 struct ifc_writer {
     const ifc_model &in;
     struct glb_scene *scene;
-    std::map<int, ifc_part> parts; /* shapes that were built, by id of their statement in the IFC file */
-    /* by statement id of an item or element that could not be built, and so is left to web-ifc: the reason */
+    std::map<int, ifc_part> parts; /* the shapes built so far, by id of their statement in the IFC file */
+    /* by statement id of an item or element that could not be built and is left to web-ifc: the reason */
     std::map<int, std::string> failed;
-    std::map<int, std::vector<int>> openings; /* by element from which openings are cut: ids of these openings */
-    std::set<int> asked; /* ids of elements that web-ifc cannot build, or only in part */
+    std::map<int, std::vector<int>> openings; /* by id of the element that openings are cut out of: ids of these openings */
+    std::set<int> asked; /* ids of elements that web-ifc cannot build, or not completely */
     size_t elements = 0, placements = 0;
 };
 
@@ -139,8 +139,7 @@ template <typename function> bool attempt(ifc_writer *w, int id, const function 
     return false;
 }
 
-/* Builds and tessellates a geometry item, unless that was done before. Returns false if the item could not be built; reports the reason
- * once. */
+/* Builds and tessellates a geometry item unless that was done before. Returns false if it could not be built; reports the reason once. */
 bool build(ifc_writer *w, const entity &item)
 {
     if (w->parts.count(item.id) > 0 || w->failed.count(item.id) > 0)
@@ -165,8 +164,8 @@ struct placed_item {
     gp_GTrsf place;
 };
 
-/* Collects the geometry items of a representation and of the representations it maps. Sets *whole to false if any item is left to web-ifc.
- * all: true collects items of every type, false only those that is_built() names. */
+/* Collects the geometry items of a representation and of the representations that it maps. Sets *whole to false if any item is
+ * left to web-ifc. all: true collects items of every type, false only the types for which is_built() is true. */
 void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
              bool *whole)
 {
@@ -187,7 +186,7 @@ void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above,
     }
 }
 
-/* Computes the 4 x 4 matrix of a placement and converts it: millimetres to metres, Z up to Y up. */
+/* Converts a placement to a 4 x 4 matrix in metres, with Z up turned to Y up. */
 void matrix_of(const gp_GTrsf &place, double scale, bool turn, const double shift[3], double out[16])
 {
     static const int rows[3] = { 0, 2, 1 };
@@ -215,7 +214,7 @@ bool is_body(const entity &representation)
     return representation.is("IFCSHAPEREPRESENTATION");
 }
 
-/* Collects the geometry items that show the body of a product. Returns whether no item is left to web-ifc. */
+/* Collects the geometry items of a product's body. Returns true if no item is left to web-ifc. */
 bool collect_all(ifc_writer *w, const entity &product, bool all, std::vector<placed_item> *out)
 {
     bool whole = true;
@@ -238,8 +237,8 @@ TopoDS_Shape shape_at(const ifc_model &in, int item, const gp_GTrsf &place)
     return BRepBuilderAPI_Transform(shape, place.Trsf(), Standard_True).Shape();
 }
 
-/* Cuts all openings of an element from each of its geometry items, and gives each item the mesh that remains; an item of which nothing
- * remains is removed. */
+/* Cuts all openings of an element out of each of its geometry items. Each item gets the mesh that remains; an item of which
+ * nothing remains is removed. */
 void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item> *items, std::map<int, ifc_part> *meshes)
 {
     const ifc_model &in = w->in;
@@ -271,7 +270,7 @@ void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item>
     *items = left;
 }
 
-/* Finds the openings of each IFC element. Openings of an element without a shape are cut from the elements that it consists of. */
+/* Finds the openings of each IFC element. Openings of an element without a shape are cut out of the elements it consists of. */
 std::map<int, std::vector<int>> find_openings(const file &in)
 {
     std::map<int, std::vector<int>> openings, consists_of;
@@ -328,8 +327,8 @@ bool has_any(const file &in)
     return any;
 }
 
-/* Writes the grid placements, restated as local placements, to properties of a node of the written GLB file. ifc.mjs puts them into the IFC
- * file that web-ifc reads. */
+/* Writes the grid placements, rewritten as local placements, to properties of a node of the GLB file. ifc.mjs puts them into
+ * the IFC file that web-ifc reads. */
 void add_placements(ifc_writer *w)
 {
     std::map<int, std::string> statements;
@@ -357,7 +356,7 @@ void add_placements(ifc_writer *w)
 
 } // namespace ifc
 
-/* Reads a list of statement numbers separated by blanks from the file `path`. */
+/* Reads statement numbers separated by blanks from the file `path`. */
 static std::set<int> numbers_in(const char *path)
 {
     std::ifstream list(path);

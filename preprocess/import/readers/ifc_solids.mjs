@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Merges solids of an IFC file that Open CASCADE built (ifc_shapes.hh) with the geometry that web-ifc built for all other items.
+// Merges the solids that Open CASCADE built for an IFC file (ifc_shapes.hh) with the geometry that web-ifc built for all other
+// items.
 import { existsSync, readFileSync } from 'node:fs';
 import { multiplied } from './glb_writer.mjs';
 import { voidedElements } from './ifc_openings.mjs';
@@ -17,9 +18,9 @@ function parseGlb(path) {
     return { json, read };
 }
 
-// Returns { elements, failed, placements }. elements: a Map from element id to { parts, whole }. parts: the element's built items; whole:
-// true if these are all of its geometry. failed: a Map from the id of an item that could not be built to the reason. placements: a Map from
-// the id of a grid placement to the statements of an equal local placement.
+// Returns { elements, failed, placements }. elements: a Map from element id to { parts, whole }. parts: the element's built
+// items; whole: true if these are all of its geometry. failed: a Map from the id of an item that could not be built to the
+// reason. placements: a Map from the id of a grid placement to the statements of an equal local placement.
 export function readSolids(path) {
     const elements = new Map(), failed = new Map(), placements = new Map();
     if (!existsSync(path))
@@ -45,7 +46,7 @@ export function readSolids(path) {
     return { elements, failed, placements };
 }
 
-// Replaces the statements of grid placements, which web-ifc does not compute, by equal local placements. bytes: the IFC file.
+// Replaces the statements of grid placements, which web-ifc does not compute, with equal local placements. bytes: the IFC file.
 export function withPlacements(bytes, placements) {
     const out = [];
     let from = 0;
@@ -60,7 +61,7 @@ export function withPlacements(bytes, placements) {
     return from > 0 ? Buffer.concat([...out, bytes.subarray(from)]) : bytes;
 }
 
-// Returns a function that maps a geometry item to the colour of its style, or to nothing if the item has no style.
+// Returns a function that maps a geometry item to the colour of its style, or to undefined if the item has no style.
 function styles(model, type) {
     const found = new Map();
     const colorOf = (id, depth) => {
@@ -77,8 +78,8 @@ function styles(model, type) {
     return (item) => found.get(item);
 }
 
-// Replaces web-ifc's geometry of an item by the solid that Open CASCADE built. An element with openings keeps web-ifc's geometry, if it has
-// any, unless web-ifc did not cut them (`wrong`: ids of such elements) and Open CASCADE did.
+// Replaces web-ifc's geometry of an item by the solid that Open CASCADE built. An element with openings keeps web-ifc's
+// geometry, if any, unless Open CASCADE cut the openings and web-ifc did not (`wrong`: ids of such elements).
 export function takeSolids(model, solids, { shown, known }, { styledItem, voids }, wrong) {
     const colorOf = styles(model, styledItem), voided = new Set();
     model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (host) =>

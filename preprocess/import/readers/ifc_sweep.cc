@@ -29,8 +29,7 @@ namespace ifc
 namespace
 {
 
-/* allowed relative difference between the volume of a sweep and area times length; tessellation with 24 corners to a circle alone loses 1.1
- * % */
+/* allowed relative difference between a sweep's volume and area times length; tessellating circles with 24 corners alone loses 1.1 % */
 constexpr double VOLUME_SLACK = 0.04;
 
 TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, const gp_Dir *up)
@@ -45,12 +44,12 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     pipe.Build();
     if (!pipe.IsDone())
         throw unsupported("unsupported: a profile that cannot be swept along its curve");
-    pipe.MakeSolid(); /* the result is ignored: it is false for a closed curve, whose tube has no ends to close */
+    pipe.MakeSolid(); /* ignore the result: it is false for a closed curve, whose tube has no ends to close */
     return pipe.Shape();
 }
 
-/* Returns a placement at the start of the first piece whose XY plane is perpendicular to the piece. up: direction of the X axis, as far as
- * possible; NULL: any. */
+/* Returns a placement at the start of the first piece, with its XY plane perpendicular to the piece. up: the X axis points as
+ * far as possible in this direction; NULL: in any. */
 gp_Trsf start_of(const std::vector<curve_piece> &pieces, const gp_Dir *up)
 {
     gp_Dir along(pieces.front().tangent(false));
@@ -110,9 +109,9 @@ TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<curve_piece> &pie
     return along(face, pieces, nullptr, nullptr);
 }
 
-/* Sweeps a disk along all pieces of a curve. The expected volume is known: area times length. If the volume that a sweeping method gives
- * differs from that, some triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends
- * and without mitred corners. */
+/* Sweeps a disk along all pieces of a curve. The volume must be area times length: if a sweeping method gives another volume,
+ * some triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends and
+ * without mitred corners. */
 TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double area, const std::vector<curve_piece> &pieces)
 {
     using way = TopoDS_Shape (*)(const TopoDS_Face &, const std::vector<curve_piece> &);
@@ -127,7 +126,7 @@ TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double are
                 return out;
             if (std::fabs(volume + expected) < VOLUME_SLACK * expected)
                 return out.Reversed();
-        } catch (const Standard_Failure &) { /* try the next method of sweeping */
+        } catch (const Standard_Failure &) { /* the next sweeping method will be tried */
         } catch (const unsupported &) {
         }
     throw unsupported("unsupported: a pipe that cannot be swept along its curve");

@@ -16,7 +16,7 @@ namespace ifc
 namespace
 {
 
-/* largest angle between neighbouring facets of a curved surface: 24 facets to a circle, as web-ifc does */
+/* largest angle between neighbouring facets of a curved surface: 24 facets per circle, as in web-ifc */
 constexpr double ANGLE_RAD = M_PI / 12;
 
 void take_face(const TopoDS_Face &face, triangles *to)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Follows the entities of an IGES file from the roots down, in parallel with the shapes that Open CASCADE made of the entities. */
+/* Follows the entities of an IGES file from the roots down, in parallel with the shapes that Open CASCADE made from them. */
 #include "preprocess/import/readers/iges_tree.hh"
 
 #include <BRepBuilderAPI_Transform.hxx>
@@ -49,7 +49,7 @@ struct iges_tree {
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
     const struct text_encoding *encoding;
-    Handle(Transfer_TransientProcess) process; /* map of Open CASCADE from an IGES entity to the shape into which the entity was read */
+    Handle(Transfer_TransientProcess) process; /* Open CASCADE's map from an IGES entity to the shape made from it */
     double unit_mm;
     std::map<const Standard_Transient *, TDF_Label> made;
 };
@@ -85,7 +85,7 @@ bool color_of(const entity &from, Quantity_Color *out)
     Handle(IGESGraph_Color) color = Handle(IGESGraph_Color)::DownCast(from->Color());
     if (color.IsNull())
         return false;
-    color->RGBIntensity(part[0], part[1], part[2]); /* the colour's components are in per cent */
+    color->RGBIntensity(part[0], part[1], part[2]); /* the colour's components are percentages */
     for (Standard_Real &each : part)
         each = std::isfinite(each) ? std::clamp(each / 100, 0.0, 1.0) : 0;
     out->SetValues(part[0], part[1], part[2], Quantity_TOC_sRGB);
@@ -121,7 +121,7 @@ std::vector<entity> members_of(const entity &from)
     return out;
 }
 
-/* Returns the definition of an IGES subfigure if the entity is an instance of one; otherwise the entity itself. */
+/* If the entity is an instance of an IGES subfigure, returns the subfigure's definition; otherwise the entity itself. */
 entity product_of(const entity &from)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
@@ -152,9 +152,9 @@ struct iges_item {
     TopoDS_Shape shape;
 };
 
-/* Returns the members of a group with their shapes. The shapes are taken from the group's own shape, because the shape recorded for a
- * single surface may lack its placement. Members without a shape are left out. An instance with a scale is missing from the group's shape,
- * so the shape of its definition is used. */
+/* Returns the members of a group with their shapes, leaving out members without one. The shapes come from the group's own
+ * shape, because the shape recorded for a single surface may lack its placement. The group's shape does not contain scaled
+ * instances, so these use the shape of their definition. */
 std::vector<iges_item> items_of(const iges_tree &t, const iges_item &group)
 {
     std::vector<iges_item> out;
@@ -180,8 +180,8 @@ void describe_layer(const iges_tree &t, const TDF_Label &label, const std::strin
         t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
-/* Copies the name, colour and layer of an IGES entity to a label of the XCAF document. Attributes that the entity lacks stay unchanged at
- * the label. */
+/* Copies the name, colour and layer of an IGES entity to a label of the XCAF document. If the entity lacks one of these, the
+ * label keeps its own. */
 void describe(const iges_tree &t, const TDF_Label &label, const entity &from)
 {
     Quantity_Color color;
@@ -200,8 +200,8 @@ bool has_faces(const TopoDS_Shape &shape)
 
 enum class shape_kind { nothing, surface, part };
 
-/* Returns how an IGES entity becomes a part of the model. A loose surface is joined with other loose surfaces of its group; a solid or a
- * group becomes a part of its own. */
+/* Returns how an IGES entity becomes a part of the model. A loose surface is joined with the other loose surfaces of its group;
+ * a solid or a group becomes a separate part. */
 shape_kind kind_of(const iges_item &what)
 {
     if (!has_faces(what.shape))
@@ -229,7 +229,7 @@ TDF_Label add_surfaces(const iges_tree &t, const std::vector<iges_item> &surface
     return label;
 }
 
-/* Sorts loose surfaces of a group by layer; the surfaces of each layer become one part. */
+/* Groups loose surfaces by layer; the surfaces of each layer become one part. */
 std::map<std::string, std::vector<iges_item>> by_layer(const std::vector<iges_item> &loose)
 {
     std::map<std::string, std::vector<iges_item>> out;
@@ -249,7 +249,7 @@ TDF_Label add_whole(const iges_tree &t, const TopoDS_Shape &shape)
 
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth);
 
-/* Adds a scaled instance as a part of its own with scaled geometry, because a placement in XCAF cannot scale. */
+/* Adds a scaled instance as a separate part with scaled geometry, because a placement in XCAF cannot scale. */
 TDF_Label add_scaled(iges_tree *t, const iges_item &what)
 {
     gp_Trsf larger;
@@ -275,8 +275,8 @@ void add_component(iges_tree *t, const TDF_Label &to, const iges_item &what, int
         describe(*t, component, what.from);
 }
 
-/* Skips groups that only wrap one part: while a group holds a single part that has no name and no placement, descends into that part.
- * Returns the part where this ends. */
+/* Skips groups that only wrap one part: while a group has just one part, without name and placement, descends into that part.
+ * Returns the part or group reached. */
 iges_item without_wrappings(const iges_tree &t, iges_item what)
 {
     for (int depth = 0; depth < MAX_DEPTH && is_group(what.from); depth++) {
@@ -312,8 +312,8 @@ TDF_Label add_group(iges_tree *t, const iges_item &group, int depth)
     return label;
 }
 
-/* Returns the XCAF label of a part's shape without placement, which all instances of the part share. Creates the label at the first
- * call. */
+/* Returns the XCAF label of a part's shape without placement, which all instances of the part share. Creates the label on the
+ * first call. */
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
 {
     if (depth > MAX_DEPTH)
@@ -330,7 +330,7 @@ TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
     return label;
 }
 
-/* Adds a root entity of the file to the document. XCAF roots have no placement, so a placed root is wrapped in an assembly. */
+/* Adds a root entity of the file to the document. XCAF roots have no placement, so a root with a placement is wrapped in an assembly. */
 void add_root(iges_tree *t, const iges_item &root)
 {
     if (product_of(root.from) == root.from && root.shape.Location().IsIdentity()) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads STEP and IGES with Open CASCADE, in its own process. The
- * assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files, this program builds some solids
- * only (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints report lines (format: findings.h). On failure the last line on
- * stderr is the reason. */
+/* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads STEP and IGES with Open CASCADE, in its own
+ * process. The assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files, this
+ * program builds only some solids (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints report lines (format:
+ * findings.h). On failure the last line on stderr is the reason. */
 #include <BRepBndLib.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESControl_Reader.hxx>
@@ -47,12 +47,12 @@
 namespace
 {
 
-/* maximum number of nodes in the written GLB file; assemblies that contain others several times can have exponentially many */
+/* maximum number of nodes in the GLB file; assemblies that contain others several times can expand to exponentially many nodes */
 constexpr size_t MAX_NODES = 2'000'000;
 constexpr size_t MOST_NAMED = 20;
-/* the allowed chord error is at most the model's size divided by this number, so that tiny models keep their shape */
+/* the chord error is at most the model's size divided by this, so that tiny models keep their shape */
 constexpr double CHORDS_PER_MODEL = 100;
-constexpr double ANGLE_RAD = 0.5; /* largest angle in radians between neighbouring facets, where the chord error would allow more */
+constexpr double ANGLE_RAD = 0.5; /* largest angle in radians between neighbouring facets, even where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
 
 /* --- names, colours, places ------------------------------------------------------------------------------------------------------- */
@@ -65,8 +65,7 @@ std::string utf8_of(const TCollection_ExtendedString &from)
     return at;
 }
 
-/* Returns the name of an XCAF label, or "" for a generated name such as "=>[0:1:1:3]", which Open CASCADE gives to components without a
- * name. */
+/* Returns the name of an XCAF label, or "" if Open CASCADE generated the name, such as "=>[0:1:1:3]" for components without one. */
 std::string name_of(const TDF_Label &label)
 {
     Handle(TDataStd_Name) name;
@@ -110,11 +109,11 @@ void matrix_of(const TopLoc_Location &location, const double shift[3], double ou
 
 struct occt_part { /* a tessellated shape */
     int mesh;
-    /* origin of the mesh's vertices; near the part, so that single-precision positions of a part far from its own origin stay exact */
+    /* origin of the mesh's vertices, near the part: single precision then suffices even far from the part's own origin */
     double origin[3];
 };
 
-struct color_group { /* the triangles of a shape that have one colour */
+struct color_group { /* triangles of a shape that have the same colour */
     std::vector<gp_Pnt> points;
     std::vector<gp_Dir> normals;
     std::vector<uint32_t> corners;
@@ -128,7 +127,7 @@ struct occt_reader {
     double chord_mm;
     /* tessellated parts, by XCAF label and by the colour that the part inherits from its assembly */
     std::map<std::string, occt_part> parts;
-    /* external files of a STEP assembly, by the name that the copies use for them (step_files.hh) */
+    /* external files of a STEP assembly, by the names that the copies use for them (step_files.hh) */
     std::map<std::string, step_external> externals;
     size_t nodes = 0, places = 0, skipped_faces = 0;
     std::vector<std::string> lines; /* names of parts that consist only of curves or points */
@@ -198,7 +197,7 @@ void write_groups(occt_reader *r, const std::map<key, color_group> &groups, cons
     }
 }
 
-/* Returns why a shape has no faces, as a text for the readers' output; "" if it consists only of curves or points, which is no loss. */
+/* Returns why a shape has no faces, for the reader's output; "" if it consists only of curves or points, which is no loss. */
 std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape)
 {
     if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_VERTEX).More())
@@ -223,8 +222,8 @@ void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const
         printf("lost\t%s\t%s\tpart\t\t%s\n", id, name.c_str(), why.c_str());
 }
 
-/* Returns the tessellated mesh of a shape without sub-assemblies. A shape has a separate mesh for each colour that it inherits. mesh is -1
- * if the shape has no faces. */
+/* Returns the tessellated mesh of a shape without sub-assemblies. A shape that inherits different colours has a separate mesh
+ * for each. mesh is -1 if the shape has no faces. */
 occt_part part_of(occt_reader *r, const TDF_Label &label, const XCAFPrs_Style &style)
 {
     TCollection_AsciiString entry;
@@ -302,7 +301,7 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
-/* Reads a STEP file into the XCAF document. Returns the length units that the file states. */
+/* Reads a STEP file into the XCAF document. Returns the file's length units. */
 std::string read_step(const char *path, const char *output, Handle(TDocStd_Document) document, const char *asked,
                       std::map<std::string, step_external> *externals)
 {
@@ -364,7 +363,7 @@ void say_lines(const occt_reader &r)
                r.lines.size() > MOST_NAMED ? ", ..." : "");
 }
 
-/* Computes the matrix of the root node: millimetres to metres, and Z up to Y up (y_up false) or no rotation (y_up true). */
+/* Computes the root node's matrix: millimetres to metres, and also Z up to Y up if y_up is false. */
 void root_matrix(bool y_up, double out[16])
 {
     const double z_up[16] = { 1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1 };
@@ -372,7 +371,7 @@ void root_matrix(bool y_up, double out[16])
     memcpy(out, y_up ? as_is : z_up, sizeof(z_up));
 }
 
-/* Returns the diagonal of the bounding box around all shapes; infinity if they have no box. */
+/* Returns the diagonal of the bounding box around all shapes; infinity if there is no box. */
 double longest_mm(const occt_reader &r, const TDF_LabelSequence &shapes)
 {
     Bnd_Box box;
@@ -419,7 +418,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
         printf("left out: %zu faces with corners that are not finite\n", r.skipped_faces);
 }
 
-/* Runs convert(), and calls refuse() for exceptions of Open CASCADE, which do not derive from std::exception. */
+/* Runs convert() and calls refuse() for Open CASCADE exceptions, which do not derive from std::exception. */
 void convert_or_refuse(char **arguments)
 {
     double chord_mm = strtod(arguments[2], nullptr);

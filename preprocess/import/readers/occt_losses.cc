@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds faces that Open CASCADE could not read and counts them per body. Each body is reported with the name of its product. */
+/* Finds faces that Open CASCADE could not read, and counts them per body. Each body is reported with its product's name. */
 #include "preprocess/import/readers/occt_losses.hh"
 #include "preprocess/import/readers/reader.hh"
 
@@ -40,8 +40,8 @@ namespace
 
 using entity = Handle(Standard_Transient);
 
-constexpr size_t MOST_KINDS = 100; /* maximum number of different errors that are printed per file */
-constexpr size_t MOST_IDS = 5;     /* maximum number of entity ids in one printed line of errors */
+constexpr size_t MOST_KINDS = 100; /* maximum number of different errors printed per file */
+constexpr size_t MOST_IDS = 5;     /* maximum number of entity ids printed in one line */
 constexpr size_t MOST_VISITED = 10000;
 
 struct file_losses {
@@ -52,7 +52,7 @@ struct file_losses {
 
 /* --- errors ------------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns an error text of Open CASCADE without the index of a parameter ("n0.12 "), so that errors that differ only in this index are
+/* Returns an Open CASCADE error text without parameter indices ("n0.12 "), so that errors that differ only in the index are
  * counted together. */
 std::string without_number(const std::string &text)
 {
@@ -60,8 +60,8 @@ std::string without_number(const std::string &text)
     return end == std::string::npos ? text : text.substr(0, from) + text.substr(end + (text[end] == ' '));
 }
 
-/* Returns whether another part of the reader reports or repairs this error: step_files.hh reports missing files, and iges_tree.cc builds
- * scaled instances of subfigures. */
+/* Returns whether another part of the reader already reports or repairs this error: step_files.hh reports missing files, and
+ * iges_tree.cc builds scaled instances of subfigures. */
 bool is_dealt_with(const entity &from, const std::string &text)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
@@ -147,13 +147,13 @@ std::string product_name(const entity &from)
     return name.IsNull() ? "" : one_line(name->ToCString());
 }
 
-/* body: the body that contains the face, or the face itself if there is none; name: name of the product that contains the body */
+/* body: the body that contains the face, or the face itself if no body does; name: name of the product that contains the body */
 struct face_owner {
     entity body;
     std::string name;
 };
 
-/* Finds the body and the product that contain a face by following references backwards, breadth first, until the first product. */
+/* Finds the body and the product that contain a face: follows references backwards, breadth first, up to the first product. */
 face_owner owner_of(const Interface_Graph &graph, const entity &face)
 {
     face_owner out = { face, "" };
@@ -202,7 +202,7 @@ void say_lost(const file_losses &of, const lost_faces &lost)
 
 void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
 {
-    std::map<int, lost_faces> bodies; /* counts of lost faces, by index of the body entity in the model */
+    std::map<int, lost_faces> bodies; /* counts of lost faces, by index of the body's entity in the model */
     for (int i = 1; i <= of.model->NbEntities(); i++) {
         const entity face = of.model->Value(i);
         if (!is_face(face) || has_shape(of, face))
@@ -216,7 +216,7 @@ void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
         say_lost(of, entry.second);
 }
 
-/* Prints a line of the reader's output about instances of a product that are missing although the product itself was read. */
+/* Prints a line of the reader's output about missing instances of a product that itself was read. */
 void say_lost_places(const file_losses &of)
 {
     for (int i = 1; i <= of.model->NbEntities(); i++) {

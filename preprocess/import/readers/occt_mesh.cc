@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tessellates with BRepMesh, which leaves out faces whose boundary it cannot unfold into a plane, such as a cone through its apex. Most
- * such faces can be tessellated after conversion to B-spline surfaces. */
+/* Tessellates with BRepMesh, which leaves out faces whose boundary it cannot unfold into a plane, such as a cone that includes
+ * its apex. Most of these faces can be tessellated after conversion to B-spline surfaces. */
 #include "preprocess/import/readers/occt_mesh.hh"
 
 #include <BRepBuilderAPI_NurbsConvert.hxx>
@@ -19,7 +19,7 @@
 namespace
 {
 
-constexpr double LEAST_MM2 = 1e-6; /* area in square millimetres; a face below it is too small to be seen, so its loss is not counted */
+constexpr double LEAST_MM2 = 1e-6; /* square millimetres; the loss of a smaller face is not counted, because it is too small to be seen */
 
 Handle(Poly_Triangulation) triangles_of(const TopoDS_Face &face, TopLoc_Location *place)
 {
@@ -38,7 +38,7 @@ void mesh(const TopoDS_Shape &shape, double chord_mm, double angle_rad, bool par
     try {
         BRepMesh_IncrementalMesh(shape, chord_mm, Standard_False, angle_rad, parallel);
     } catch (const Standard_Failure &) {
-        /* the exception is ignored, because the caller looks for faces without triangles anyway */
+        /* ignore the exception: the caller looks for faces without triangles anyway */
     }
 }
 
@@ -55,7 +55,7 @@ void mesh_as_spline(const TopoDS_Face &face, double chord_mm, double angle_rad)
             return;
         for (int i = 1; i <= found->NbNodes(); i++)
             found->SetNode(i, found->Node(i).Transformed(place.Transformation()));
-        found->RemoveUVNodes(); /* remove the surface parameters: they belong to the B-spline surface, not to the original surface */
+        found->RemoveUVNodes(); /* remove the surface parameters: they belong to the B-spline surface, not to the original one */
         found->ComputeNormals();
         BRep_Builder().UpdateFace(plain, found);
     } catch (const Standard_Failure &) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies STEP files so that Open CASCADE can read assemblies of several files. Open CASCADE opens an external file only by its exact name,
- * in the folder of the main file, and only if it is declared as AP203 or AP214. So the copies get simple names and refer to each other by
- * these names. */
+/* Copies STEP files so that Open CASCADE can read assemblies of several files. Open CASCADE opens an external file only in the
+ * folder of the main file, by its exact name, and only if it is declared as AP203 or AP214. So the copies get simple names and
+ * refer to each other by these names. */
 #include "preprocess/import/readers/step_files.hh"
 
 #include <unistd.h>
@@ -17,13 +17,13 @@ namespace
 
 constexpr char MARK[] = "`|";
 constexpr size_t MOST_FILES = 5000;
-constexpr size_t MOST_BEFORE = 1000; /* number of bytes at the start of a STEP statement that are searched for its keyword */
+constexpr size_t MOST_BEFORE = 1000; /* number of bytes searched for the keyword at the start of a STEP statement */
 
 struct preparing {
     std::string input_folder, output_folder;
     const char *asked;
     step_files out;
-    /* file names of the copies, by path of the original; if the original is missing, by the name that the model states */
+    /* file names of the copies, by path of the original; if the original is missing, by its name in the model */
     std::map<std::string, std::string> names;
     std::vector<std::string> open; /* paths of external files that are not copied yet */
 };
@@ -88,8 +88,8 @@ std::string without_escapes(const std::string &text)
     return out;
 }
 
-/* Finds an external file that a STEP file names, in the model's folder and ignoring upper and lower case. Tries several spellings, because
- * the confined reader cannot list the folder. Returns its path, or "" if there is none. */
+/* Finds an external file named in a STEP file in the model's folder, ignoring case. Tries several spellings, because the
+ * confined reader cannot list the folder. Returns its path, or "" if there is none. */
 std::string find_beside(const preparing &p, const std::string &named)
 {
     const std::string base = named.substr(named.find_last_of("/\\") == std::string::npos ? 0 : named.find_last_of("/\\") + 1);
@@ -127,8 +127,8 @@ bool names_files(const std::string &statement)
     return false;
 }
 
-/* Returns the form that one quoted string (a file name, a data format or a name) gets in the copy of a STEP file. before: text of the copy
- * before the string. statement: offset in `before` at which the string's statement begins. */
+/* Converts a quoted string (a file name, a data format or a name) for the copy of a STEP file. before: text of the copy before
+ * the string. statement: offset in `before` at which the string's statement begins. */
 std::string converted_string(preparing *p, const std::string &before, size_t statement, const std::string &text)
 {
     if (is_step_name(text) && names_files(before.substr(statement, MOST_BEFORE)))
@@ -139,7 +139,7 @@ std::string converted_string(preparing *p, const std::string &before, size_t sta
     return plain ? text : text + MARK;
 }
 
-/* Returns the text of a STEP file with all its strings converted by converted_string(). */
+/* Returns the text of a STEP file with all strings converted by converted_string(). */
 std::string converted_text(preparing *p, const std::string &text)
 {
     std::string out;
@@ -191,7 +191,7 @@ step_files step_files_prepare(const std::string &path, const std::string &folder
 {
     preparing p = { path.substr(0, path.rfind('/') + 1), folder, asked, {}, {}, {} };
     const std::string text = read_whole(path.c_str());
-    p.names[path] = "external_0.stp"; /* the main file's copy gets this name, by which files that refer to the main file will name it */
+    p.names[path] = "external_0.stp"; /* name of the main file's copy; files that refer to the main file use this name */
     const std::string converted = converted_text(&p, utf8_of(path, asked, true));
     p.out.main = path;
     if (converted != text) {

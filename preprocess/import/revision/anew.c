@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replaces all files of a plant by those of a new import and keeps their previous versions. */
+/* Replaces all files of a plant with those of a new import and keeps their previous versions. */
 #include "preprocess/import/revision/anew.h"
 
 #include <stdio.h>
@@ -17,8 +17,8 @@ enum { TEXTS = 3 };
 
 struct one_text {
     const char *name;
-    char *before, *after; /* before: current text of the file, NULL if it does not exist; after: its new text, NULL if it does not change */
-    char *kept;           /* path where the file's previous version is kept; NULL: not kept */
+    char *before, *after; /* before: current text of the file; NULL: the file does not exist. after: new text; NULL: unchanged */
+    char *kept;           /* path at which the file's previous version is kept; NULL: not kept */
 };
 
 struct revision_making {
@@ -28,8 +28,8 @@ struct revision_making {
     struct one_text texts[TEXTS];
 };
 
-/* Adds one text file to the transaction that replaces the plant's files, and takes ownership of `after`. versioned: also keeps the current
- * file under another name (NAME.1, ...), because a person may have written it. */
+/* Adds a text file to the transaction that replaces the plant's files, and takes ownership of `after`. versioned: also keeps
+ * the current file under another name (NAME.1, ...), because a user may have written it. */
 static int add_text(struct revision_making *making, struct one_text *one, const char *name, char *after, bool versioned)
 {
     char *path = mem_printf("%s/%s", making->params->folder, name);

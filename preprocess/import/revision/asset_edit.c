@@ -12,7 +12,7 @@
 #include "preprocess/match/plant_edit.h"
 
 struct splice {
-    size_t begin, end; /* byte range of the plant file's text that is replaced */
+    size_t begin, end; /* byte range of the plant file's text to replace */
     char *with;
 };
 
@@ -31,7 +31,7 @@ static bool fail(struct editor *editor, const char *why)
     return false;
 }
 
-/* Records that a byte range of the text is to be replaced, and takes ownership of the new text `with`. */
+/* Records the replacement of a byte range of the text, and takes ownership of the new text `with`. */
 static void splice(struct editor *editor, size_t begin, size_t end, char *with)
 {
     mem_grow(&editor->splices, &editor->splice_room, editor->splice_count + 1, sizeof(*editor->splices));
@@ -77,8 +77,8 @@ static size_t line_end(const char *text, size_t at)
     return at + (text[at] == '\n');
 }
 
-/* Removes an item of a YAML list in block style from the text, from its first line to its last, including blank lines and comments between
- * the item's keys. */
+/* Removes an item of a block-style YAML list from the text, from its first line to its last, including blank lines and comments
+ * between its keys. */
 static bool remove_item(struct editor *editor, const yaml_node_t *item)
 {
     const char *text = editor->text;
@@ -186,7 +186,7 @@ static char *spliced(struct editor *editor)
     if (editor->splice_count > 0)
         qsort(editor->splices, editor->splice_count, sizeof(*editor->splices), by_begin);
     for (size_t i = 0; i < editor->splice_count; i++) {
-        /* skip the replacement of a value that a YAML alias repeats, because the value at its anchor was replaced already */
+        /* skip the replacement if a YAML alias repeats the value: the value was already replaced at its anchor */
         if (editor->splices[i].begin < at)
             continue;
         text_add_bytes(&out, editor->text + at, editor->splices[i].begin - at);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the model nodes that a pattern matches: looks up plain names in a sorted list, and tests other patterns on all nodes. */
+/* Finds the model nodes that a pattern matches: looks up plain names in a sorted list, and tests all nodes against other patterns. */
 #include "preprocess/import/revision/asset_pattern.h"
 
 #include <stdio.h>
@@ -58,7 +58,7 @@ static size_t find_name(const struct model_header *header, const uint32_t *names
     return at;
 }
 
-/* Fills patterns->found with the indices of the nodes that match the pattern. Returns their number. */
+/* Fills patterns->found with the indices of the nodes that the pattern matches. Returns their number. */
 static size_t find(struct asset_patterns *patterns, const struct model_header *header, const uint32_t *names, const char *pattern)
 {
     size_t count, first = find_name(header, names, pattern, &count);
@@ -70,7 +70,7 @@ static size_t find(struct asset_patterns *patterns, const struct model_header *h
     return count;
 }
 
-/* Returns a pattern that matches this node of the new model and no other: its name if that is unique, else "#number". */
+/* Returns a pattern that matches only this node of the new model: its name if that is unique, else "#number". */
 static char *exact_pattern(struct asset_patterns *patterns, uint32_t node)
 {
     const char *name = patterns->after->nodes[node].name;

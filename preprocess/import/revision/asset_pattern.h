@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rewrites node patterns (nodes.h) written for the old model so that they match the same nodes of the new model: the pattern of a renamed
- * node becomes its new name, and "#number" the new number. Thread: one. */
+/* Rewrites node patterns (nodes.h) of the old model so that they match the same nodes of the new model: a renamed node's
+ * pattern becomes its new name, and "#number" the new number. Thread: one. */
 #ifndef PREPROCESS_IMPORT_ASSET_PATTERN_H
 #define PREPROCESS_IMPORT_ASSET_PATTERN_H
 #include "plant/models/model_header.h"
@@ -18,14 +18,14 @@ void asset_patterns_init(struct asset_patterns *patterns, const struct model_hea
 void asset_patterns_finish(struct asset_patterns *patterns);
 
 enum asset_pattern_change { ASSET_PATTERN_SAME, ASSET_PATTERN_OTHER, ASSET_PATTERN_GONE };
-/* Determines how a pattern (without a leading "!") must change: not at all, to another text, or not possible because no such node is left.
- * before: nodes of the old model that are preferred if the pattern matches several; NULL: no preference. For ASSET_PATTERN_OTHER *out
- * receives the new pattern, which the caller frees with mem_free. */
+/* Determines how a pattern (without a leading "!") must change: not at all, to another text, or not possible because the new
+ * model has no such node. before: nodes of the old model that are preferred if the pattern matches several; NULL: no
+ * preference. For ASSET_PATTERN_OTHER, *out receives the new pattern, which the caller frees with mem_free. */
 enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out);
 
-/* Updates an asset's node patterns to the new model. lines: one pattern per line. Returns the new patterns in the same form, or NULL if no
- * pattern is left that matches a node. If any pattern changed, (*nodes)[i] is the new text of pattern i, or NULL if it is deleted. The
- * caller frees the result, each element of *nodes and *nodes with mem_free. */
+/* Updates an asset's node patterns to the new model. lines: one pattern per line. Returns the new patterns in the same form, or
+ * NULL if none is left that matches a node. If any pattern changed, (*nodes)[i] is the new text of pattern i, or NULL if it is
+ * deleted. The caller frees the result, each element of *nodes, and *nodes with mem_free. */
 char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count);
 
 #endif

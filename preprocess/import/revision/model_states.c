@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares the shapes of a part in the old and in the new model: vertex by vertex if their vertex counts are equal, otherwise by their
- * bounding boxes. */
+/* Compares a part's shape in the old and in the new model: vertex by vertex if the vertex counts are equal, otherwise by bounding boxes. */
 #include "preprocess/import/revision/model_states.h"
 
 #include <math.h>
@@ -12,7 +11,7 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-/* number of vertices per primitive from which a part's rigid motion is fitted; the motion is then checked on all vertices */
+/* number of vertices per primitive to which a part's rigid motion is fitted; the motion is then checked on all vertices */
 enum { SAMPLES = 64 };
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
@@ -103,8 +102,8 @@ static void vertex_of(const struct state_part *part, uint32_t vertex, double out
     transform_point(part->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, out);
 }
 
-/* Returns whether two lists contain the same number of parts (primitives), from the indices a_first and b_first on, and corresponding parts
- * have equal vertex and index counts. */
+/* Returns whether two lists, from the indices a_first and b_first on, contain the same number of parts (primitives), and
+ * corresponding parts have equal vertex and index counts. */
 static bool alike(const struct state_parts *a, size_t a_first, const struct state_parts *b, size_t b_first)
 {
     bool same = a->count - a_first == b->count - b_first;
@@ -117,8 +116,8 @@ static bool alike(const struct state_parts *a, size_t a_first, const struct stat
 
 /* --- motion ------------------------------------------------------------------------------------------------------------------- */
 
-/* Tests for a pure translation: whether all vertices of a part moved by the same vector within the tolerance. Tested before a rotation is
- * fitted, because the fit would add a small rotation to a pure translation. */
+/* Tests for a pure translation: whether all vertices of a part moved by the same vector within the tolerance. This is tested
+ * before fitting a rotation, because the fit would add a small rotation to a pure translation. */
 static bool find_shift(const double (*from)[3], const double (*to)[3], size_t count, double tolerance, double motion[16])
 {
     double shift[3], other[3], apart[3];
@@ -151,8 +150,8 @@ static void fit(const struct state_parts *before, const struct state_parts *afte
     mem_free(to);
 }
 
-/* Returns whether the motion maps every vertex of the old parts to its position in the new parts within the tolerance. *moved receives the
- * largest distance that a vertex moved. */
+/* Returns whether the motion maps every vertex of the old parts to its position in the new parts within the tolerance. *moved
+ * receives the largest distance moved by a vertex. */
 static bool takes(const double motion[16], const struct state_parts *before, const struct state_parts *after, double tolerance,
                   double *moved)
 {

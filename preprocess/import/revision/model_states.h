@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares a model before and after a revision, by their vertices: finds how far each part of the model has moved. Lengths and axes are in
- * the model's units and frame. Thread: any, one per struct. */
+/* Compares the vertices of a model before and after a revision to find how far each part has moved. Lengths and axes are in the
+ * model's units and frame. Thread: any, one per struct. */
 #ifndef PREPROCESS_IMPORT_MODEL_STATES_H
 #define PREPROCESS_IMPORT_MODEL_STATES_H
 #include "preprocess/import/revision/node_pairs.h"
@@ -9,7 +9,7 @@
 struct model_state { /* a model before or after a revision, loaded into memory */
     struct model_outline outline;
     struct gltf_model model;
-    /* by node of the outline: index in `model` of its first instance; further instances follow it and have the same node number */
+    /* by node of the outline: index in `model` of its first instance; its other instances follow directly and have the same node number */
     uint32_t *first;
     bool read;
 };
@@ -19,28 +19,28 @@ struct model_states {
     struct node_pairs pairs;
 };
 
-/* Reads the model files before and after a revision and pairs their nodes. Returns false with the reason in why. Call model_states_finish()
- * in both cases. */
+/* Reads the model files before and after a revision and pairs their nodes. Returns false with the reason in why. In either
+ * case, call model_states_finish(). */
 bool model_states_read(struct model_states *states, const char *before, const char *after, char why[MODEL_WHY_BYTES]);
 void model_states_finish(struct model_states *states);
 
 enum states_change {
     STATES_SAME,
     STATES_MOVED,
-    STATES_CHANGED /* the shape of a part differs; the motion is then that of the bounding box, known only if the box kept its size */
+    STATES_CHANGED /* the part's shape differs; the motion is that of its bounding box, and is known only if the box kept its size */
 };
 struct states_motion {
     enum states_change change;
     bool known; /* true: the asset's motion between the two models could be determined */
     double motion[16], moved;
-    /* parts: number of the asset's nodes with geometry; different: number of those that are missing from the new model or have another
-     * shape there */
+    /* parts: number of the asset's nodes with geometry; different: number of these that are missing from the new model or have
+     * another shape there */
     size_t parts, different;
 };
-/* Determines the motion of an asset: the motion that the old model's nodes marked in `taken` have in common. Distances below `tolerance`
- * count as no change. */
+/* Determines an asset's motion: the motion shared by the old model's nodes marked in `taken`. Distances below `tolerance` count
+ * as no change. */
 struct states_motion model_states_motion(const struct model_states *states, const bool *taken, double tolerance);
-/* Returns the node, among the old model's nodes marked in `taken`, whose triangles are nearest to a point. Returns -1 if they have no
+/* Returns the node of the old model whose triangles are nearest to a point, among those marked in `taken`; -1 if these have no
  * triangles. */
 int model_states_nearest(const struct model_states *states, const bool *taken, const double point[3]);
 

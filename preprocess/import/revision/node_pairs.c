@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairs the nodes of an old and a new model by several methods, from the most to the least certain. A pair once made is never changed. */
+/* Pairs the nodes of an old and a new model by several methods, from the most to the least certain. A pair, once made, is never changed. */
 #include "preprocess/import/revision/node_pairs.h"
 
 #include <math.h>
@@ -56,7 +56,7 @@ static int by_name(const void *a, const void *b, void *outline_ptr)
     return order ? order : x - y;
 }
 
-/* Compares nodes by the size of their subtree. Triangle counts are not used, because they may differ if covered faces were left out. */
+/* Compares nodes by the size of their subtree. Ignores triangle counts, which differ if covered faces were left out of one model. */
 static int by_size(const void *a, const void *b, void *outline_ptr)
 {
     const struct model_outline *outline = outline_ptr;
@@ -92,13 +92,13 @@ static void take_unpaired(struct node_pairing *p)
             p->news[p->new_count++] = (int)i;
 }
 
-/* --- pairing runs of candidates (unpaired nodes) that compare equal --- */
+/* --- pairing runs of candidates (unpaired nodes that compare equal) --- */
 
 enum run_rule {
-    RUN_SINGLE, /* pair a run (candidates that compare equal) only if it has exactly one old and one new candidate */
-    RUN_PLACED, /* pair candidates of a run (candidates that compare equal) whose bounding boxes are at the same position */
-    /* a run (candidates that compare equal) with one old and one new candidate: pair these two; a longer run: pair candidates at the same
-     * position, then pair the rest in order if as many old as new candidates remain */
+    RUN_SINGLE, /* pair only runs that consist of exactly one old and one new candidate */
+    RUN_PLACED, /* within a run, pair candidates whose bounding boxes are at the same position */
+    /* pair one old with one new candidate; in longer runs, pair candidates at the same position, then pair the rest in order if
+     * equally many old and new ones remain */
     RUN_ORDERED
 };
 
@@ -138,8 +138,8 @@ static void pair_run(struct node_pairing *p, const int *olds, size_t old_count, 
         pair_in_order(p, olds, old_count, news, new_count);
 }
 
-/* Walks through the sorted candidates (unpaired nodes) of both models in parallel, and pairs nodes within each run of nodes that compare
- * equal. rule: how a run is paired (enum run_rule). */
+/* Walks through the sorted candidates (unpaired nodes) of both models in parallel, and pairs nodes within each run of nodes
+ * that compare equal. rule: how the nodes of a run are paired. */
 static void pair_runs(struct node_pairing *p, int (*compare)(const struct node_pairing *p, int old_node, int new_node), enum run_rule rule)
 {
     for (size_t i = 0, k = 0; i < p->old_count && k < p->new_count;) {
@@ -206,7 +206,7 @@ static json_t *guids_of(const struct model_outline *outline)
     json_t *found = json_object();
     for (size_t i = 0; i < outline->header.count; i++) {
         const char *guid = model_outline_property(&outline->nodes[i], "GlobalId");
-        if (guid) /* value in the map from GUIDs: index of the node; -1: several nodes share the GUID */
+        if (guid) /* the map's values: index of the node with the GUID; -1: several nodes share the GUID */
             json_object_set_new_nocheck(found, guid, json_integer(json_object_get(found, guid) ? -1 : (json_int_t)i));
     }
     return found;
@@ -226,7 +226,7 @@ static void pair_by_guid(struct node_pairing *p)
     json_decref(news);
 }
 
-/* Pairs nodes by name, level by level from the roots, so that children are compared under paired parents. */
+/* Pairs nodes by name, level by level from the roots, so that only children of paired parents are compared. */
 static void pair_down_by_name(struct node_pairing *p)
 {
     take_children(p, -1, -1);

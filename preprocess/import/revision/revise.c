@@ -22,7 +22,7 @@
 #include "preprocess/match/plant_trial.h"
 #include "preprocess/report/text_table.h"
 
-enum { ROWS_PRINTED = 40, MAX_OWN_FILES = 4 }; /* MAX_OWN_FILES: files besides the models */
+enum { ROWS_PRINTED = 40, MAX_OWN_FILES = 4 }; /* MAX_OWN_FILES: number of files besides the models */
 
 static const char program[] = "plantcast import";
 static const char *const kinds[] = { [REVISION_ASSET] = "asset", [REVISION_NODE] = "node", [REVISION_TAG] = "tag" };
@@ -43,7 +43,7 @@ struct revising {
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
-/* Reads a text file. Returns NULL if it does not exist, or on an error, which sets *status to 1. */
+/* Reads a text file. Returns NULL if it does not exist, or on an error; the latter sets *status to 1. */
 static char *read_text(const char *path, int *status)
 {
     size_t bytes;
@@ -53,8 +53,8 @@ static char *read_text(const char *path, int *status)
     return text;
 }
 
-/* Finds the tag list, following a symlink. Returns the exit status: 1 with an error printed if the list lies in another folder that is not
- * writable. */
+/* Finds the tag list, following a symlink. Returns the exit status: 1 after printing an error if the list is in another folder
+ * that is not writable. */
 static int find_tags(struct revising *r)
 {
     char folder[PATH_MAX], path[PATH_MAX];
@@ -87,7 +87,7 @@ static int read_plant(struct revising *r)
     return r->plant ? status : 1;
 }
 
-/* Collects the models whose content differs from the copy in the plant folder. */
+/* Collects the models that differ from the copies in the plant folder. */
 static void take_models(struct revising *r)
 {
     r->models = mem_array(r->params->count, sizeof(*r->models));
@@ -165,8 +165,8 @@ static void write_review(struct revising *r)
 
 /* --- the files ------------------------------------------------------------------------------------------------------------------ */
 
-/* Adds a text file to the transaction that replaces the plant's files. text: new text; NULL: the file stays unchanged. before: text that
- * the file must still have when it is replaced; NULL: not checked, because only this program writes the file. */
+/* Adds a text file to the transaction that replaces the plant's files. text: new text; NULL: unchanged. before: text that the
+ * file must still have when it is replaced; NULL: not checked, because only this program writes the file. */
 static int add_text(struct revising *r, const char *name, const char *text, const char *before)
 {
     struct revision_file *file = &r->files[r->file_count++];
@@ -180,8 +180,7 @@ static const char *if_other(const char *text, const char *before)
     return text && strcmp(text, before) != 0 ? text : NULL;
 }
 
-/* Replaces the plant's files, plant.yaml last. In this order the daemon can load the folder even if it reads it between two
- * replacements. */
+/* Replaces the plant's files, plant.yaml last, so that the daemon can load the folder even between two replacements. */
 static int apply(struct revising *r)
 {
     r->files = mem_array(r->model_count + MAX_OWN_FILES, sizeof(*r->files));

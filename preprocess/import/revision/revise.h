@@ -6,18 +6,18 @@
 
 struct revise_params {
     const char *folder;                     /* plant folder; contains plant.yaml */
-    const char *work;                       /* temporary folder inside the plant folder; N.glb in it is the converted model N */
-    const struct plant_draft_model *models; /* array of the converted models with their outlines */
+    const char *work;                       /* temporary folder inside the plant folder; its file N.glb is converted model N */
+    const struct plant_draft_model *models; /* the converted models and their outlines */
     size_t count;
-    bool dry_run; /* only print what would change */
+    bool dry_run; /* only print the planned changes */
 };
 
-/* Replaces models, plant.yaml and tags.csv together. Prints a review of the changes and writes it to review.csv. Returns the exit status:
- * 0, or 1 with the reasons on standard error, and then nothing was changed. */
+/* Replaces models, plant.yaml and tags.csv together. Prints a review of the changes and writes it to review.csv. Returns the
+ * exit status: 0, or 1 with the reasons on standard error and nothing changed. */
 int revise(const struct revise_params *params);
 
-/* Undoes the last revision: restores all files that it replaced. forced: also restores files that have changed since the revision. lent:
- * descriptor of the folder lock that the parent process holds (plant_folder.h); 0: none. Returns the exit status. */
+/* Undoes the last revision by restoring all files that it replaced. forced: also restores files that have changed since. lent:
+ * descriptor of the folder lock held by the parent process (plant_folder.h); 0: none. Returns the exit status. */
 int revise_undo(const char *folder, bool forced, int lent);
 
 #endif

@@ -15,7 +15,7 @@
 #include "preprocess/import/revision/asset_pattern.h"
 #include "preprocess/import/revision/model_states.h"
 
-/* tolerance in metres below which positions in the old and the new model count as equal: exports round to a millimetre */
+/* metres; positions in the old and the new model that differ by less count as equal, because exports round to a millimetre */
 static const double tolerance_m = 0.002;
 
 struct planning {
@@ -28,14 +28,14 @@ struct planning {
     json_t *ids;
     struct revision_row *tag_rows;
     size_t tag_row_count, tag_row_room;
-    /* State for the model that is being compared: */
+    /* state for the model being compared: */
     const char *file;
     struct model_states states;
     struct asset_patterns patterns;
-    /* whether a node belongs to the current asset. before: by node of the old model; after: by node of the new model */
+    /* nodes that belong to the current asset; before: by node of the old model; after: by node of the new model */
     bool *before, *after;
-    bool *covered;        /* by node of the new model: whether it belongs to any asset */
-    bool *roots;          /* by node of the old model: whether a review row about an asset already mentions it */
+    bool *covered;        /* by node of the new model: it belongs to an asset */
+    bool *roots;          /* by node of the old model: a review row about an asset already mentions it */
     char *why;
 };
 
@@ -68,7 +68,7 @@ static char *path_of(const struct model_outline *outline, size_t node)
     return path.at;
 }
 
-/* Adds rows to the review about nodes that were added, removed or renamed. Of a whole subtree, only its topmost node gets a row. */
+/* Adds review rows about nodes that were added, removed or renamed. Of a whole subtree, only the topmost node gets a row. */
 static void review_nodes(struct planning *p)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;
@@ -99,7 +99,7 @@ static void review_nodes(struct planning *p)
 
 /* --- frames --------------------------------------------------------------------------------------------------------------------- */
 
-/* Computes the transform from the model's units and axes to the coordinates X, Y, Z of the tag list. */
+/* Computes the transform from the model's units and axes to the tag list's coordinates X, Y, Z. */
 static void model_to_list(const struct plant_asset *asset, double out[16])
 {
     const double u = asset->unit_m;
@@ -138,7 +138,7 @@ static struct tag_edit *edit_tag(struct planning *p, const struct plant_tag *tag
     return edit;
 }
 
-/* Records that a tag loses its exact position on the model: the tag list then states only its equipment. */
+/* Records that a tag loses its exact position on the model: the tag list will only give its equipment. */
 static void lose_place(struct planning *p, const struct plant_tag *tag, const char *detail)
 {
     edit_tag(p, tag)->place = "equipment";
@@ -164,7 +164,7 @@ static void follow_node(struct planning *p, const struct plant_tag *tag)
         if (tag->place.assumed)
             edit->place = "equipment";
         say(p, REVISION_TAG, "renamed", tag->name, "the tag's node %s is now %s", tag->place.node, pattern);
-        return; /* the edit of the asset now owns `pattern` and frees it */
+        return; /* the asset's edit now owns `pattern` and frees it */
     }
     case ASSET_PATTERN_GONE: {
         char *detail = mem_printf("the tag's node %s is no longer in the model", tag->place.node);
@@ -224,7 +224,7 @@ static void follow_asset(struct planning *p, size_t index, const struct states_m
 
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the first node, in the old model, of those that belong to the current asset. The asset usually has this node's name. */
+/* Returns the first of the old model's nodes that belong to the current asset. The asset usually has the name of this node. */
 static int root_of(const struct planning *p)
 {
     size_t i = 0;
@@ -260,7 +260,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
 
 enum taken { TAKEN, TAKEN_NOW /* the old model had no nodes of the asset, the new model has some */, TAKEN_NOTHING };
 
-/* Marks the nodes of the asset in the old and the new model (before[], after[]), and records changes of the asset's node patterns. */
+/* Marks the asset's nodes in the old and the new model (before[], after[]), and records changes of the asset's node patterns. */
 static enum taken take(struct planning *p, const struct plant_asset *asset, struct asset_edit *edit)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;
@@ -337,15 +337,15 @@ static void add_assets(struct planning *p, const struct revision_model *model, c
     }
 }
 
-/* Adds an asset for new equipment: for a node of the new model that has no counterpart in the old model, belongs to no asset, and has no
- * node of an asset below it. */
+/* Adds an asset for new equipment: for a node of the new model that has no counterpart in the old model, belongs to no asset,
+ * and has no asset's node below it. */
 static void add_new(struct planning *p, const struct revision_model *model, const struct plant_asset *like)
 {
     const struct model_outline *new = &p->states.after.outline;
     bool *wanted = mem_array(new->header.count + 1, sizeof(*wanted)), placed = false;
     for (int i = 0; i < 16; i++)
         placed |= fabs(like->placement[i] - transform_identity[i]) > 0;
-    if (!placed) /* if existing assets of the model have a placement, that of a new asset cannot be guessed, so none is added */
+    if (!placed) /* if existing assets of the model have a placement, a new asset's placement cannot be guessed, so no asset is added */
         for (size_t i = 0; i < new->header.count; i++) {
             wanted[i] = p->states.pairs.to_old[i] < 0;
             for (size_t k = i; k < new->header.nodes[i].end && wanted[i]; k++)

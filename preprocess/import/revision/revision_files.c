@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replaces files of a plant folder, and undoes a replacement. Both first rename one prepared folder, which is atomic. From then on
- * plant_folder.c completes the transaction, also after a crash. */
+/* Replaces files of a plant folder, and undoes a replacement. Each begins by renaming a prepared folder, which is atomic. From
+ * then on, plant_folder.c completes the transaction, even after a crash. */
 #include "preprocess/import/revision/revision_files.h"
 
 #include <errno.h>
@@ -26,8 +26,8 @@ static int move(const char *from, const char *to)
 
 /* --- beginning ------------------------------------------------------------------------------------------------------------------ */
 
-/* Saves the current version of a file for undo. Text files are copied, because an editor may overwrite them in place. Models are large and
- * only ever replaced as a whole, so they are hard-linked; they are copied if the file system has no hard links. */
+/* Saves the current version of a file for undo. Copies text files, because an editor may overwrite them in place. Hard-links
+ * models, because they are large and only ever replaced as a whole; copies them if the file system has no hard links. */
 static int keep(const char *from, const char *to)
 {
     char *bytes;
@@ -51,7 +51,7 @@ static int sync_file(const char *path)
     return status;
 }
 
-/* Gives a new file the mode and owner of the file that it replaces. */
+/* Gives a new file the mode and owner of the file it replaces. */
 static void take_rights(const char *from, const char *to)
 {
     struct stat st;
@@ -84,8 +84,8 @@ static int add_file(const char *folder, const char *next, const struct revision_
     return status == 0 && kept != -ENOENT ? kept : status;
 }
 
-/* Returns whether the file still has the text that was read (file->before). Called immediately before the transaction, so that an edit by a
- * user in between is unlikely. */
+/* Returns whether the file's text is still the one that was read (file->before). Called immediately before the transaction, so
+ * that a user's edit in between is unlikely. */
 static bool is_as_read(const char *folder, const struct revision_file *file)
 {
     size_t bytes;
