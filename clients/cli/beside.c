@@ -10,7 +10,7 @@
 #include "clients/link/daemon.h"
 #include "commands.h"
 
-/* Without /proc, this program does not know its own folder: execvp() then searches the helper's name in PATH. */
+/* Without /proc, this program cannot find its own folder; execvp() then searches PATH for the helper. */
 void run_beside(const char *ending, const char *package, char **argv)
 {
     char path[PATH_MAX] = "plantcast";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The subcommands of `plantcast`. argv[0] is the subcommand's own name. Each returns the exit code: 0 success, 2 wrong usage, 1 any
+/* The subcommands of `plantcast`. argv[0] is the subcommand's name. Each returns the exit code: 0 success, 2 wrong usage, 1 any
    other failure. */
 #ifndef CLI_COMMANDS_H
 #define CLI_COMMANDS_H
@@ -7,7 +7,7 @@
 
 struct daemon_access; /* clients/link/daemon.h */
 
-/* Takes one picture: offline from a plant file, or from a daemon. */
+/* Draws one picture offline from a plant file, or fetches it from a daemon. */
 int cmd_snapshot(const struct daemon_access *access, int argc, char **argv);
 /* Connects many viewers to a daemon and prints a table of latencies. */
 int cmd_probe(const struct daemon_access *access, int argc, char **argv);
@@ -22,9 +22,9 @@ int tags_browse(int argc, char **argv);
 int cmd_history(int argc, char **argv);
 /* Reports whether a daemon is ready. */
 int cmd_ready(const struct daemon_access *access, int argc, char **argv);
-/* Makes a daemon on this machine send its sessions to other daemons. */
+/* Makes a daemon on this machine close its sessions, so that they reconnect to other daemons. */
 int cmd_drain(int argc, char **argv);
-/* Begins or ends the maintenance of a standby core. */
+/* Begins or ends maintenance of a standby core. */
 int cmd_standby(int argc, char **argv);
 /* Makes a daemon on this machine reload its plant, and prints the result. */
 int cmd_reload(int argc, char **argv);
@@ -34,7 +34,7 @@ int cmd_backup(int argc, char **argv);
 int cmd_restore(int argc, char **argv);
 /* Watches the servers of many plants, and serves a page that lists them. */
 int cmd_fleet(int argc, char **argv);
-/* Verifies that the audit trail of a daemon is complete. */
+/* Verifies that a daemon's audit trail is complete. */
 int cmd_audit(int argc, char **argv);
 /* Proposes locations for more sensors, lists drifting sensors, and accepts assumed positions. */
 int cmd_sensors(int argc, char **argv);
@@ -45,11 +45,11 @@ int cmd_read(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
 
-/* Replaces this process by the helper program in the same folder whose name is this program's plus `ending`; the helper runs the command
-   argv[0]. Helpers keep large dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run,
-   with the reason printed. package: Debian package that has the helper. */
+/* Replaces this process with a helper program in the same folder, named like this program plus `ending`; the helper runs the
+   command argv[0]. Helpers keep large dependencies and parsers of untrusted input out of this program. package: Debian package
+   that contains the helper. Returns only if the helper cannot be run, with the reason printed. */
 void run_beside(const char *ending, const char *package, char **argv);
-/* Replaces this process by plantcast-film and passes on the options that all commands share; access NULL: there are none. Returns only if
+/* Replaces this process with plantcast-film, passing on the options common to all commands (access NULL: none). Returns only if
    plantcast-film cannot be run, with the reason printed. */
 void run_film(const struct daemon_access *access, int argc, char **argv);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast clip`: makes a film of recorded history from pictures of a daemon, or of the offline renderer. */
+/* `plantcast clip`: makes a film of recorded history from pictures drawn by a daemon or by the offline renderer. */
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
@@ -20,17 +20,17 @@ enum { MAX_PICTURES = 1000000, SAY_EACH = 250 };
 struct film {
     struct snapshot_options *options;
     struct video *video;
-    struct offline_renderer offline; /* renderer of a film that is made without a daemon */
+    struct offline_renderer offline; /* renderer for a film that is made without a daemon */
     struct view view;
     struct daemon_url url;
     struct text query;
-    const char *said;                   /* text to draw into the pictures of the tour's present stop; empty: none */
+    const char *said;                   /* text to draw into the pictures of the tour's current stop; empty: none */
     long count;                         /* pictures made so far */
     struct film_statements *statements; /* the server's signed statements about the pictures of a signed film; NULL: the film is not
                                            signed */
 };
 
-/* Appends a picture. The first call creates the file, because the first picture gives the film its size. Returns false on failure. */
+/* Appends a picture. The first picture creates the file and determines the film's size. Returns false on failure. */
 static bool add_picture(struct film *film, uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
 {
     if (!film->video)
@@ -95,7 +95,7 @@ static bool download(struct film *film, int64_t at_us)
 
 typedef bool picture_fn(struct film *film, int64_t at_us);
 
-/* Makes the next `count` pictures, each by a call of `picture`. all: number of pictures of the whole film, for reporting progress. */
+/* Makes the next `count` pictures with one call of `picture` each. all: number of pictures in the whole film, for progress reports. */
 static bool shoot(struct film *film, picture_fn *picture, long count, double all)
 {
     const struct snapshot_options *options = film->options;
@@ -120,8 +120,8 @@ static bool turn(struct film *film, const json_t *stop)
            (offline ? offline_renderer_take_view(&film->offline, options, &film->view) : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
-    film->said = options->is_signed ? "" : tour_text(stop); /* a signed film gets no text in its pictures, because that would invalidate
-                                                               their signatures */
+    film->said = options->is_signed ? "" : tour_text(stop); /* a signed film has no text in its pictures, because that would
+                                                               invalidate their signatures */
     return good;
 }
 
@@ -130,7 +130,7 @@ static long pictures_of(const struct film *film, const json_t *stop)
     return lround(fmax(1, tour_dwell_s(stop) * film->options->fps));
 }
 
-/* Writes the texts of the tour's stops as subtitles of a signed film, in a file next to the film. */
+/* Writes the texts of a signed film's tour as subtitles to a file next to the film. */
 static bool write_texts(const struct film *film, const json_t *stops)
 {
     double *from_s = mem_array(json_array_size(stops) + 1, sizeof(*from_s));
@@ -142,7 +142,7 @@ static bool write_texts(const struct film *film, const json_t *stops)
     return good;
 }
 
-/* Makes the film. stops: the stops (views) of a tour; NULL: the film shows a single view from one instant to another. */
+/* Makes the film. stops: the views of a tour; NULL: one view from one instant to another. */
 static bool make(struct film *film, picture_fn *picture, const json_t *stops)
 {
     const struct snapshot_options *options = film->options;
@@ -168,7 +168,7 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
     return good;
 }
 
-/* Makes a film from a daemon's response that contains its tours as JSON; takes ownership of `answer`. */
+/* Makes the film. answer: a daemon's response with its tours as JSON, needed if the options name a tour; freed here. */
 static bool make_of(struct film *film, picture_fn *picture, char *answer)
 {
     const struct snapshot_options *options = film->options;

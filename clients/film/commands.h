@@ -6,7 +6,7 @@ struct daemon_access; /* clients/link/daemon.h */
 
 /* Makes a film of recorded history, offline from a plant file or through a daemon. */
 int command_clip(const struct daemon_access *access, int argc, char **argv);
-/* Verifies that each picture of a signed film is what the server drew, with the server's public key. */
+/* Verifies with the server's public key that each picture of a signed film is as the server drew it. */
 int command_verify(int argc, char **argv);
 
 #endif

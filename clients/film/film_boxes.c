@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the file of a film. MP4 files consist of boxes: length, type and content, with big-endian numbers. A table lists the allowed boxes
-   and their content. */
+/* Checks the file format of a film. An MP4 file consists of boxes: length, type and content, with big-endian numbers. A table
+   lists the allowed boxes and their content. */
 #include "film_boxes.h"
 
 #include <ctype.h>
@@ -47,7 +47,7 @@ static const struct box_rule rules[] = {
     { "vmhd", "minf", "00000001" ZEROS_8, 0, true },
     { "hdlr", "minf", "00000000" "????????" "75726c20" "*", 0, false },
     { "dinf", "minf", "*", HEAD, true },
-    { "dref", "dinf", "00000000" "00000001" "0000000c" "75726c20" "00000001", 0, true }, /* a data reference that says that the film's
+    { "dref", "dinf", "00000000" "00000001" "0000000c" "75726c20" "00000001", 0, true }, /* a data reference saying that the film's
                                                                                             samples are in this file */
     { "stbl", "minf", "*", HEAD, true },
     { "stsd", "stbl", "00000000" "00000001" "*", HEAD + 8, true },
@@ -98,7 +98,7 @@ static bool digit_fits(const struct box_walk *walk, char expected, size_t run, u
     return expected == '?' || value == (unsigned)(isdigit((unsigned char)expected) ? expected - '0' : expected - 'a' + 10);
 }
 
-/* Returns true if the content equals one of the alternatives in `expected`, which '|' separates. */
+/* Returns true if the content equals one of the alternatives in `expected`, separated by '|'. */
 static bool content_fits(const struct box_walk *walk, const char *expected, const uint8_t *bytes, size_t count)
 {
     size_t i = 0, run = 0;
@@ -156,7 +156,7 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
            FAIL("box %s has contents that Plantcast never writes", name);
 }
 
-/* Reads the picture's size from the innermost box, avc1. All other boxes must agree with that size. */
+/* Reads the picture's size from the innermost box, avc1. All other boxes must have the same size. */
 static void learn_size(struct box_walk *walk, const uint8_t *moov, size_t count)
 {
     for (size_t i = 4; i + 32 <= count; i++)
@@ -201,8 +201,8 @@ static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
     return good;
 }
 
-/* Checks one top-level box of the file. The box mdat is skipped and not read, because it may be as long as the disk. Returns false with
-   the reason in walk->why. */
+/* Checks one top-level box of the file. Skips the content of the box mdat unread, because it may be as large as the disk.
+   Returns false with the reason in walk->why. */
 static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
 {
     char *why = walk->why;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the server's signed statements about all pictures of a film as one metadata text of the film: JSON, compressed, in
-   base64. */
+/* Reads and writes a film's signed statements, one by the server for each picture, as one metadata text: JSON, compressed, in base64. */
 #include "signed_film.h"
 
 #include <inttypes.h>
@@ -17,14 +16,14 @@
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
-/* largest size in bytes of the text that has the signed statements about all pictures of a film: MAX_BYTES compressed, MAX_TEXT_BYTES
+/* maximum size in bytes of the metadata text with the signed statements of all pictures: MAX_BYTES compressed, MAX_TEXT_BYTES
    uncompressed */
 static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30;
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */
 
 struct film_statements {
-    struct text list; /* JSON without the closing bracket */
+    struct text list; /* JSON array without its closing bracket */
 };
 
 struct film_statements *film_statements_create(void)
@@ -121,8 +120,9 @@ static bool read_statements(struct film_reader *reader)
     return json_is_array(reader->statements) || FAIL("the clip's signed statements cannot be read");
 }
 
-/* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the description of colours from the
-   stream alone, because film_boxes_plain() has already checked that of the container. Returns false with the reason in reader->why. */
+/* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the colour description
+   from the stream alone, because film_boxes_plain() has already checked the container's. Returns false with the reason in
+   reader->why. */
 static bool open_film(struct film_reader *reader, const char *path)
 {
     av_log_set_level(AV_LOG_QUIET);
@@ -223,7 +223,7 @@ struct film_check {
     const struct signing_key *key;
     const struct redraw_options *options;
     struct film_reader reader;
-    bool tour;              /* whether the view may change */
+    bool tour;              /* true: the view may change between pictures */
     json_t *first;          /* statement of the first picture */
     json_t *views;          /* JSON array of the film's views in order, each with its query and start time */
     int64_t at_us, step_us; /* at_us: instant of the previous picture; step_us: time between the instants of two pictures, 0: not known
@@ -244,8 +244,7 @@ static bool same_view(const json_t *query, const json_t *other)
     return same;
 }
 
-/* Checks the view of a picture: it must equal that of the first picture, unless --tour allows it to change. Returns false if it does
-   not. */
+/* Checks that a picture has the same view as the first one, unless --tour allows changes. Returns false if not. */
 static bool takes_view(struct film_check *check, const json_t *statement)
 {
     struct film_reader *reader = &check->reader;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signed films contain the server's signed statement about each picture, and the pictures losslessly encoded, so that their pixels are
-   those that the server signed (SIGNED.md). Thread: one. */
+/* Signed films contain the server's signed statement about each picture. The pictures are encoded losslessly, so that their
+   pixels are exactly those that the server signed (SIGNED.md). Thread: one. */
 #ifndef FILM_SIGNED_FILM_H
 #define FILM_SIGNED_FILM_H
 #include "clients/cli/picture/redraw.h"
@@ -14,9 +14,9 @@ bool film_statements_add(struct film_statements *statements, const uint8_t *png,
 /* Writes the collected statements into the film's metadata. Returns false, with the reason printed, if they are too long. */
 bool film_statements_put(const struct film_statements *statements, struct video *video);
 
-/* Verifies each picture of the film with the server's public key, and that no picture between the first and the last is missing or
-   moved. With options->plant it also redraws each picture. Prints the findings. tour: the view may change; each view is printed with its
-   start time. Returns 0 if all agree, 1 if something differs, 2 if the film could not be checked. */
+/* Verifies each picture of the film with the server's public key, and that no picture between the first and the last is missing
+   or out of place. With options->plant it also redraws each picture. Prints the findings. tour: the view may change; each view
+   is printed with its start time. Returns 0 if all agree, 1 if something differs, 2 if the film could not be checked. */
 int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options, bool tour);
 
 #endif

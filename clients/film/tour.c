@@ -101,8 +101,8 @@ static double width_of(cairo_t *cairo, const char *text)
     return extents.x_advance;
 }
 
-/* Breaks the text at blanks into lines of at most `room` pixels, in place; `lines` receives the beginning of each line. Returns the number
-   of lines. */
+/* Breaks the text in place at blanks into lines of at most `room` pixels; `lines` receives the start of each line. Returns the
+   number of lines. */
 static int break_lines(cairo_t *cairo, char *text, double room, const char *lines[LINES])
 {
     int count = 1;

@@ -20,7 +20,7 @@ struct video {
     AVFrame *picture;
     AVPacket *packet;
     bool lossless;
-    bool begun; /* true: the video file was created and its header is written */
+    bool begun; /* true: the video file exists and has its header */
     int64_t next;
 };
 
@@ -32,8 +32,8 @@ static bool failed(const struct video *video, const char *what, int status)
     return false;
 }
 
-/* Sets the codec's parameters. Players expect video in limited range (brightness from 16 to 235); colour matrix and transfer curve are
-   those of the pictures. */
+/* Sets the codec's parameters. Players expect limited range (brightness from 16 to 235); the colour matrix and transfer curve
+   match the pictures. */
 static void describe(struct video *video, int width_px, int height_px, double fps)
 {
     AVCodecContext *codec = video->codec;
@@ -116,7 +116,7 @@ struct video *video_create(const char *path, int width_px, int height_px, double
     return NULL;
 }
 
-/* Writes the packets that the encoder has finished to the file. Returns false on failure. */
+/* Writes the encoder's finished packets to the file. Returns false on failure. */
 static bool write_packets(struct video *video)
 {
     int status;

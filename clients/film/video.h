@@ -9,7 +9,7 @@ struct video;
 /* Opens the video file. Pictures with odd sides are cropped to even ones. lossless: nothing is cropped and the exact RGB values are
    preserved (H.264 High 4:4:4 Predictive, which browsers do not play). Returns NULL with the reason printed. */
 struct video *video_create(const char *path, int width_px, int height_px, double fps, bool lossless);
-/* Adds a text to the metadata (only of .mp4 and .mov files). Call it before video_finish(). */
+/* Adds a text to the metadata (.mp4 and .mov files only). Call it before video_finish(). */
 void video_set_text(struct video *video, const char *key, const char *text);
 /* Encodes one picture. Returns false with the reason printed. */
 bool video_add(struct video *video, const uint8_t *bgrx, int stride_bytes);

@@ -11,7 +11,7 @@
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 
-/* Reads the access token from the first line of the file given by --token-file. Returns false with the reason printed. */
+/* Reads the access token from the first line of the --token-file. Returns false with the reason printed. */
 static bool read_token(struct daemon_access *access)
 {
     size_t count;
@@ -155,7 +155,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         exchange->done = true;
         break;
     case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: exchange->status = (int)lws_http_client_http_response(wsi); break;
-    /* lws_http_client_read() fills `buffer` with a part of the response's body, and calls this function again with
+    /* lws_http_client_read() fills `buffer` with part of the response body and calls this function again with
        LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ */
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP:
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;

@@ -14,7 +14,7 @@ struct decoder;
 struct decoder *decoder_create(void);
 /* Frees the decoder. &NULL is fine; sets *decoder to NULL. */
 void decoder_destroy(struct decoder **decoder);
-/* Decodes one frame. Returns false if its bytes are not valid, or its codec is not in this build. */
+/* Decodes one frame. Returns false if its data is invalid, or if this build lacks its codec. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
 /* Returns true if this build can decode the codec on this machine; if not, `why` receives the reason. */
 bool decoder_has(enum wire_codec codec, char why[DECODER_WHY_BYTES]);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads the module of the H.264 decoder on first use, because the many libraries behind libavcodec would slow down every start of a
-   program. */
+/* Loads the H.264 decoder module on first use, because the many libraries that libavcodec needs would slow down every program start. */
 #include "base/system/module.h"
 #include "h264_decoder.h"
 

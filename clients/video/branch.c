@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Starts the GStreamer pipeline that sends the video to viewers over the network (by SRT, for example), watches the pipeline, and restarts
-   it after a failure. */
+/* Starts the GStreamer pipeline of one output, such as SRT, watches it, and restarts it after a failure. */
 #include "branch.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One way in which viewers get the video, such as SRT, with a GStreamer pipeline of its own. If the pipeline fails, the other ways
-   continue, and the pipeline is restarted. Thread: that of the default main context. */
+/* One output of the video, such as SRT, with its own GStreamer pipeline. If the pipeline fails, the other outputs continue and
+   it is restarted. Thread: that of the default main context. */
 #ifndef VIDEO_BRANCH_H
 #define VIDEO_BRANCH_H
 #include "options.h"
@@ -10,9 +10,9 @@ struct video_branch {
     const char *name;
     char *text; /* pipeline description that follows OUTPUTS_SOURCE */
     struct outputs *outputs;
-    void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* called before the pipeline plays */
+    void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* called before the pipeline starts to play */
     const struct video_options *options;
-    GstElement *pipeline; /* pipeline that sends the video to viewers; NULL: it has failed and is started again at again_us */
+    GstElement *pipeline; /* pipeline of this output; NULL: it has failed and is restarted at again_us */
     gint64 again_us;
     gint readers; /* number of connected readers; atomic */
 };

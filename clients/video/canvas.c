@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the frames of the video: a picture of the plant, or while there is none a text card (a text that says why), and a strip below. */
+/* Draws the video's frames: a picture of the plant, or a text card that says why there is none, with a strip below. */
 #include "canvas.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ static void colour(cairo_t *cairo, const double rgb[3])
     cairo_set_source_rgb(cairo, rgb[0], rgb[1], rgb[2]);
 }
 
-/* Draws a line of text centred in `width` with its baseline at y, in font size px or in a smaller one in which it fits. */
+/* Draws a line of text centred in `width` with its baseline at y, in font size px, or smaller if the line would not fit. */
 static void centred(cairo_t *cairo, const char *text, double px, bool bold, double width, double y)
 {
     double wide = brush_width(cairo, px, bold, text);
@@ -76,8 +76,8 @@ static char *age_text(const struct shown *look)
     return video_say(look->words, age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
 }
 
-/* Draws the strip below the plant's picture: clock and age of the values at the right, which always fit, and the title in the remaining
-   room. */
+/* Draws the strip below the plant's picture: clock and age of the values on the right, always in full, and the title in the
+   remaining room. */
 static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, gint64 utc_us, double y)
 {
     double height = canvas->height_px - y, px = 0.55 * height, pad = 0.5 * height;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws one frame of the video: a picture of the plant, and below it a strip with title, clock and the age of the values. If there is no
-   recent picture, a text card with the reason takes its place. Thread: one. */
+/* Draws one frame of the video: a picture of the plant, and below it a strip with title, clock and the age of the values.
+   Without a recent picture, a text card with the reason takes its place. Thread: one. */
 #ifndef VIDEO_CANVAS_H
 #define VIDEO_CANVAS_H
 #include <cairo.h>
@@ -9,11 +9,11 @@
 
 #include "render/view.h"
 
-struct shown {                /* content to draw in a frame; owned by the source (source.h), valid until its next call */
-    cairo_surface_t *picture; /* picture of the plant; NULL: the frame shows a text card (a text in place of a picture) instead */
-    /* texts of the text card, which is shown while there is no recent picture: in large letters that fact, and below it the reason */
+struct shown {                /* content of a frame; owned by the source (source.h), valid until its next call */
+    cairo_surface_t *picture; /* picture of the plant; NULL: a text card is drawn instead */
+    /* texts of the text card, shown while there is no recent picture: headline in large letters, and below it the reason */
     const char *headline, *detail;
-    gint64 since_us; /* UTC time since which there is a reason for the text card; 0: the card shows no time */
+    gint64 since_us; /* UTC time since which the card's reason has applied; 0: the card shows no time */
     const char *title;
     gint64 age_ms;   /* age of the oldest value in the picture; -1: it has no values */
     GTimeZone *zone; /* time zone of the plant */
@@ -25,7 +25,7 @@ struct canvas {
     bool time_code;
 };
 
-/* Returns the height in pixels of the plant's picture in a video of height height_px; the strip below has the rest. */
+/* Returns the height in pixels of the plant's picture in a video of height_px; the strip below takes the rest. */
 int canvas_picture_px(int height_px);
 /* Draws the frame for the instant utc_us into the pixels (BGRX). If canvas->time_code is set, the bottom row of the frame is a
    machine-readable time code of CANVAS_CODE_BITS blocks, white for 1. From left to right they are: 1, 0, the tenths of seconds since 1970

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes BGRX to H.264 with x264 without reordering: each frame gives one access unit. */
+/* Encodes BGRX to H.264 with x264 without frame reordering: each frame gives one access unit. */
 #include "encoder.h"
 
 #include <gst/app/gstappsink.h>
@@ -76,7 +76,7 @@ bool encoder_is_ready(const struct video_encoder *encoder)
     return gst_app_src_get_current_level_bytes(encoder->in) < MAX_WAITING * encoder->frame_bytes;
 }
 
-/* Requests a key frame. Called every KEY_S seconds of video time, so that viewers can join, even if frames in between were dropped. */
+/* Requests a key frame every KEY_S seconds of video time, even if frames were dropped in between, so that viewers can join. */
 static void ask_for_key(struct video_encoder *encoder)
 {
     GstStructure *structure = gst_structure_new("GstForceKeyUnit", "timestamp", G_TYPE_UINT64, GST_CLOCK_TIME_NONE, "stream-time",

@@ -14,7 +14,7 @@ void encoder_destroy(struct video_encoder **encoder); /* &NULL is fine; leaves N
 bool encoder_is_ready(const struct video_encoder *encoder);
 /* Encodes the frame number `index` of a stream with a fixed frame rate. Takes ownership of the pixels (BGRX). */
 void encoder_add(struct video_encoder *encoder, GstBuffer *pixels, guint64 index);
-/* Returns true while the encoder works; false, with the reason printed, once it has failed. */
+/* Returns true while the encoder works; false, with the reason printed, after it has failed. */
 bool encoder_is_good(struct video_encoder *encoder);
 
 #endif

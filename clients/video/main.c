@@ -88,13 +88,13 @@ static gint64 time_of(const struct video_program *program, guint64 index)
     return program->begin_us + (gint64)(index * G_USEC_PER_SEC / (guint64)program->options.fps);
 }
 
-/* Draws the frame that is due by the clock. Frames that a late timer missed are skipped. */
+/* Draws the frame that is due now. Frames missed by a late timer are skipped. */
 static gboolean on_tick(gpointer data)
 {
     struct video_program *program = data;
     gint64 now_us = g_get_monotonic_time();
     guint64 index = (guint64)(now_us - program->begin_us) * (guint64)program->options.fps / G_USEC_PER_SEC;
-    if (index < program->next) /* the timer fired a little early: draws the next frame anyway, because its time has almost come */
+    if (index < program->next) /* the timer fired slightly early: draws the next frame anyway, because it is almost due */
         index = program->next;
     program->late += index - program->next;
     draw(program, index);
@@ -123,8 +123,8 @@ static gboolean dispatch(GSource *source, GSourceFunc callback, gpointer data)
 static void begin_ticks(struct video_program *program)
 {
     static GSourceFuncs funcs = { .dispatch = dispatch };
-    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* aligns the timer to UTC seconds, so that several of these programs draw at the
-                                                            same instants */
+    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* aligns the timer to UTC seconds, so that several instances of this
+                                                            program draw at the same instants */
     program->begin_us = g_get_monotonic_time() + G_USEC_PER_SEC - rest_us;
     program->ticks = g_source_new(&funcs, sizeof(GSource));
     g_source_set_callback(program->ticks, on_tick, program, NULL);

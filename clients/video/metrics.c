@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serves metrics over HTTP, one response per connection, each in a thread of its own: reads a request up to the blank line, answers, and
-   closes. */
+/* Serves metrics over HTTP. Each connection has its own thread, which reads one request up to the blank line, answers and closes. */
 #include "metrics.h"
 
 #include <gio/gio.h>

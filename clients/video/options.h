@@ -16,9 +16,9 @@ struct video_options {
     char *language;        /* language of text cards, strip and legend: en, ko or de */
     enum language words;   /* the same language */
     char *token, *ca_path, *token_path; /* NULL: not given */
-    char *listen;                       /* listening address of all outputs */
+    char *listen;                       /* address on which all outputs listen */
     int width_px, height_px, fps, kbps, every_ms;
-    int rtsp_port, http_port, srt_port; /* ports of 0 are off; RTSP and SRT send the video, HTTP serves /metrics */
+    int rtsp_port, http_port, srt_port; /* port 0: off; RTSP and SRT send the video, HTTP serves /metrics */
     char *user, *password;              /* name and password that viewers of the RTSP stream must give; NULL: no login */
     int most_readers;                   /* limit per output */
     bool time_code;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distributes the encoded video to all pipelines that send it to viewers (RTSP, SRT). */
+/* Distributes the encoded video to the pipelines of all outputs (RTSP, SRT). */
 #include "outputs.h"
 
-enum { MAX_QUEUED_BYTES = 4 << 20 }; /* maximum number of bytes queued for one pipeline that sends the video to viewers */
+enum { MAX_QUEUED_BYTES = 4 << 20 }; /* maximum number of bytes queued for the pipeline of one output */
 static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 
 struct output {
@@ -65,7 +65,7 @@ void outputs_remove(struct outputs *outputs, GstAppSrc *src)
     g_mutex_unlock(&outputs->lock);
 }
 
-/* *out receives the running time of the pipeline to which `src` belongs. Returns false if the pipeline does not run. */
+/* Sets *out to the running time of the pipeline to which `src` belongs. Returns false if the pipeline is not running. */
 static bool running_time(GstAppSrc *src, GstClockTime *out)
 {
     GstClock *clock = gst_element_get_clock(GST_ELEMENT(src));

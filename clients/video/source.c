@@ -38,7 +38,7 @@ struct video_source {
                                              yet, or the video shows no saved view */
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
-    bool valued; /* true: the picture shows values, so their age is shown; false: it shows none */
+    bool valued; /* true: the picture shows values, so the strip shows their age */
     char headline[120], detail[240], said[240];
     gint64 since_us;    /* UTC time since which the text card is shown; 0: a picture is shown */
     gint64 seen_utc_us; /* instant that the newest picture shows, UTC */
@@ -49,20 +49,20 @@ struct video_source {
 
 /* --- errors ------------------------------------------------------------------------------------------------- */
 
-/* Stores a text for the text card or the log in `out`: only the first line of `said`, as valid UTF-8, cut to `size` bytes. Frees `said`. */
+/* Copies a text for the text card or the log to `out`: only the first line of `said`, as valid UTF-8, cut to `size` bytes. Frees `said`. */
 static void keep(char *said, char *out, gsize size)
 {
     said[strcspn(said, "\n")] = 0;
     char *valid = g_utf8_make_valid(said, -1);
     g_strlcpy(out, valid, size);
-    const char *whole; /* end of the last whole character: a text that is cut within a character cannot be drawn */
+    const char *whole; /* end of the last complete character: text cut inside a character cannot be drawn */
     g_utf8_validate(out, -1, &whole);
     out[whole - out] = 0;
     g_free(valid);
     g_free(said);
 }
 
-/* Shows a text card with a reason and logs the reason: the card in the chosen language, the log in English. */
+/* Shows a text card with a reason and logs the reason, the card in the chosen language, the log in English. */
 static void fail(struct video_source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
 {
     char said[sizeof(source->said)];
@@ -88,8 +88,8 @@ static void refuse(struct video_source *source, long status)
     if (status == 401 || status == 403) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKEN, words, NULL);
         bar(source);
-        source->wait_until_us = source->asked_us + DENIED_US; /* waits before the next request, because the daemon slows down clients that
-                                                                 send wrong tokens too often */
+        source->wait_until_us = source->asked_us + DENIED_US; /* waits before the next request, because the daemon slows down
+                                                                 clients that repeatedly send wrong tokens */
     } else if (status == 429) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKENS, NULL, NULL);
         source->wait_until_us = source->asked_us + DENIED_US;
@@ -246,14 +246,14 @@ static void on_answer(struct video_source *source)
     }
     if (source->asked == ASK_VIEWS && (status == 403 || status == 200))
         source->limited = status == 403;
-    /* A token may be allowed to see the view but not the list of views, so status 403 is not final: the picture request decides. The list
-       is requested again only after LIMITED_US, because the daemon writes each refusal to its audit trail. */
+    /* A token may allow pictures of the view but not the list of views, so status 403 is not final: the picture request
+       decides. The list is requested again only after LIMITED_US, because the daemon writes each refusal to its audit trail. */
     if (source->asked == ASK_VIEWS && status == 403) {
         source->due_us[ASK_VIEWS] = source->asked_us + LIMITED_US;
         return;
     }
     if (status != 200) {
-        if (source->asked == ASK_PLANT && status != 401 && status != 403) /* picture requests handle token errors */
+        if (source->asked == ASK_PLANT && status != 401 && status != 403) /* the picture request handles token errors */
             return;
         refuse(source, status);
         return;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast audit`: verifies by the hashes of its lines that a daemon's audit trail is complete. */
+/* `plantcast audit`: verifies that a daemon's audit trail is complete and unaltered, by its hash chain. */
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>

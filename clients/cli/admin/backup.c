@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast backup` and `plantcast restore`: copy history, alarm journal and configuration of a plant into one folder, and back. If the
-   argument names an instance of the system service, the command replaces itself by the script deploy/backup or deploy/restore, which then
-   calls the command again with paths. */
+/* `plantcast backup` and `plantcast restore`: copy a plant's history, alarm journal and configuration into one folder, and
+   back. If the argument is an instance of the system service, the command executes the script deploy/backup or deploy/restore
+   instead. The script then calls this command again with paths. */
 #include <dirent.h>
 #include <errno.h>
 #include <getopt.h>
@@ -106,7 +106,7 @@ static const char *as_written(const struct plant *plant, const char *path)
     return !strncmp(path, plant->files.folder, n) && path[n] == '/' ? path + n + 1 : path;
 }
 
-/* Files in the history folder that users fill from the page, such as saved views and notes. */
+/* Files in the history folder with what users enter on the page, such as saved views and notes. */
 static const char *const lists[] = { NAMED_VIEWS_FILE, SHORT_LINKS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
 
@@ -139,7 +139,7 @@ static bool add_to_copy(struct backup_job *job, copier *copy, const char *from, 
     return good;
 }
 
-/* Copies the history files of all months. The newest is copied last, so that the backup has readings recorded while it runs. */
+/* Copies the history files of all months, the newest last, so that the backup includes readings recorded while it runs. */
 static bool add_history(struct backup_job *job, const char *folder)
 {
     size_t count;
@@ -168,8 +168,8 @@ static bool add_history(struct backup_job *job, const char *folder)
     return good;
 }
 
-/* Copies the files of the option --add into the backup and marks them "service":true in the manifest. plantcast-restore, the script that
-   restores a service, unpacks them; `plantcast restore` ignores them. */
+/* Copies the files given with --add into the backup and marks them "service":true in the manifest. plantcast-restore, the
+   script that restores a service, unpacks them; `plantcast restore` ignores them. */
 static bool add_service(struct backup_job *job)
 {
     size_t i;
@@ -184,7 +184,7 @@ static bool add_service(struct backup_job *job)
     return good;
 }
 
-/* Returns the path of the history folder as the plant file writes it; NULL: the plant file uses the default folder, next to itself. */
+/* Returns the path of the history folder as written in the plant file; NULL: the plant file uses the default folder, next to itself. */
 static const char *history_name(const struct plant *plant)
 {
     return plant->history.folder ? as_written(plant, plant->history.folder) : NULL;
@@ -219,8 +219,7 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-/* Writes the time of this backup into the history folder; the daemon reports that time in /metrics. No-op if the user may only read the
-   folder. */
+/* Writes the time of this backup into the history folder; the daemon reports it in /metrics. No-op if the user may only read the folder. */
 static void leave_stamp(const char *history)
 {
     char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, history), now[TIMESTAMP_BYTES + 1];
@@ -231,8 +230,8 @@ static void leave_stamp(const char *history)
     mem_free(path);
 }
 
-/* Writes the backup into the folder OUT.part and renames that once it is complete, so that a folder named OUT is always a complete
-   backup. */
+/* Writes the backup into the folder OUT.part and renames it to OUT once complete, so that a folder named OUT is always a
+   complete backup. */
 static bool back_up(struct backup_job *job, const struct plant *plant, const char *out)
 {
     const char *tags = text_base_name(plant->files.tags_path);
@@ -264,7 +263,7 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
 
 /* --- restore -------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns false if a newer version of Plantcast made the backup: its databases may have a format that this program does not know. */
+/* Returns false if a newer version of Plantcast made the backup, because this program may not know its database formats. */
 static bool is_known_version(const char *path, const char *version)
 {
     if (!version || strverscmp(version, PLANTCAST_VERSION) <= 0)
@@ -295,7 +294,7 @@ static json_t *read_manifest(const char *folder)
     return manifest;
 }
 
-/* Returns false for a file name in the backup's manifest that would lead out of the backup's folder. */
+/* Returns false if a file name in the manifest points outside the backup's folder. */
 static bool is_plain(const char *name)
 {
     return name && *name && *name != '.' && !strchr(name, '/');
@@ -328,8 +327,8 @@ static bool is_free(const char *path)
                                               "folder");
 }
 
-/* Returns the path to which a file of the backup is restored (mem_free). tags: path of the tag list as the plant file writes it; NULL:
-   the tag list is next to the plant file. */
+/* Returns the path to which a backed-up file is restored (mem_free). tags: path of the tag list as the plant file writes it;
+   NULL: the tag list is next to the plant file. */
 static char *place_of(const char *name, const char *plant_path, const char *history, const char *tags)
 {
     if (!strcmp(name, PLANT_FILE))
@@ -340,8 +339,8 @@ static char *place_of(const char *name, const char *plant_path, const char *hist
     return *path == '/' ? mem_strdup(path) : mem_printf("%.*s%s", (int)(text_base_name(plant_path) - plant_path), plant_path, path);
 }
 
-/* Creates a folder if there is none. Returns false if `path` is then not a real directory: a symlink could lead the restored files
-   elsewhere. If root creates the folder, it gets its parent's owner. */
+/* Creates a folder if it does not exist. Returns false if `path` is then not a real directory, because a symlink could redirect
+   the restored files. A folder created by root gets its parent's owner. */
 static bool make_folder(const char *path)
 {
     struct stat st, around;
@@ -372,7 +371,7 @@ static bool each_file(struct backup_job *job, const char *plant_path, const char
     return good;
 }
 
-/* Returns the path of the history folder to which the plant file refers once it is restored to plant_path (mem_free). */
+/* Returns the path of the history folder that the plant file will use once it is restored to plant_path (mem_free). */
 static char *future_history(const struct backup_job *job, const json_t *manifest, const char *plant_path)
 {
     const char *name = json_string_value(json_object_get(manifest, "history")), *slash = strrchr(plant_path, '/');
@@ -418,8 +417,8 @@ static bool is_database(const char *name)
     return length > 7 && !strcmp(name + length - 7, ".sqlite");
 }
 
-/* Compares the hash of each restored file with the hash in the manifest. Also copies each database to a temporary file: SQLite reads every
-   page for that, and reports damage that was already in the backup. */
+/* Compares the hash of each restored file with the manifest. Also copies each database to a temporary file: this makes SQLite
+   read every page and report damage that was already in the backup. */
 static bool each_restored(struct backup_job *job, const char *plant_path, const char *history)
 {
     size_t i;
@@ -531,7 +530,7 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
 static int run_command(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
-    /* owns the list of files: the commands restore and verify replace job.files by a list that belongs to the manifest that they read */
+    /* owns the list of files, because `restore` and `verify` set job.files to a list owned by the manifest they read */
     json_t *files = job.files;
     int code = command(argc, argv, &job);
     json_decref(files);
@@ -567,8 +566,8 @@ static int run_restore(int argc, char **argv, struct backup_job *job)
     return (arguments.check ? check(job) : restore(job, argv[optind + 1])) ? 0 : 1;
 }
 
-/* Returns whether an argument is the name of an instance of the system service, as `plantcast init` accepts it, and not the path of a plant
-   file. */
+/* Returns true if the argument is an instance name of the system service, as `plantcast init` accepts it, rather than a plant
+   file's path. */
 static bool is_instance(const char *argument)
 {
     return argument && *argument != '-' && !strpbrk(argument, "./");

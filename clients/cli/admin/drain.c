@@ -12,8 +12,8 @@
 #include "base/clock.h"
 #include "clients/cli/commands.h"
 
-/* WAIT_S: seconds to wait for the daemon: 2 until a load balancer notices, 10 for closing the sessions, 1 in reserve; LOOK_US: interval in
-   microseconds of checks whether the daemon is done */
+/* WAIT_S: seconds to wait for the daemon: 2 until a load balancer notices, 10 to close the sessions, 1 in reserve; LOOK_US:
+   microseconds between checks whether the daemon is done */
 enum { WAIT_S = 13, LOOK_US = 50000 };
 
 static void print_usage(FILE *out)
@@ -28,8 +28,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Returns true if the process is a plantcastd, by its name. This must be checked before SIGUSR1 is sent, because the signal would end most
-   other programs. */
+/* Returns true if the process's name is plantcastd. Checked before sending SIGUSR1, because that signal would end most other programs. */
 static bool is_daemon(pid_t pid)
 {
     char path[64], name[32] = "";

@@ -31,8 +31,8 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Reads the result of a reload from the file that the daemon writes. Returns NULL if there is none yet of a reload that began at
-   since_ns or later. */
+/* Reads the result of a reload from the file that the daemon writes. Returns NULL if the file has no result yet of a reload
+   that began at since_ns or later. */
 static json_t *read_result(const char *path, int64_t since_ns)
 {
     json_t *file = json_load_file(path, 0, NULL), *result = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast standby`: tells a leading core that its standby core is under maintenance, by a file in the history folder of the leading
-   core. */
+/* `plantcast standby`: tells a leading core that its standby core is under maintenance, through a file in the leading core's
+   history folder. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -60,8 +60,7 @@ static bool is_foreign(const struct stat *st)
     return st->st_uid != 0 && st->st_uid != geteuid();
 }
 
-/* Returns NULL if the folder of `path` is safe, else the reason why it is not: users who may write to a folder can replace the files in
-   it. */
+/* Returns NULL if the folder of `path` is safe, else why it is not: anyone who may write to a folder can replace the files in it. */
 static const char *folder_fault(const char *path)
 {
     struct stat st;
@@ -78,7 +77,7 @@ static const char *folder_fault(const char *path)
     return fault;
 }
 
-/* Returns NULL if the token file is safe to use, else the reason why it is not. */
+/* Returns NULL if the token file is safe to use, else why it is not. */
 static const char *file_fault(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))

@@ -21,8 +21,7 @@ enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
 struct fleet_site {
     struct fleet_poll *poll;
     const struct fleet_file *file;
-    /* host name under which the fleet page may be requested in addition to local names; other Host headers are refused (DNS rebinding).
-       NULL: none */
+    /* additional host name under which the page may be requested; other non-local Host headers are refused (DNS rebinding). NULL: none */
     const char *host;
 };
 
@@ -69,7 +68,7 @@ static const struct page_file {
     { "/fleet.css", "clients/fleet/fleet.css", "text/css; charset=utf-8" },
 };
 
-/* Returns the body of the response to a request for `path` (mem_free), and sets *type to its content type. NULL: there is no such path. */
+/* Returns the response body for a request of `path` (mem_free), and sets *type to its content type. NULL: no such path. */
 static char *answer_to(const struct fleet_site *site, const char *path, size_t *bytes, const char **type)
 {
     static const char pictures[] = "/picture/";
@@ -119,7 +118,7 @@ static int begin_answer(struct lws *wsi, struct fleet_answer *answer, int status
     return 0;
 }
 
-/* Returns false for a request whose Host header names another host, as in an attack by DNS rebinding. */
+/* Returns false if the request's Host header names another host, as in a DNS rebinding attack. */
 static bool is_for_us(const struct fleet_site *site, struct lws *wsi)
 {
     char host[NAME_BYTES], name[NAME_BYTES];

@@ -42,7 +42,7 @@ static const char *wrong_with(const char *url)
     return NULL;
 }
 
-/* Returns true if requests to this URL would cross a network without encryption. */
+/* Returns true if requests to this URL would cross a network unencrypted. */
 static bool is_in_clear(const char *plain_url)
 {
     char host[256], name[256];

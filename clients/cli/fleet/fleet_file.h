@@ -10,17 +10,17 @@ enum { FLEET_PLANTS = 1000 };
 
 struct fleet_plant {
     char *id;                   /* identifier in addresses and metrics */
-    char *name;                 /* name of the plant to display; equals the id if the file gives none */
+    char *name;                 /* display name of the plant; equals the id if the file gives none */
     char *url;                  /* ends with a slash */
     char *token_file, *ca_file; /* NULL: none */
-    double poll_s, picture_s;   /* smallest intervals in seconds between two requests to this server: poll_s for metrics, picture_s for
-                                   pictures; picture_s 0: no pictures are requested */
+    double poll_s, picture_s;   /* minimum seconds between two requests to this server: poll_s for metrics, picture_s for pictures;
+                                   picture_s 0: no pictures are requested */
     int line;
 };
 
 struct fleet_file {
     char *path, *folder, *name;
-    double poll_s, picture_s; /* default intervals in seconds, for plants whose entry gives none (struct fleet_plant) */
+    double poll_s, picture_s; /* default intervals in seconds, for plants whose entry sets none (struct fleet_plant) */
     struct fleet_plant *plants;
     size_t count;
 };

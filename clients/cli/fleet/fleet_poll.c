@@ -18,7 +18,7 @@ enum { METRICS_BYTES = 4 << 20, PICTURE_BYTES = 2 << 20, TIMEOUT_S = 15, PICTURE
 enum fleet_question { METRICS, PICTURE, KINDS };
 
 struct fleet_request {
-    struct http_request http; /* libcurl handle with its connection, reused for the next request to this server */
+    struct http_request http; /* libcurl handle; its connection is reused for the next request to this server */
     int plant;
     enum fleet_question kind;
     int64_t due_ns;
@@ -76,8 +76,7 @@ static bool make_request(const struct fleet_plant *plant, struct fleet_request *
     return true;
 }
 
-/* Stores a complete response: the state of the plant's server, or its picture. Returns NULL if the response is valid, else what is wrong
-   with it. */
+/* Stores a complete response: the state of the plant's server, or its picture. Returns NULL if the response is valid, else the fault. */
 static const char *note_answer(struct fleet_poll *poll, struct fleet_request *request)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
@@ -118,7 +117,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
     snprintf(known->why, sizeof(known->why), "%s", why);
 }
 
-/* Returns the time in nanoseconds until the next request of this kind. A busy server lengthens it by a Retry-After header. */
+/* Returns the nanoseconds until the next request of this kind. A busy server can lengthen the pause with a Retry-After header. */
 static int64_t pause_ns(const struct fleet_poll *poll, const struct fleet_request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
@@ -165,7 +164,7 @@ static void begin(struct fleet_poll *poll, struct fleet_request *request)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
-/* Starts the requests that are due. Pictures are requested only from servers that answer. Returns when the next request is due. */
+/* Starts the requests that are due. Requests pictures only from servers that answer. Returns when the next request is due. */
 static int64_t begin_due(struct fleet_poll *poll, int64_t now_ns)
 {
     int64_t next_ns = now_ns + NS_PER_S;
@@ -208,7 +207,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
         struct fleet_request *request = &poll->requests[i];
         request->plant = (int)(i / KINDS);
         request->kind = (enum fleet_question)(i % KINDS);
-        /* spreads the first requests over 5 s; otherwise the requests to all servers would always be sent at the same time */
+        /* spreads the first requests over 5 s, because otherwise all servers would always be asked at the same time */
         request->due_ns = now_ns + (int64_t)(i / KINDS) * 5 * NS_PER_S / (int64_t)file->count;
     }
     curl_global_init(CURL_GLOBAL_DEFAULT);

@@ -10,9 +10,9 @@ struct fleet_poll;
 struct fleet_poll *fleet_poll_start(const struct fleet_file *file);
 void fleet_poll_stop(struct fleet_poll **poll); /* cancels requests in progress and ends the thread; &NULL is fine; sets *poll to NULL */
 
-/* Returns an array (mem_free) with the present state of each plant, in the order of the fleet file. */
+/* Returns an array (mem_free) with the current state of each plant, in the fleet file's order. */
 struct fleet_plant_state *fleet_poll_states(struct fleet_poll *poll);
-/* Returns a copy of the newest PNG of the plant with this id, or NULL if there is none. mem_free. */
+/* Returns a copy of the newest PNG of the plant with this id (mem_free), or NULL if there is none. */
 char *fleet_poll_picture(struct fleet_poll *poll, const char *id, size_t *bytes);
 
 #endif

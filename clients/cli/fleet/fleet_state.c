@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses the state of plants' servers from their /metrics, and prints it as JSON and metrics. */
+/* Parses the /metrics of plants' servers into their states, and prints these states as JSON and as metrics. */
 #include "fleet_state.h"
 
 #include <jansson.h>
@@ -132,8 +132,8 @@ static int64_t asked_of(const struct fleet_plant_state *of)
     return of->asked;
 }
 
-/* Defines a function that returns a member of a server's state, or INT64_MIN (no sample) while the server does not answer, so that old
-   values are not published as present ones. */
+/* Defines a function that returns a member of a server's state, or INT64_MIN (no sample) while the server does not answer: old
+   values must not be published as current ones. */
 #define WHILE_IT_ANSWERS(member) \
     static int64_t member##_of(const struct fleet_plant_state *of) \
     { \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of a plant's server, read from the server's /metrics, and the state of a whole fleet as JSON and as metrics. No side effects.
+/* State of a plant's server, parsed from its /metrics, and the state of a whole fleet as JSON and as metrics. No side effects.
    Thread: any. */
 #ifndef CLI_FLEET_FLEET_STATE_H
 #define CLI_FLEET_FLEET_STATE_H
@@ -13,8 +13,8 @@ enum { FLEET_PRIORITIES = 4, FLEET_TEXT_BYTES = 64 };
 
 struct fleet_state {
     int64_t alarms[FLEET_PRIORITIES], unacknowledged, links, links_down, sessions;
-    int64_t certificate_s, backup_s, free_bytes; /* certificate_s: expiry of the certificate, backup_s: time of the newest backup, both
-                                                    in seconds since 1970; free_bytes: free disk space; 0: not known */
+    int64_t certificate_s, backup_s, free_bytes; /* certificate_s: when the certificate expires, backup_s: when the newest backup
+                                                    was made, both in seconds since 1970; free_bytes: free disk space; 0: unknown */
     bool recorded;                               /* true: the server can write history and alarms to disk */
     bool reloaded;                               /* true: the plant file had no errors at the last reload */
     char version[FLEET_TEXT_BYTES];
@@ -29,12 +29,11 @@ struct fleet_plant_state {
     int64_t answered_us; /* time of the server's last answer, microseconds since 1970; 0: never */
     int64_t silent_us;   /* time of the first failed request since the last answer, microseconds since 1970; 0: the server answers */
     uint64_t picture;    /* id of the server's newest picture; 0: none, or the last request for a picture failed */
-    char why[256];       /* reason why the server does not answer */
+    char why[256];       /* why the server does not answer */
     int64_t asked;       /* number of requests so far */
 };
 
-/* Returns the fleet's state as JSON; fleet_metrics() returns it as Prometheus metrics. states: one per plant, in the order of the fleet
-   file. */
+/* Returns the fleet's state as JSON; fleet_metrics() returns it as Prometheus metrics. states: one per plant, in the fleet file's order. */
 char *fleet_json(const struct fleet_file *file, const struct fleet_plant_state *states, int64_t now_us);
 void fleet_metrics(const struct fleet_file *file, const struct fleet_plant_state *states, struct text *out);
 

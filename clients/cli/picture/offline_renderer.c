@@ -35,7 +35,7 @@ static bool load_baseline(struct offline_renderer *offline, struct snapshot_opti
     return good;
 }
 
-/* Reads the values to draw from the CSV file in the options, after dropping the values of the previous picture. */
+/* Reads the values to draw from the CSV file in the options; values of the previous picture are dropped. */
 static bool load_values(struct offline_renderer *offline, struct snapshot_options *options, struct diag *diag)
 {
     bool good = true;
@@ -93,7 +93,7 @@ bool offline_renderer_open_gl(struct offline_renderer *offline, const struct sna
     return offline->renderer != NULL;
 }
 
-/* Adds the colour maps that the option --colormap gives as image files. */
+/* Adds the colour maps given as image files with --colormap. */
 static bool add_colormaps(struct offline_renderer *offline, const struct snapshot_options *options)
 {
     static const char name[] = "colormap=";

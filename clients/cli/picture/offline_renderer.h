@@ -7,7 +7,7 @@
 #include "render/split_view.h"
 #include "snapshot.h"
 
-/* The members are declared in the order in which they are opened. offline_renderer_close() frees them in reverse order, because later
+/* The members are declared in the order in which they are opened. offline_renderer_close() frees them in reverse, because later
    members use earlier ones. */
 struct offline_renderer {
     struct log *log;
@@ -15,7 +15,7 @@ struct offline_renderer {
     struct scene *scene;
     struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
-    /* sequence number of the readings in `snapshot`: a larger number than before tells the field that the readings have changed */
+    /* sequence number of the readings in `snapshot`; a larger number tells the field that the readings have changed */
     uint32_t turn;
     struct workers *workers;
     struct field *field;
@@ -32,22 +32,22 @@ struct offline_renderer {
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Like offline_renderer_open(), but without a view. Returns false with the reason printed. */
 bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapshot_options *options);
-/* Sets *view from options->args. Returns false with the reason printed. */
+/* Sets *view from options->args. Returns false, with the reason printed, if they are invalid. */
 bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
-/* Like offline_renderer_open(), for a renderer that already has this plant open: reads other values, another baseline and another view. */
+/* Like offline_renderer_open(), but the renderer already has this plant open: reads only new values, a new baseline and a new view. */
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Creates the GL context and the renderer. Returns false on failure, logged. */
 bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Opens the plant's recorded history. Returns false, with the reason printed, if the plant has none. */
 bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options);
-/* Sets the readings and the view to an instant of recorded history. Returns false if the history cannot be read (logged) or has no readings
-   before that instant (printed). */
+/* Sets the readings and the view to an instant in the recorded history. Returns false if the history cannot be read (logged) or
+   has no readings before that instant (printed). */
 bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, struct view *view);
 /* Draws the view. Returns the frame, which the caller releases (frame_unref), or NULL on failure, logged. */
 struct frame *offline_renderer_draw(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
 /* Writes the frame as a PNG file. Returns false on failure, logged. */
 bool offline_renderer_save(struct offline_renderer *offline, struct frame *frame, const char *path);
-/* Frees all members. The renderer may have been opened only in part. */
+/* Frees all members, even if only some were opened. */
 void offline_renderer_close(struct offline_renderer *offline);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Redraws a signed picture and compares the result with the picture. A signed picture's file contains a statement, a signed JSON text:
-   plant, time, view and all readings. The offline renderer draws from that. */
+/* Redraws a signed picture and compares the result with the picture. The picture's file contains a statement: a signed JSON
+   text with plant, time, view and all readings, from which the offline renderer draws. */
 #include "redraw.h"
 
 #include <stdio.h>
@@ -12,9 +12,9 @@
 #include "render/overlay/overlay.h"
 #include "value/quality.h"
 
-/* Reads the snapshot query from the picture's signed statement and copies its arguments to *options. Skips the argument `at`, because a
-   relative `at=-8h` would mean another instant today; the statement also has the absolute instant. Returns false if an argument is
-   invalid. */
+/* Copies the arguments of the snapshot query in the picture's signed statement to *options, except `at`: a relative `at=-8h`
+   would mean another instant today, and the statement also has the absolute instant. Returns false if an argument is invalid.
+   */
 static bool take_query(const json_t *statement, struct snapshot_options *options)
 {
     const json_t *args = json_object_get(statement, "query");
@@ -62,9 +62,9 @@ static bool same_reading(const struct reading *a, const struct reading *b)
     return a->quality == b->quality && (!usable || (float)a->value == (float)b->value);
 }
 
-/* Compares the readings in the signed statement with those that the history folder recorded for the picture's instant, and prints how many
-   agree. at_us: instant of a picture of the past, UTC in microseconds; 0: a live picture, whose instant is that of its readings. Returns
-   true if all agree. */
+/* Compares the readings in the signed statement with those recorded in the history folder at the picture's instant, and prints
+   how many agree. at_us: that instant if the picture shows the past, microseconds UTC; 0: a live picture, whose instant is that
+   of its readings. Returns true if all agree. */
 static bool same_as_recorded(struct offline_renderer *offline, const struct redraw_options *options, const struct frame_record *record,
                              int64_t at_us)
 {
@@ -92,7 +92,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     return same == count;
 }
 
-/* Returns the number of pixels of which no colour channel differs by more than 1 of 255. */
+/* Returns the number of pixels in which no colour channel differs by more than 1 (of 255). */
 static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
 {
     size_t agreeing = 0;
@@ -104,8 +104,7 @@ static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
     return agreeing;
 }
 
-/* Compares the redrawn frame with the pixels of the signed picture. rgb: those pixels, in the width and height that the signed statement
-   gives. */
+/* Compares the redrawn frame with the signed picture. rgb: the signed picture's pixels, in the width and height given in the statement. */
 static bool same_pixels(const struct frame *frame, const json_t *statement, const uint8_t *rgb)
 {
     size_t all = (size_t)frame->width_px * (size_t)frame->height_px;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds a named view by id or title in the list of a daemon or of a plant, and adds the view's parameters to those of the command line. */
+/* Finds a named view by id or title in a daemon's or a plant's list of views, and adds its parameters to those on the command line. */
 #include "saved_view.h"
 
 #include <stdio.h>
@@ -16,7 +16,7 @@ const char *saved_view_text(const json_t *view, const char *name)
     return text ? text : "";
 }
 
-/* Returns true if one of the first `count` arguments, which come from the command line, replaces this argument of a view. */
+/* Returns true if one of the first `count` arguments, which come from the command line, overrides this argument of a view. */
 static bool is_replaced(const struct snapshot_options *options, size_t count, const char *arg)
 {
     bool replaced = options->baseline && view_address_replaces("baseline", arg);
@@ -71,8 +71,8 @@ static void print_unknown(const json_t *list, const char *from, const char *name
     json_array_foreach(list, i, view) fprintf(stderr, "  %-24s %s\n", saved_view_text(view, "id"), saved_view_text(view, "title"));
 }
 
-/* Finds in `list` the view that the command line names. list: JSON array of the views; NULL: no views. Returns NULL, with the reason
-   printed, if the view is missing. */
+/* Finds the view in `list` that the command line names. list: JSON array of views; NULL: no views. Returns NULL, with the
+   reason printed, if it is missing. */
 static const json_t *find_or_print(const struct snapshot_options *options, const json_t *list)
 {
     const json_t *view = find(list, options->view);
@@ -89,15 +89,15 @@ bool saved_view_add_from_daemon(struct snapshot_options *options, bool present)
     const char *answer = body.at ? body.at : "";
     bool good = status == 200;
     if (good) {
-        /* finds the view in the daemon's list and sends only its id back: the daemon adds the view's parameters, because the user's role
-           may not permit them in a query */
+        /* looks the view up in the daemon's list but sends back only its id: the daemon adds the view's parameters, because the
+           user's role may not permit them in a query */
         json_t *message = json_loads(answer, 0, NULL);
         const json_t *view = find_or_print(options, json_object_get(message, "list"));
         good = view && snapshot_add_arg(options, "view", saved_view_text(view, "id")) &&
                (!present || snapshot_add_arg(options, "at", "now"));
         json_decref(message);
     } else if (status == 403) {
-        /* the token permits only pictures of some views, not the list of views: the daemon decides by the view's id */
+        /* the token permits only pictures of certain views, not the list of views: sends the id and lets the daemon decide */
         good = snapshot_add_arg(options, "view", options->view);
     } else if (status) {
         fprintf(stderr, "plantcast: %s: the daemon answered with HTTP status %d: %s\n", options->from, status, answer);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the options of a picture as the query of a request to a daemon. */
+/* Converts picture options to the query of a request to a daemon. */
 #include "snapshot.h"
 
 #include <ctype.h>

@@ -14,12 +14,12 @@ struct daemon_access; /* clients/link/daemon.h */
 enum { SNAPSHOT_MAX = 64 };
 struct snapshot_options {
     const struct daemon_access *access; /* for requests to a daemon */
-    const char *from, *out;   /* from: plant file, or URL of a daemon; out: file to write, NULL if only a pick is requested */
+    const char *from, *out;   /* from: plant file, or daemon's URL; out: file to write, NULL if only a pick is requested */
     char *args[SNAPSHOT_MAX]; /* parameters of the view as NAME=VALUE, as in the query of /snapshot.png; owned by the struct */
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
-    const char *view; /* id or title of a named view whose parameters the picture has (saved_view.h); NULL: none */
+    const char *view; /* id or title of the named view to show (saved_view.h); NULL: none */
     bool pick; /* true: also prints the equipment and the field's value at the pixel place_px */
     double place_px[2];
     const char *baseline; /* CSV file of baseline values or, with a daemon, name of a saved baseline; NULL: none */
@@ -36,16 +36,16 @@ struct snapshot_options {
     const char *tour; /* id of the tour (a sequence of views) that a clip shows; NULL: the clip shows a single view */
     double speed, fps;
     bool is_signed;                                      /* true: the clip contains the server's signature of each picture */
-    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: true: the command line has an option that only the offline
-                                                            renderer offers */
+    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: true: an option was given that only the offline renderer
+                                                            supports */
 };
 
 /* Parses the command line into *options. Returns -1 to continue, or an exit code. Call snapshot_options_finish() in both cases. */
 int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *options);
-/* Frees what the options own. */
+/* Frees the memory that *options owns. */
 void snapshot_options_finish(struct snapshot_options *options);
-/* Appends the options as `&name=value...`, URL-encoded, to the query of a request to a daemon. Returns false, with the reason printed, if a
-   daemon does not offer one of the options. */
+/* Appends the options as `&name=value...`, URL-encoded, to the query of a request to a daemon. Returns false, with the reason
+   printed, if daemons do not support one of the options. */
 bool snapshot_query(struct snapshot_options *options, struct text *query);
 /* Adds an argument NAME=VALUE to options->args. Returns false if there are too many. */
 bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value);

@@ -126,7 +126,7 @@ static const char offline_usage[] =
     "                          osmesa (draws on the CPU, not the GPU) (default: auto)\n"
     "  --gl-device N           number of the GPU that draws the picture (see `plantcastd --list-gl-devices`)\n";
 
-/* Options that are also parameters of /snapshot.png: option and name of the parameter. */
+/* Options that are passed on as parameters of /snapshot.png: option, and parameter name. */
 static const struct {
     const char *option, *name;
 } shared[] = {
@@ -271,7 +271,7 @@ static bool parse_factor(const char *text, double least, double most, double *ou
     return end != text && !*end && *out >= least && *out <= most;
 }
 
-/* Returns true if the option is allowed in this command, `plantcast clip` or `plantcast snapshot`. */
+/* Returns true if this command (clip: `plantcast clip`, else `plantcast snapshot`) accepts the option. */
 static bool belongs(bool clip, int option)
 {
     bool of_clip = option >= OPTION_FROM && option <= OPTION_FPS;
@@ -279,7 +279,7 @@ static bool belongs(bool clip, int option)
     return clip ? !of_snapshot : !of_clip;
 }
 
-/* Stores the argument of one command-line option of `plantcast snapshot` or `clip` in *options. Returns false if the argument is wrong. */
+/* Stores the argument of one option of `plantcast snapshot` or `clip` in *options. Returns false if the argument is invalid. */
 static bool take_own(struct snapshot_options *options, int option, const char *text)
 {
     options->offline_only = options->offline_only || option >= OPTION_VALUES;
@@ -332,7 +332,7 @@ static bool only_size(const struct snapshot_options *options)
     return only;
 }
 
-/* Checks that the options may be combined. left: number of arguments that are not options. Returns -1 to continue, or the exit code. */
+/* Checks that the options may be combined. left: number of non-option arguments. Returns -1 to continue, or the exit code. */
 static int judge(const struct snapshot_options *options, bool clip, int left)
 {
     if (left != 1)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast verify`: checks with the server's public key that a signed picture is what the server drew, and can redraw it. */
+/* `plantcast verify`: checks with the server's public key that a signed picture is as the server drew it, and can redraw it. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,8 +35,8 @@ static void print_statement(const char *path, const json_t *statement)
     puts(json_array_size(args) ? "" : " the plant's own");
 }
 
-/* Redraws a picture from its signed statement and compares both. The statement's signature was already verified, so the picture's size and
-   pixels can be trusted. Returns the exit code. */
+/* Redraws a picture from its signed statement and compares the two. The signature was already verified, so the picture's size
+   and pixels can be trusted. Returns the exit code. */
 static int redraw(const struct redraw_options *options, const json_t *statement, const char *png, size_t count)
 {
     char why[PNG_WHY_BYTES];
@@ -72,7 +72,7 @@ static int verify(const struct verify_options *options)
     return code;
 }
 
-/* Returns true if the file is a film, by its first bytes. */
+/* Returns true if the file's first bytes are those of a film. */
 static bool is_film(const char *path)
 {
     char head[8] = "";

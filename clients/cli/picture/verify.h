@@ -7,7 +7,7 @@
 struct verify_options {
     const char *path, *key; /* path: signed picture or film to verify; key: file of the server's public key */
     struct redraw_options redraw;
-    bool tour; /* true: a film may show a tour, so the view may differ from picture to picture */
+    bool tour; /* true: a film may show a tour, so its view may change between pictures */
 };
 
 /* Parses the command line into *options. Returns -1 to continue, or an exit code. */

@@ -95,7 +95,7 @@ static bool parse_span(const char *text, int64_t *span_us)
     return true;
 }
 
-/* Writes a duration as text, in s, min, h or days according to its length; INT64_MAX becomes "any time". */
+/* Prints a duration in s, min, h or days, depending on its length; INT64_MAX as "any time". */
 static void print_span(int64_t span_us, char out[32])
 {
     double s = (double)span_us / US_PER_S;

@@ -17,7 +17,7 @@
 #include "plant/tags/tag_edit.h"
 #include "scene/scene_create.h"
 
-enum { WAIT_MS = 3000 }; /* maximum wait in milliseconds for another program that changes the plant's folder */
+enum { WAIT_MS = 3000 }; /* maximum milliseconds to wait while another program changes the plant's folder */
 
 struct accept_options {
     const char *plant, *asset, *group, *tags, *within, *confidence, *prepared, *undo;
@@ -51,8 +51,8 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Saves the tag list `after` in place of `before`; takes ownership of both texts. If one is NULL, saves nothing and prints the reason
-   `failed`. Returns the exit code. */
+/* Replaces the tag list `before` with `after`; takes ownership of both texts. If either is NULL, saves nothing and prints the
+   reason `failed`. Returns the exit code. */
 static int save(const char *path, char *before, char *after, const struct refusal *failed)
 {
     struct tag_save saved = { .path = (char *)path, .before = before, .after = after };
@@ -71,8 +71,8 @@ static int save(const char *path, char *before, char *after, const struct refusa
     return good ? 0 : 1;
 }
 
-/* Returns a copy of the tag list in which the column `Place` is empty in all rows, for comparing two lists in all other columns. NULL: the
-   list lacks a tag of the plant. */
+/* Returns a copy of the tag list with an empty column `Place`, so that two lists can be compared in all other columns. NULL:
+   the list lacks a tag of the plant. */
 static char *without_places(const struct plant *plant, const char *list)
 {
     uint8_t *all = mem_array(plant->tag_count + 1, sizeof(*all));
@@ -84,8 +84,8 @@ static char *without_places(const struct plant *plant, const char *list)
     return cleared;
 }
 
-/* Compares an earlier version of the tag list with the present one. Returns NULL if --undo may restore the version, because the two differ
-   in the column `Place` alone; else the reason why not (mem_free). */
+/* Checks whether --undo may restore an earlier version of the tag list: it may differ from the current one only in the column
+   `Place`. Returns NULL if so, else the reason (mem_free). */
 static char *wrong_version(const struct plant *plant, const char *before, const char *after)
 {
     char *now = without_places(plant, before), *then = without_places(plant, after), *why = NULL;
@@ -106,8 +106,7 @@ static char *wrong_version(const struct plant *plant, const char *before, const 
     return why;
 }
 
-/* Returns the path of the tag list's earlier version that the argument of --undo names (mem_free). NULL: the argument is not the name of a
-   version of the list at `path`. */
+/* Returns the path of the earlier tag list that --undo names (mem_free). NULL: `name` is not a version of the list at `path`. */
 static char *version_path(const char *path, const char *name)
 {
     const char *base = text_base_name(name), *list = text_base_name(path), *number = base + strlen(list);
@@ -224,7 +223,7 @@ static int run_locked(const struct accept_options *options)
     return code;
 }
 
-/* Accepts the positions. Locks the plant's folder, since a daemon or an import may be replacing the tag list. */
+/* Accepts the positions. Holds a lock on the plant's folder, since a daemon or an import may be replacing the tag list. */
 static int accept_positions(const struct accept_options *options)
 {
     if (options->dry_run)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast sensors drift`: finds sensors that drifted away from what their neighbours predict, in a week of recorded history. */
+/* `plantcast sensors drift`: finds sensors that, in a week of recorded history, drifted away from their neighbours' prediction. */
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -37,7 +37,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Prints a number and a comma; NaN: only the comma. */
+/* Prints a number and a comma; if NaN, only the comma. */
 static void print_number(double number)
 {
     if (!isnan(number))
@@ -60,8 +60,8 @@ static int print_report(const struct plant *plant, const struct drift_report *re
     return found;
 }
 
-/* Searches the sensors of the plant, or of the sensor group with index `only`, for drift and prints the result. Returns the number of
-   drifting sensors, or -1 if the history cannot be read. */
+/* Searches for drift in all sensors of the plant, or only in the sensor group with index `only`, and prints the result. Returns
+   the number of drifting sensors, or -1 if the history cannot be read. */
 static int look_at(const struct scene *scene, struct history_reader *reader, int only, int64_t to_us)
 {
     int found = 0;

@@ -90,7 +90,7 @@ static void print_table(const json_t *tags)
         print_tag(json_array_get(tags, i), widths);
 }
 
-/* Fetches one page of the daemon's tag list, which begins with the tag of index `first`. Returns NULL with the reason printed. */
+/* Fetches one page of the daemon's tag list, starting with the tag of index `first`. Returns NULL with the reason printed. */
 static json_t *fetch_page(const struct daemon_url *url, const char *name, size_t first)
 {
     struct text body = { 0 };

@@ -117,7 +117,7 @@ int tags_browse(int argc, char **argv)
     int code = 2;
     if (!read_options(argc, argv, &source, host, &code))
         return code;
-    /* the OPC UA client stops when this descriptor becomes readable; nothing writes to it here, so the client always finishes browsing */
+    /* the OPC UA client stops when this descriptor becomes readable; nothing writes to it, so browsing always runs to its end */
     int stop_fd = eventfd(0, EFD_CLOEXEC);
     struct opcua_client *client = opcua_client_create(&source, 0, &nodes, &events, why);
     int status = client ? opcua_client_connect(client, stop_fd, clock_mono_ns() + CONNECT_NS, why) : -1;

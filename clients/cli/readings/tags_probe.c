@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast tags --probe`: prints the content of one address of a field device in every type and byte order. It never writes to the
-   device. */
+/* `plantcast tags --probe`: prints what a field device has at one address, in every type and byte order. It never writes to the device. */
 #include <errno.h>
 #include <modbus.h>
 #include <stdio.h>
@@ -79,8 +78,9 @@ static int read_most(struct modbus_link *link, int unit, const struct modbus_add
     for (int count = bits ? 1 : MAX_REGISTERS; count > 0; count /= 2) {
         *status = at->index + count > 65536 ? MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS
                                             : modbus_link_read(link, unit, at->table, at->index, count, words);
-        if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0) /* opens the connection again, because the device
-                                                                                            closed it after an error response */
+        if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0) /* reconnects, because the device closed
+                                                                                            the connection after an error response
+                                                                                            */
             *status = modbus_link_read(link, unit, at->table, at->index, count, words);
         if (*status == 0)
             return count;

@@ -13,7 +13,7 @@ struct columns {
     int tag, value, quality, unit;
 };
 
-/* Finds the columns by the header row. Without a header, the first row is data and the columns have their default order. */
+/* Finds the columns by the header row. Without a header, the columns have their default order and the first row is data. */
 static bool find_columns(const struct csv *csv, struct columns *columns)
 {
     columns->tag = csv_find(csv, "tag");
@@ -50,8 +50,7 @@ static const char *cell(const struct csv_row *row, int column)
     return column >= 0 && (size_t)column < row->count ? row->cells[column].text : "";
 }
 
-/* Converts a value to the unit in which the plant shows the tag: from the unit in the CSV row if the row has one, else from the tag's own
-   unit. */
+/* Converts a value to the tag's display unit, from the unit in its CSV row or, if the row has none, from the tag's own unit. */
 static bool take_unit(const struct csv *csv, const struct csv_row *row, const struct columns *columns, const struct plant_tag *tag,
                       double *value)
 {

@@ -10,7 +10,7 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-/* Sets the readings of those tags in the snapshot that the file names. Returns false if there are errors, which are all added to diag. */
+/* Sets the snapshot's readings of the tags in the file. Returns false if there are errors; adds every error to diag. */
 bool values_read(const struct plant *plant, const char *path, struct snapshot *snapshot, struct diag *diag);
 
 #endif

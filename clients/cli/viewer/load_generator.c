@@ -15,14 +15,14 @@
 
 enum { EVENTS = 256 };
 static const int64_t CONNECT_TIMEOUT_NS = 20 * NS_PER_S; /* time limit for connecting */
-/* Interval between polls; packets that arrive in between are handled together. Waking for each packet would take processor time from the
+/* Poll interval; packets that arrive in between are handled together. Waking for each packet would take processor time from the
    daemon under test, because the kernel wakes this process inside the daemon's send(). */
 static const int64_t POLL_INTERVAL_NS = 2 * NS_PER_MS;
 
 struct load_generator {
     int epoll, count;
     struct viewer **viewers;
-    int64_t step_ns, next_ns; /* step_ns: interval at which the viewers' timers fire; next_ns: monotonic time at which they fire next */
+    int64_t step_ns, next_ns; /* step_ns: interval of the viewers' timers; next_ns: monotonic time at which they fire next */
 };
 
 static void leave(struct viewer *viewer)

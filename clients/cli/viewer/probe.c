@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast probe`: runs many viewers of a daemon at the same time and prints a table of their measurements. */
+/* `plantcast probe`: runs many viewers of a daemon at the same time and prints their measurements as a table. */
 #include "probe.h"
 
 #include <getopt.h>

@@ -8,8 +8,7 @@ struct probe {
     struct daemon_url url;
     const char *url_text, *codec, *signs, *folder;
     int sessions, stalled, width_px, height_px;
-    /* number of viewers that read all frames; they come first in `viewers`. The viewers after them stop reading after the first frame, like
-       hanging clients */
+    /* number of viewers that read all frames, first in `viewers`; the others stop reading after the first frame, like clients that hang */
     int watching;
     double seconds, hz;
     enum motion motion;

@@ -22,7 +22,7 @@ static void append(struct latency_samples *all, const struct latency_samples *so
     all->count += some->count;
 }
 
-/* Returns the p-th percentile of the samples in `of`, which must be sorted; NaN if there are no samples. */
+/* Returns the p-th percentile of sorted samples; NaN if there are none. */
 static double percentile(const struct latency_samples *of, double p)
 {
     if (!of->count)
@@ -38,7 +38,7 @@ static void sort(struct latency_samples *samples)
 
 struct summary {
     int frames, still_frames, signed_frames, errors, failed, given_up;
-    double fps, fps_lowest; /* frames per second: mean and lowest of all sessions */
+    double fps, fps_lowest; /* frame rate in frames per second: mean and lowest of all sessions */
     double kb_per_frame, mbit_per_s, steady_kbit_per_s;
     struct latency_samples input, sensor, behind, first, stages[STAGE_COUNT];
 };

@@ -23,7 +23,7 @@ struct raw_websocket {
     enum { ASKING, ASKED, OPEN } state;
     char request[1024];
     struct text head;     /* status line and headers of the server's HTTP response */
-    unsigned char in[10]; /* header of the current WebSocket frame, of which in_count bytes have arrived */
+    unsigned char in[10]; /* header of the current WebSocket frame; in_count bytes have arrived */
     size_t in_count;
     bool in_payload, final;
     int opcode;         /* opcode of the current frame */
@@ -78,7 +78,7 @@ struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const 
     return raw;
 }
 
-/* Sends all bytes. Returns false if the socket's send buffer has no room for all; messages are short enough that it normally has. */
+/* Sends all bytes. Returns false if they do not fit into the socket's send buffer, which is rare because messages are short. */
 static bool send_all(const struct raw_websocket *raw, const void *bytes, size_t count)
 {
     return send(raw->fd, bytes, count, MSG_NOSIGNAL) == (ssize_t)count;
@@ -96,8 +96,7 @@ static bool send_frame(const struct raw_websocket *raw, int opcode, const char *
         out[2] = (unsigned char)(count >> 8);
         out[3] = (unsigned char)count;
     }
-    /* RFC 6455 requires clients to mask payloads by XOR, to protect HTTP caches; a mask of zeros satisfies this rule and leaves the data
-       unchanged */
+    /* RFC 6455 requires clients to mask payloads by XOR, to protect HTTP caches; a mask of zeros complies and leaves the data unchanged */
     memset(out + head - 4, 0, 4);
     memcpy(out + head, bytes, count);
     return send_all(raw, out, head + count);
@@ -122,8 +121,8 @@ static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, 
     return -1;
 }
 
-/* Reads the HTTP response byte by byte, because the bytes after its end belong to WebSocket frames. Returns 0, with raw->state OPEN once
-   the response is complete; or a negative number with *why. */
+/* Reads the HTTP response byte by byte, because any bytes after its end belong to WebSocket frames. Returns 0, with raw->state
+   OPEN once the response is complete; or a negative number with *why. */
 static int read_head(struct raw_websocket *raw, const char **why)
 {
     char byte;

@@ -10,8 +10,8 @@
 
 enum { OPEN_S = 5 };
 
-/* Requests the path /stream over HTTP. Returns the HTTP status; *reached is true if the daemon itself answered why it refused a
-   WebSocket. */
+/* Requests /stream over HTTP to find out why it failed. Returns the HTTP status; *reached is true if the daemon itself
+   answered, with its reason for refusing a WebSocket. */
 static int ask_why(const struct daemon_url *url, struct text *body, bool *reached)
 {
     int status = daemon_get(url, "/stream?why", body);

@@ -6,7 +6,7 @@
 
 #include "clients/link/daemon.h"
 
-/* Call it after a failed WebSocket handshake; it requests the path /stream over HTTP. Returns true, with the reason printed, if a proxy
+/* Call it after a failed WebSocket handshake. Requests /stream over HTTP. Returns true, with the reason printed, if a proxy
    between this machine and the daemon blocks WebSockets. */
 bool stream_is_blocked(const struct daemon_url *url);
 /* Tries a WebSocket handshake. Returns true if it succeeds within 5 s, or if the daemon itself refuses it (without a token, for

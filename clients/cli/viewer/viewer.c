@@ -53,7 +53,7 @@ static void on_pong(struct viewer *viewer, int64_t server_us)
     viewer->offset_us = server_us - (clock_utc_ns() - rtt_ns / 2) / 1000;
 }
 
-/* Returns true for a text message of a type that the measurement does not need, so that it is not parsed. */
+/* Returns true for a text message of a type that the measurement does not need; such messages are not parsed. */
 static bool is_passed_over(const struct text *text)
 {
     static const char *const types[] = { "tags", "markers" };
@@ -91,8 +91,8 @@ static void on_text(struct viewer *viewer)
     json_decref(o);
 }
 
-/* Records the latency of every camera that was sent up to camera_seq. The server skips a camera that a newer one replaces before the
-   picture is drawn; such a camera counts as shown by this frame. */
+/* Records the latency of every camera sent up to camera_seq. If a newer camera replaced one before the server drew its picture,
+   this frame counts as showing the older one, too. */
 static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
 {
     if (camera_seq > viewer->camera_seq) /* this camera was never sent */
@@ -102,8 +102,7 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
             add_sample(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
-/* Records the delay of a frame of a viewer that follows the view of another viewer: from when the other one sent the frame's camera until
-   now. */
+/* Records the delay of a follower's frame: the time since the leading viewer sent the camera of that frame. */
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct leader *lead = viewer->params.lead;
@@ -120,7 +119,7 @@ static void record_behind(struct viewer *viewer, const struct wire_frame *frame,
     pthread_mutex_unlock(&lead->lock);
 }
 
-/* Records the network time of a frame, from the server's send time to now, both on the server's clock. */
+/* Records a frame's network time: from when the server sent it to now, both on the server's clock. */
 static void record_network(struct viewer *viewer, const struct wire_frame *frame)
 {
     struct viewer_result *result = &viewer->result;
@@ -152,7 +151,7 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     record_behind(viewer, frame, now_ns);
 }
 
-/* Writes a signed frame to the file FOLDER/SESSION-FRAME.png. Not possible in the load generator, which does not keep whole messages. */
+/* Saves a signed frame as FOLDER/SESSION-FRAME.png. Not possible in the load generator, which does not keep whole messages. */
 static void save_signed(struct viewer *viewer, const struct wire_frame *frame, const uint8_t *png)
 {
     char *path = mem_printf("%s/%03d-%06u.png", viewer->params.folder, viewer->params.number, frame->seq);
@@ -258,14 +257,14 @@ void viewer_on_time(struct viewer *viewer, int64_t now_ns)
         viewer_schedule(viewer, now_ns);
 }
 
-/* Timer callback. The timer fires on a fixed grid of times, so that a late callback does not delay the next. */
+/* Timer callback. The timer fires on a fixed time grid, so that a late callback does not delay later ones. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct viewer *viewer = lws_container_of(sul, struct viewer, timer);
     int64_t now_ns = clock_mono_ns();
     viewer_on_time(viewer, now_ns);
     if (viewer->wsi && (viewer->done || viewer_has_output(viewer)))
-        /* libwebsockets then calls the writable callback, which sends the due messages, or closes the connection if the viewer is done */
+        /* makes libwebsockets call the writable callback, which sends the due messages, or closes the connection if the viewer is done */
         lws_callback_on_writable(viewer->wsi);
     viewer->next_ns += (int64_t)(1e9 / viewer->params.hz);
     if (viewer->next_ns < now_ns)

@@ -14,11 +14,11 @@ enum motion { MOTION_STILL, MOTION_ORBIT, MOTION_RANDOM, MOTION_COUNT };
 
 enum { VIEWER_SETTLES_S = 3, LEAD_CAMERAS = 256 };
 
-/* State that one viewer, the leader, shares with the viewers that show its view, the followers. */
+/* State that one viewer, the leader, shares with the viewers that follow its view, the followers. */
 struct leader {
     pthread_mutex_t lock;
     /* --- below: under lock */
-    uint64_t session; /* id of the leading viewer's session, which followers ask the daemon to follow; 0: not connected yet */
+    uint64_t session; /* session id of the leading viewer, which followers ask the daemon to follow; 0: not connected yet */
     /* newest cameras that the leading viewer sent, by sequence number modulo LEAD_CAMERAS; followers measure their delay with them */
     struct {
         double eye[3];
@@ -36,14 +36,14 @@ struct viewer_params {
     double start_deg;   /* start angle of the camera's orbit in degrees; in a still view, rotation from the plant's initial camera (0: that
                             camera) */
     unsigned seed;      /* seed of random motion */
-    bool blind;         /* whether to acknowledge without decoding */
+    bool blind;         /* whether to acknowledge frames without decoding them */
     const char *signs;  /* which frames the daemon is asked to sign: `refined`, `all`; NULL: none */
     const char *folder; /* folder to save signed frames in; NULL: they are not saved */
     int number;         /* index of this viewer, used in names of saved files */
-    bool stalls;        /* true: the viewer stops reading from its socket after the first frame, like a client that hangs */
-    /* state shared by the viewer that leads and the viewers that show its view; NULL: this viewer takes no part in that */
+    bool stalls;        /* true: the viewer stops reading its socket after the first frame, like a client that hangs */
+    /* state shared by the leader and its followers; NULL: this viewer neither leads nor follows */
     struct leader *lead;
-    bool follows; /* true: this viewer shows the view of the viewer that leads; false: this viewer leads */
+    bool follows; /* if `lead` is set: true: this viewer follows the leader's view; false: it is the leader */
 };
 
 struct latency_samples { /* milliseconds */
@@ -56,18 +56,17 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_N
 struct viewer_result {
     int frames, still_frames, errors, signed_frames;
     int given_up;                     /* frames that the server aborted */
-    int64_t text_bytes, steady_bytes; /* text_bytes: bytes received in text messages; steady_bytes: bytes received in all messages but
-                                         pongs, from VIEWER_SETTLES_S after the first frame on */
-    int64_t bytes, first_ns, last_ns; /* bytes: those received in frames; first_ns, last_ns: monotonic times of the first and the last
-                                         frame */
-    struct latency_samples input;     /* latencies from sending a camera until a frame with that camera is decoded */
-    struct latency_samples sensor;    /* latencies from a change of a reading in the server until a frame with it is decoded */
-    /* only of a viewer that follows another viewer's view: latencies from the other one sending a camera until this one has decoded a frame
-       with it */
+    int64_t text_bytes, steady_bytes; /* text_bytes: bytes received in text messages; steady_bytes: bytes received in all messages
+                                         but pongs, counted from VIEWER_SETTLES_S after the first frame */
+    int64_t bytes, first_ns, last_ns; /* bytes: total size of all frames; first_ns, last_ns: monotonic times of the first and the
+                                         last frame */
+    struct latency_samples input;     /* latencies from sending a camera to decoding a frame with it */
+    struct latency_samples sensor;    /* latencies from a reading's change in the server to decoding a frame that shows it */
+    /* only of a follower: latencies from the leader sending a camera to this viewer decoding a frame with it */
     struct latency_samples behind;
     struct latency_samples first; /* a single sample: time from connecting until the first frame is decoded */
     struct latency_samples stages[STAGE_COUNT];
-    char failure[200]; /* reason of failure; "": none */
+    char failure[200]; /* why the viewer failed; "": it has not */
 };
 
 struct viewer;
@@ -77,12 +76,12 @@ struct viewer *viewer_create(const struct viewer_params *params);
 void viewer_connect(struct viewer *viewer, struct lws_context *context);
 /* Returns true if the viewer has finished or failed. */
 bool viewer_done(const struct viewer *viewer);
-/* Returns how long a thread may sleep unless *fd, the viewer's socket (-1: none), becomes readable: until the monotonic time of the
-   viewer's timer. 0: it may not sleep, because the viewer has something else to do, for example to send. */
+/* Returns the monotonic time until which a thread may sleep unless *fd, the viewer's socket (-1: none), becomes readable
+   earlier. 0: do not sleep, because the viewer has something to do now, such as sending. */
 int64_t viewer_rests_until_ns(const struct viewer *viewer, int *fd);
 /* Returns the viewer's measurements, which belong to the viewer. */
 const struct viewer_result *viewer_result(const struct viewer *viewer);
-/* Frees the viewer. Destroy its libwebsockets context before. &NULL is fine; sets *viewer to NULL. */
+/* Frees the viewer. Destroy its libwebsockets context first. &NULL is fine; sets *viewer to NULL. */
 void viewer_destroy(struct viewer **viewer);
 
 extern const struct lws_protocols viewer_protocols[];

@@ -17,7 +17,7 @@ struct viewer {
     struct raw_websocket *raw;
     lws_sorted_usec_list_t timer;
     struct decoder *decoder;
-    int64_t decode_ns; /* time spent so far on decoding the current picture, which may arrive in several frames */
+    int64_t decode_ns; /* time spent so far on decoding the current picture, which may consist of several frames */
     struct text in;    /* the message that is being received; of a binary message over a raw_websocket only the beginning */
     size_t in_count;   /* length of the incoming message */
     bool greeted, welcomed, camera_due, ping_due, follow_due, followed, done;
@@ -27,7 +27,7 @@ struct viewer {
     int64_t sent_ns[SENT_RING], begin_ns, next_ns;
     int64_t ping_ns, rtt_ns, offset_us; /* ping_ns: send time of the newest ping; rtt_ns: shortest round trip so far; offset_us: server's
                                            clock minus ours, measured in that round trip */
-    double angle_deg, speed_deg;        /* of random motion since leg_ns */
+    double angle_deg, speed_deg;        /* random motion: angle at leg_ns, and speed since then */
     int64_t leg_ns, leg_end_ns;
     struct {
         uint32_t seq;
@@ -40,9 +40,9 @@ struct viewer {
 void viewer_fail(struct viewer *viewer, const char *why);
 /* Sends the next message that is due. Returns a negative number if the connection is closed. */
 int viewer_send(struct viewer *viewer);
-/* Returns true if a message is due to be sent. */
+/* Returns true if a message is due for sending. */
 bool viewer_has_output(const struct viewer *viewer);
-/* Marks the messages that are to be sent by now_ns as due. */
+/* Marks messages as due that must be sent by now_ns. */
 void viewer_schedule(struct viewer *viewer, int64_t now_ns);
 /* Handles the complete message in viewer->in. */
 void viewer_on_message(struct viewer *viewer, bool binary);

@@ -13,8 +13,8 @@ enum { MAX_THREADS = 64, MAX_FILES = 8192, MAX_WAITING = 64 };
 struct viewer_thread {
     pthread_t thread;
     struct lws_context *context;
-    struct viewer **viewers; /* the array of all viewers, beginning with this thread's first one; every stride-th viewer belongs to this
-                                thread */
+    struct viewer **viewers; /* this thread's first viewer in the array of all viewers; every stride-th viewer from there on belongs
+                                to this thread */
     int count, stride;
 };
 

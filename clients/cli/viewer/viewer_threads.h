@@ -6,7 +6,7 @@
 
 /* Runs all viewers until they finish. Returns false, with the reason printed, if not all could be started. */
 bool viewer_threads_run(struct viewer **viewers, int count);
-/* Raises this process's limit of open files to the system's maximum, for many connections. */
+/* Raises this process's open-file limit to the system's maximum, for many connections. */
 void viewer_threads_raise_file_limit(void);
 
 #endif
