@@ -206,6 +206,40 @@ test('a method of the right half that is not the left one\'s is shown on every s
     }
 }));
 
+test('legends are read beside an open panel, which ends above the status bar', options, () => withPage(
+    { viewport: { width: 1280, height: 800 } }, async (page) => {
+        const parts = ['#legend', '#legend-right', '.panel.open, .display.open', '#status'];
+        const visibleBoxes = () => page.evaluate((all) => all.map((selector) => {
+            const { left, top, right, bottom, width } = document.querySelector(selector)?.getBoundingClientRect() ?? { width: 0 };
+            return width > 0 && { selector, left, top, right, bottom };
+        }).filter(Boolean), parts);
+        const covered = async () => (await visibleBoxes()).flatMap((a, i, all) => all.slice(i + 1)
+            .filter((b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom)
+            .map((b) => `${a.selector} and ${b.selector}`));
+        const panels = { display: '#display', picture: '#picture-panel', views: '#views' };
+        const set = (params) => page.evaluate((all) => globalThis.plantcast.session.setParams(all), params);
+        for (const split of [null, { group: 'vibration' }]) {
+            await set({ group: 'temperature', split });
+            await page.locator('#legend-right').waitFor({ state: split ? 'visible' : 'hidden' });
+            for (const [button, panel] of Object.entries(panels)) {
+                await page.locator(`#${button}-toggle`).click();
+                await page.locator(`${panel}.open`).waitFor();
+                await becomes(covered, [], panel);
+                assert.equal((await visibleBoxes()).length, split ? 4 : 3, panel);
+                await shoot(page, `legend-${button}${split ? '-split' : ''}`);
+                await page.locator(`#${button}-toggle`).click();
+                await page.locator(`${panel}.open`).waitFor({ state: 'detached' });
+            }
+        }
+        await set({ split: null });
+        await page.locator('#alarm-strip').click(); // the list takes the place that the panel would cover
+        await page.locator('#alarms').waitFor();
+        await page.locator('#picture-toggle').click();
+        await page.locator('#picture-panel.open').waitFor();
+        const [legend, picture] = await Promise.all(['#legend', '#viewport'].map((one) => boxOf(page, one)));
+        assert.ok(picture.x + picture.width - legend.x - legend.width <= 12, JSON.stringify([legend, picture]));
+    }));
+
 test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
     assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded away');
     await becomes(() => sticksOut(page), []);
