@@ -57,3 +57,31 @@ test('names of limits that are close together are side by side within the chart,
     assert.deepEqual(written.map(([text]) => text), ['HH 99', 'H 98', 'LL 20']);
     assert.ok(written.every(([text, x]) => x >= 40 && x + 10 * text.length <= 190) && written[1][1] > written[0][1] + 50);
 });
+
+// Returns the names that nameLimits() draws beside a curve through the points [x, y] of a chart: [{ text, left, right, top, bottom }].
+function namesBeside(points, limits) {
+    const { plot, show } = plotOf('bar'), drawn = [];
+    show([{ name: 'A' }], [{ name: 'A' }]);
+    let box;
+    const ctx = { save() {}, restore() {}, measureText: ({ length }) => ({ width: 6 * length }),
+        fillRect: (left, top, width, height) => { box = { left, top, right: left + width, bottom: top + height }; },
+        fillText: (text) => drawn.push({ text, ...box }) };
+    plot.limitsOf = () => limits;
+    const data = [points.map(([x]) => x), points.map(([, y]) => y)];
+    plot.bands = [[]];
+    plot.nameLimits({ ctx, bbox: { left: 0, top: 0, width: 300, height: 60 }, data, valToPos: (value) => value });
+    return drawn;
+}
+
+test('the name of a limit is at its line beside the curve, shorter or above the line if need be, or left out', () => {
+    const limit = { words: 'TE-101 H 170', short: 'H 170', colour: 'red', y: 20 };
+    const [first] = namesBeside([[0, 20], [100, 20], [130, 50], [300, 50]], [limit]);
+    assert.equal(first.text, 'TE-101 H 170');
+    assert.ok(first.left >= 100 && first.left < 120 && (first.top + first.bottom) / 2 === 20, JSON.stringify(first));
+    const [short] = namesBeside([[0, 20], [200, 20], [205, 60], [260, 60], [265, 0], [300, 0]], [limit]);
+    assert.equal(short.text, 'H 170', 'the long name has no room');
+    const [above] = namesBeside([[0, 20], [300, 20]], [{ ...limit, y: 40 }, { ...limit, y: 20 }]);
+    assert.ok(above.top > 20, 'not at the curve');
+    const zigzag = Array.from({ length: 31 }, (_, i) => [10 * i, i % 2 ? 60 : 0]);
+    assert.deepEqual(namesBeside(zigzag, [limit]), [], 'a curve that is everywhere');
+});

@@ -402,6 +402,30 @@ test('phones: sheets, time bar and trends leave a picture; a grip has two height
     }
 }));
 
+test('phones: the chart of a trend is read, its table fits, and a picture remains', options, () => withPage(PHONE, async (page) => {
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+    await page.evaluate(() => {
+        const { addTrend, session: { model }, showTrend } = globalThis.plantcast;
+        const temperatures = model.tags.filter(({ group }) => group === 'temperature').slice(0, 3);
+        temperatures.forEach((tag, i) => (i === 0 ? showTrend : addTrend)(tag));
+    });
+    await page.waitForFunction(() => globalThis.plantcast.trends?.series.size === 3);
+    await page.locator('#trend-span label').nth(4).tap(); // of 30 days, only minutes are recorded: the table has its column for that
+    await page.locator('#trend-tags.lacks .known').first().waitFor();
+    for (const [width, height] of PHONES) {
+        const name = `${width}x${height}`, isLying = width > height;
+        await page.setViewportSize({ width, height });
+        await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
+        await until(`${name}: a chart and a picture`, async () => {
+            const [chart, picture] = await Promise.all(['#trend-chart', '#viewport'].map((one) => heightOf(page, one)));
+            return chart >= (isLying ? 130 : 110) && picture >= 0.25 * height;
+        }, 30);
+        await shoot(page, `phone-trend-${name}`);
+        const hidden = await page.locator('.trends .scroll').evaluate((e) => e.scrollWidth - e.clientWidth);
+        assert.ok(hidden <= 0, `${name}: ${hidden} px of the table are hidden`);
+    }
+}));
+
 test('phone: pinch, twist and two fingers that pan', options, () => withPage(PHONE, async (page) => {
     const box = await boxOf(page, '#viewport'), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const hand = await touches(page), azimuth = ({ camera: { eye, target } }) => Math.atan2(eye[1] - target[1], eye[0] - target[0]);

@@ -3,6 +3,7 @@
 // uncertain stretches, limits and alarms.
 import { shortNumberText } from '../../core/format.js';
 import { BAD, gaps, limitLines, line, UNCERTAIN } from '../../core/history.js';
+import { extentOf, placeNames } from '../../core/limit_names.js';
 import { bands, valueAt } from '../../core/trend_values.js';
 import { pointAtInstant } from '../common/crosshair.js';
 import { hatch, hatchAlong, strokeAlong, textSize, toCss, toPixels, triangle } from './chart_style.js';
@@ -116,7 +117,7 @@ export class Plot {
             }))],
             hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u), (u) => this.drawBands(u)],
                 drawSeries: [(u, i) => this.drawQuality(u, i)],
-                draw: [(u) => this.drawAlarms(u), (u) => this.nameLimits(u), (u) => this.drawBadges(u), (u) => this.drawInstant(u)],
+                draw: [(u) => this.nameLimits(u), (u) => this.drawAlarms(u), (u) => this.drawBadges(u), (u) => this.drawInstant(u)],
                 setCursor: [(u) => this.chart === u && this.onCursor(u)], setSelect: [(u) => this.onSelect(u)],
                 ready: [(u) => this.listen(u)] },
         };
@@ -246,6 +247,7 @@ export class Plot {
             .map(({ scale, name, value, tags }) => ({
                 y: Math.round(valToPos(value, scale, true)),
                 words: [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' '),
+                short: tags.length > 0 ? `${name} ${shortNumberText(value, 3)}` : null,
                 colour: tags.length > 0 ? this.view.colourOf(tags[0]) : name.length > 1 ? look.grave : look.limit,
             })).sort((a, b) => a.y - b.y);
     }
@@ -265,26 +267,19 @@ export class Plot {
         ctx.restore();
     }
 
-    // Writes the name of each alarm limit at its line, over everything else. If lines are close together, a name goes next to the previous
-    // one, or is left out if there is no room.
+    // Writes the names of the alarm limits where they do not hide a curve.
     nameLimits(chart) {
-        const { ctx, bbox } = chart, px = toPixels(1), height = (textSize(11) + LABEL - 11) * px, placed = [];
+        const { ctx, bbox, data, valToPos } = chart, px = toPixels(1), height = (textSize(11) + LABEL - 11) * px;
+        const x = (s) => valToPos(s, 'x', true), y = (tag) => (value) => valToPos(value, this.view.unitOf(tag) || '–', true);
+        const extents = this.rows.map(({ tag }, i) => extentOf(bbox, data[0], data[i + 1] ?? [], this.bands[i] ?? [], x, y(tag)));
         ctx.save();
-        ctx.font = `${textSize(11) * px}px ${FONT}`;
-        ctx.textAlign = 'left';
-        ctx.textBaseline = 'middle';
-        for (const { y, words, colour } of this.limitsOf(chart)) {
-            const near = placed.filter((other) => Math.abs(other.y - y) < height);
-            const left = Math.max(bbox.left, ...near.map((other) => other.right)) + 5 * px;
-            const right = left + ctx.measureText(words).width + 6 * px;
-            if (right > bbox.left + bbox.width)
-                continue;
-            const middle = Math.max(bbox.top + height / 2, y);
-            placed.push({ y, right });
+        Object.assign(ctx, { font: `${textSize(11) * px}px ${FONT}`, textAlign: 'left', textBaseline: 'middle' });
+        const widthOf = (text) => ctx.measureText(text).width + 6 * px, limits = this.limitsOf(chart);
+        for (const { text, left, right, top, colour } of placeNames({ limits, bbox, extents, widthOf, height, gap: 5 * px })) {
             ctx.fillStyle = this.view.look.ground;
-            ctx.fillRect(left, middle - height / 2, right - left, height);
+            ctx.fillRect(left, top, right - left, height);
             ctx.fillStyle = colour;
-            ctx.fillText(words, left + 3 * px, middle);
+            ctx.fillText(text, left + 3 * px, top + height / 2);
         }
         ctx.restore();
     }
