@@ -183,6 +183,10 @@ test('tags that the plant does not have are named in tiles and trends', options,
     await inside.locator('#trend-note', { hasText: 'Not in this plant: TI-8' }).waitFor();
     await inside.locator('#trend-tags tbody tr', { hasText: 'TI-1' }).waitFor();
     await shoot(one.page, 'wall-display-unknown-trend');
+    await one.page.route(/api\/v1\/history/, () => {}); // never answered
+    await one.page.reload();
+    const waiting = 'Waiting for the values of TI\u20111 · Not in this plant: TI\u20118';
+    await one.page.locator('.pane.trend .why', { hasText: waiting }).waitFor();
     await one.close();
     const both = await openWith({ 'TI-1': 'TI-7', 'TI-2': 'TI-8' }, 2);
     await both.page.locator('.pane.trend .why', { hasText: 'Not in this plant: TI\u20117, TI\u20118' }).waitFor();

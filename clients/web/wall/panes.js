@@ -207,11 +207,13 @@ function TrendPane(pane, context) {
         const { page } = inner;
         setText(about, aboutTags(session, pane.items));
         // says why the pane is empty; once the trend has an error of its own, the page in the iframe shows it
-        const unknown = session.model ? pane.items.filter((name) => !session.model.tag(name)) : [];
-        const names = pane.items.join(', ').replaceAll('-', '\u2011'); // lines do not break within names
-        const isLost = unknown.length === pane.items.length, isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
-        element.classList.toggle('unshown', isLost || isEmpty);
-        setText(why, say(isLost ? 'trends.unknown' : 'walls.untrended', { tags: names }));
+        const isUnknown = (name) => Boolean(session.model) && !session.model.tag(name);
+        const unknown = pane.items.filter(isUnknown), awaited = pane.items.filter((name) => !isUnknown(name));
+        const isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
+        element.classList.toggle('unshown', awaited.length === 0 || isEmpty);
+        setText(why, [['walls.untrended', awaited], ['trends.unknown', unknown]].filter(([, names]) => names.length > 0)
+            .map(([key, names]) => say(key, { tags: names.join(', ').replaceAll('-', '\u2011') })) // lines do not break within names
+            .join(' · '));
         if (begun === page || !page?.session.model)
             return;
         begun = page;
