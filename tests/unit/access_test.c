@@ -183,9 +183,9 @@ TEST(a_forwarded_address_is_the_one_that_a_proxy_appended)
                   /* the request passed two trusted proxies, 203.0.113.7 is the client */
                   { "198.51.100.1, 203.0.113.7, 10.0.0.10", "203.0.113.7" },
                   { "198.51.100.1, 203.0.113.7, fd00:1::7, 10.0.0.10", "203.0.113.7" },
-                  /* an entry "unknown" ends the trusted proxies: addresses before it may be forged */
+                  /* "unknown" ends the chain of trusted proxies: addresses before it may be forged */
                   { "198.51.100.1, unknown, 10.0.0.10", "10.0.0.10" },
-                  /* all addresses are trusted proxies: the first one is the client, a program on a proxy's machine */
+                  /* all addresses are trusted proxies, so the first is the client, a program on a proxy's machine */
                   { "10.0.0.11, 10.0.0.10", "10.0.0.11" },
                   { "10.0.0.10", "10.0.0.10" },
                   /* our proxy adds only the last entry; "unknown" is no address, so the client's address is not known */

@@ -17,7 +17,7 @@
 
 struct distance_truth {
     double sources[SOURCES][3];
-    double *distances[SOURCES]; /* true distances by vertex of the clean shape; NaN: the vertex is not on the outer surface */
+    double *distances[SOURCES]; /* exact distances by vertex of the clean shape; NaN: the vertex is not on the outer surface */
 };
 
 static struct oracle_mesh mesh_of(const struct cad *cad, size_t first_vertex, size_t vertex_count, size_t first_triangle,

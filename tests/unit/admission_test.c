@@ -154,7 +154,7 @@ TEST_WITH(a_busy_second_is_no_reason, set_up, NULL)
     assert_true(refuses(&admission, &share, 1000, 2));
 }
 
-/* Simulates one second: every address draws `of_each` frames per moving session, and each frame takes cost_ms. */
+/* Simulates one second: each address draws `of_each` frames per moving session, and each frame takes cost_ms. */
 static void a_second_of(struct admission *admission, struct address_share *shares, int count, int of_each, int cost_ms)
 {
     static uint64_t content = 1 << 20;
@@ -186,7 +186,7 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 2, 1, 30);
     assert_int_equal(0, admission_refuses(&admission, &shares[1],
-                                          1000)); /* the render thread's 31 frames per second are shared by two addresses */
+                                          1000)); /* two addresses share the render thread's 31 frames per second */
     shares[1].moving = 3;
     /* refused: with four moving sessions, each would get fewer frames per second than the limit least-fps allows */
     assert_true(admission_refuses(&admission, &shares[1], 1000));

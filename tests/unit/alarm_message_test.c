@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarm messages: what sessions receive, which alarm commands they may send, and what programs receive. */
+/* Alarm messages: what sessions receive, which alarm commands they may send, and what other programs receive. */
 #include "tests/support/test.h"
 #include <jansson.h>
 #include <sqlite3.h>
@@ -92,7 +92,7 @@ CASE(sessions_hear_what_changed)
     assert_true(json_is_true(json_object_get(all, "all")));
     assert_int_equal(json_array_size(json_object_get(all, "alarms")), 2);
     assert_string_equal(state_of(all, "HH"), "unacknowledged");
-    /* another session asks for the same alarms: the text written for the first session is used again */
+    /* another session requests the same alarms: the text written for the first session is reused */
     parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other));
     assert_int_equal(number, other);
     give(s, 0, 85, QUALITY_GOOD);
@@ -146,7 +146,7 @@ CASE(a_device_has_its_own)
     assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":1,\"action\":\"acknowledge\",\"alarms\":[[\"plc\",\"LINK\"],[\"TT-1\",\"BAD\"]]}",
                     &message, &error));
     json_t *answer = parse(alarm_do(s->alarm_service, s->plant, &message, "local"));
-    /* only one acknowledgement is done: the tag's own alarm, which the device's alarm represents, cannot be acknowledged */
+    /* only one acknowledgement takes effect: the tag's own alarm is part of the device's alarm and cannot be acknowledged */
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);
     assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message, &error));
     assert_non_null(strstr(error.text, "this plant has no device “TT-1”"));
@@ -304,7 +304,7 @@ CASE(the_journal_keeps_the_unit_of_the_time)
     expect_row(s, 80, NULL, 96);
 }
 
-/* Counters and totalizers have more digits than a transmitter: pages, programs and files must not round them. */
+/* Counters and totalizers have more digits than a transmitter; pages, programs and files must not round them. */
 CASE(large_readings_keep_their_digits)
 {
     static const struct {

@@ -151,7 +151,7 @@ static int alarms_of(struct alarm_service_setup *s, struct history_reader *reade
     return count;
 }
 
-/* An alarm was active when recording ended: how long it lasted after that is unknown. */
+/* An alarm was active when recording ended: its duration after that is unknown. */
 CASE(while_nothing_was_recorded_no_alarm_is_known)
 {
     int error;

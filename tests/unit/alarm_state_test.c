@@ -82,7 +82,7 @@ TEST(every_event_leads_where_the_table_says)
             struct alarm_state reached = states[from].state;
             enum alarm_outcome outcome = alarm_state_step(&reached, &rule, (enum alarm_event)event);
             if (!wanted)
-                continue; /* the next state is a combination without a name here; check_invariants() still covers it */
+                continue; /* the next state is a combination that has no name here; check_invariants() still covers it */
             said++;
             enum alarm_outcome meant = !strcmp(wanted, "=") ? ALARM_AS_IT_WAS : !strcmp(wanted, "-") ? ALARM_REFUSED : ALARM_CHANGED;
             int to = meant == ALARM_CHANGED ? find_state(wanted) : from;
@@ -182,7 +182,7 @@ static bool turns(int side, bool active)
     return side == (active ? CONDITION_CLEAR : CONDITION_BEYOND);
 }
 
-/* Slow reference: for each second, looks back to see for how many seconds the condition has held. */
+/* Slow reference: for each second, looks back to find for how many seconds the condition has held. */
 static bool slow_active(const int *sides, int now, const struct condition_delays *delays)
 {
     bool active = false;

@@ -253,7 +253,7 @@ TEST(a_mirror_shows_what_the_other_system_says)
 {
     struct stage s;
     begin(&s, ALARMS_MIRROR);
-    assert_int_equal(count_of(&s), 4);            /* alarms: one limit, two bits that may turn bad, and their device */
+    assert_int_equal(count_of(&s), 4);            /* alarms: of one limit, of two bits that may turn bad, and of their device */
     hear(&s, 1, 0, 95, QUALITY_GOOD);            /* in this mode the DCS watches the limit, so we raise no alarm */
     assert_told(&s, "");
     hear(&s, 2, 3, 1, QUALITY_GOOD);
@@ -367,7 +367,7 @@ TEST(counts_are_what_there_is)
     end(&s);
 }
 
-/* TT has LL 0 and L 10 with a deadband of 2. */
+/* TT has the limits LL 0 and L 10, with a deadband of 2. */
 TEST(what_is_there_stands_before_what_has_gone)
 {
     struct stage s;
@@ -465,7 +465,7 @@ TEST(a_lost_device_is_one_alarm)
     assert_told(&s, "15 a.LINK raise: normal > unacknowledged\n15 TT.BAD raise: normal > suppressed\n"
                     "17 PT.BAD raise: normal > suppressed\n");
     assert_int_equal(active_count(&s), 1);
-    assert_int_equal(s.told[0], ALARM_NONE); /* the tag's marker already shows bad quality, so no alarm is reported */
+    assert_int_equal(s.told[0], ALARM_NONE); /* the tag's marker already shows the bad quality, so no alarm is reported */
     assert_int_equal(act_on_link(&s, 19, "a", ALARM_ACKNOWLEDGE), REFUSAL_NONE);
     assert_int_equal(alarms_find_named(s.alarms, "b", ALARM_LINK), -1);
     hear(&s, 20, 0, 50, QUALITY_GOOD);
@@ -519,7 +519,7 @@ TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
     end(&s);
 }
 
-/* One of two units behind a gateway fails: only that unit has an alarm. */
+/* One of two units behind a gateway fails: only that unit gets an alarm. */
 TEST(units_are_devices_of_their_own)
 {
     struct stage s;

@@ -281,7 +281,7 @@ TEST(wrong_vertices_are_refused)
 TEST(wrong_primitives_and_levels_are_refused)
 {
     REFUSED(ASSET_INDICES, uint32_t, [4] = 4, "primitive 0: index 4 refers to vertex 4, but there are only 4 vertices");
-    /* this index is within the file, but not within the level's prefix of vertices */
+    /* a valid index in the file, but outside the vertices that this level uses */
     REFUSED(ASSET_INDICES, uint32_t, [7] = 3, "primitive 1: index 7 refers to vertex 3, but there are only 3 vertices");
     REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].first_index = UINT32_MAX - 2, "primitive 1: indices");
     REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].index_count = 2, "primitive 1: indices 6+2 of 9");
@@ -569,11 +569,11 @@ TEST(damaged_packed_distances_are_refused)
     make_codes(&packed, 0.01);
     pack_codes(&packed);
     const size_t block = packed.offsets[1];
-    /* refused: the table of offsets says that block 0 of the distances begins inside the table itself */
+    /* refused: the offset table says that block 0 of the distances begins inside the table itself */
     packed_refused(&packed, 0, 8);
     packed_refused(&packed, sizeof(uint64_t) + 7, 0x80);   /* refused: block 1 of the distances begins beyond the section's end */
-    packed_refused(&packed, BLOCKS * sizeof(uint64_t), 0); /* refused: the last block of the distances ends before the section does */
-    /* refused: the distances of sensor 5 are predicted from those of sensor 5 itself */
+    packed_refused(&packed, BLOCKS * sizeof(uint64_t), 0); /* refused: the last block of the distances ends before its section does */
+    /* refused: the distances of sensor 5 are predicted from sensor 5 itself */
     packed_refused(&packed, block + 4 * 5, 5);
     packed_refused(&packed, block + 4 * 5 + 2, 17);        /* 17 bits */
     packed_refused(&packed, block + 4 * 5 + 3, 16);        /* refused: the distances take more bits than the block has */

@@ -89,7 +89,7 @@ CASE(links_and_files_beside_are_not_written_through)
 struct held_job {
     struct file_job job;   /* first member */
     pthread_mutex_t *gate; /* the writer thread waits for this lock before it writes the job's file; NULL: it does not wait */
-    int error, *finished;  /* error: result of writing; finished: where the test gets it, ENOENT before */
+    int error, *finished;  /* error: result of writing; finished: receives it in the test, ENOENT before */
 };
 
 static int write_held(struct file_job *job)
@@ -143,7 +143,7 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &first), -ETIMEDOUT);
     pthread_mutex_unlock(&gate);
     assert_true(file_writer_wait(writer, 60 * NS_PER_S));
-    /* the writer has finished, but the event loop gets no result before it collects the finished jobs */
+    /* the writer has finished, but the event loop gets results only when it collects the finished jobs */
     assert_int_equal(one, ENOENT);
     assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), -ENOSPC); /* builds on what failed */
     assert_int_equal(late, -ENOSPC);
@@ -159,7 +159,7 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0);
     file_writer_destroy(&writer);
     assert_int_equal(late, 0);
-    assert_int_equal(atomic_load(&written), 3); /* the job that had been queued after the failed one, for the same file, was not written */
+    assert_int_equal(atomic_load(&written), 3); /* the job queued after the failed one, for the same file, was not written */
 }
 
 TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
@@ -174,7 +174,7 @@ TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
     while (count < 200 && queue_held(writer, &owner, NULL, 0, &results[count]) == 0)
         count++;
     assert_in_range(count, 63, 64);
-    assert_int_equal(results[count], -ETIMEDOUT); /* the queue is full: this job is refused at once, and those before it wait */
+    assert_int_equal(results[count], -ETIMEDOUT); /* the queue is full: this job is refused at once, and earlier ones keep waiting */
     assert_int_equal(results[count - 1], ENOENT);
     file_writer_forget(writer, &leaver);
     pthread_mutex_unlock(&gate);

@@ -124,7 +124,7 @@ TEST(test_lines_removed_and_moved)
     /* removes the last two lines */
     put(path, bytes, starts[3]);
     expect_fault(path, NULL, "the last 2 lines were removed");
-    /* the head file was removed too: only somebody who kept a line elsewhere can detect that */
+    /* the head file was removed too: only somebody who kept a line elsewhere can detect this */
     known = report.end;
     unlink(head_path);
     expect_fault(path, NULL, "cannot be detected");
@@ -160,7 +160,7 @@ TEST(test_next_start)
     assert_non_null(strstr(finding, "lines were removed"));
     mem_free(finding);
     expect_fault(path, NULL, ":4: lines before this line were removed or inserted");
-    /* an incomplete last line at the end, as a crash leaves it */
+    /* an incomplete last line, as a crash leaves it */
     put(path, bytes, count - 10);
     char *head_path = test_printf("%s.head", path);
     struct audit_chain fourth;
@@ -256,7 +256,7 @@ TEST(test_an_error_outlasts_the_next_success)
     assert_int_equal(settling_state(&settling, &ticket, 0), 0);
 }
 
-/* Text from strangers appears in the line escaped, and the line stays one line of JSON. */
+/* Text from strangers is escaped, and the entry stays one line of JSON. */
 TEST(test_strangers_texts)
 {
     struct audit_chain chain, read;
@@ -288,7 +288,7 @@ TEST(test_syslog_frame)
     text_finish(&out);
 }
 
-/* Several threads record at once; every entry is in the file, in order. */
+/* Several threads record entries at once; every entry is in the file, in order. */
 TEST(test_daemon)
 {
     char *dir = temp_folder(), *path = test_printf("%s/a", dir);

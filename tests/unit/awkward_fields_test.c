@@ -13,14 +13,14 @@
 
 #define STEP (1 / 255.0)
 #define POINTS 20000      /* number of random points that are checked per distance method */
-#define FEW 4             /* number of points that may err by more than one colour step */
+#define FEW 4             /* number of points whose error may exceed one colour step */
 #define FEW_AT_RIMS 1000  /* where reaches end, */
 #define MOST_STEPS 4.0    /* largest allowed error of any point, in colour steps */
 #define ROUNDING 1.1      /* allowance in steps, because distances are floats */
 /* the report's error is measured at sample points; between them the error may be this many times as large */
 #define NAMED 2.0
-#define LEAST_M 1e-5      /* metres; a sensor nearer than this has all the weight, see server/field */
-#define RIM_OF_REACH 0.05 /* points this near to where the data ends are not compared; a share of that distance */
+#define LEAST_M 1e-5      /* metres; a sensor nearer than this gets all the weight, see server/field */
+#define RIM_OF_REACH 0.05 /* points this near to the edge of the data are not compared; a fraction of the reach */
 #define MOST 4096         /* maximum number of sensors, vertices and triangles of a case */
 
 struct awkward {
@@ -125,7 +125,7 @@ static void write_plant(const struct awkward *a)
     mem_free(reach);
 }
 
-/* errors of an asset's finest level that the preparation's report names, in colour steps; 0: not named */
+/* errors of an asset's finest level, as the preparation's report names them, in colour steps; 0: not named */
 struct named {
     /* worth_a_look: error in the report's text; beside_rims: error in the report's table, which includes edges too short to cut
        and edges of the data */

@@ -39,7 +39,7 @@ TEST(test_a_name_is_found_replaced_and_removed)
     assert_int_equal(baselines_find(baselines, "calm"), id);
     const struct snapshot *held = baselines_take(baselines, id);
     assert_int_equal(set(baselines, "calm", 5), id);
-    assert_true(held->readings[2].value == 4); /* a reader that holds the old baseline still reads the old values */
+    assert_true(held->readings[2].value == 4); /* a reader that holds the old baseline still sees the old values */
     const struct snapshot *now = baselines_take(baselines, id);
     assert_true(now->readings[2].value == 5 && now->taken_utc_ns == 1005);
     assert_true(baselines_describe(baselines, id, &what) && what.taken_utc_ns == 1005);
@@ -71,7 +71,7 @@ TEST(test_names_are_bounded)
     assert_true(baselines_may_set(baselines, "b7"));
     assert_int_equal(baselines_list(baselines, list), BASELINES_NAMED);
     assert_string_equal(list[31].name, "b31");
-    /* a baseline without a name is stored although the maximum number of named baselines is reached */
+    /* a baseline without a name is stored even when the maximum number of named baselines is reached */
     assert_int_not_equal(keep(baselines, 5), 0);
     baselines_destroy(&baselines);
 }

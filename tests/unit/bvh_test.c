@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* BVH queries compared with trying every triangle; equally near triangles are ordered by their numbers. */
+/* BVH queries compared with a loop over every triangle; of equally near triangles, the one with the lowest number comes first. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -284,7 +284,7 @@ static bool is_other(const void *arg, uint32_t tri)
     return l->label[tri] != l->skipped;
 }
 
-/* Triangles get their labels by position, so that whole nodes of the BVH have one label. */
+/* Triangles are labelled by position, so that whole nodes of the BVH have the same label. */
 TEST(test_skipping_a_label_finds_what_a_predicate_finds)
 {
     uint32_t label[3000];

@@ -10,7 +10,7 @@ TEST(nonsense_is_refused)
 {
     assert_true(camera_valid(&good));
     struct camera c = { .eye_m = { 412345, 5512345, 120 }, .target_m = { 412355, 5512345, 118 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
-    assert_true(camera_valid(&c)); /* coordinates of millions of metres, as in a national survey grid, are accepted */
+    assert_true(camera_valid(&c)); /* coordinates of millions of metres, as in a national survey grid, are valid */
     double *const numbers[] = { &c.eye_m[0], &c.target_m[1], &c.up[2], &c.fov_deg };
     const double wrong[] = { NAN, INFINITY, -INFINITY, 2e7 };
     for (size_t i = 0; i < 4; i++)

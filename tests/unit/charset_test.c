@@ -57,7 +57,7 @@ static const struct encoded_sample {
     { "UTF-16BE", { "Tag,Unit\nTT-1,°C\n", "Имя;Адрес\nНасос;40001\n", "名称,地址,单位\n泵,400001,℃\n" } },
 };
 
-/* A text decoded to wrong letters is worse than one reported as unsure. */
+/* A text decoded to wrong letters is worse than one reported as uncertain. */
 TEST(test_kinds)
 {
     size_t texts = 0, right = 0, unsure = 0, wrong = 0;

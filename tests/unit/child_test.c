@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Child processes: their output, how they end, and what confinement forbids them. */
+/* Child processes: their output, how they end, and what their confinement forbids. */
 #include "tests/support/test.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -74,7 +74,7 @@ TEST(test_a_crash_is_told)
     assert_string_equal(why, "the script crashed (SIGSEGV)");
 }
 
-/* The timeout also ends background processes that the script started and that hold its pipes. */
+/* The timeout also ends background processes that the script started and that keep its pipes open. */
 TEST(test_a_hang_ends)
 {
     assert_false(run("sleep 1000 & sleep 1000", 1, room));
@@ -178,7 +178,7 @@ TEST(test_a_signal_ends_it)
     }
 }
 
-/* Which accesses each ABI knows is taken from linux/landlock.h of Linux 6.12. */
+/* The accesses that each ABI knows, from linux/landlock.h of Linux 6.12. */
 TEST(test_each_abi_of_landlock_restricts_what_it_knows)
 {
     static const struct {
@@ -212,7 +212,7 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
         assert_non_null(
             strstr(lacks, "no seccomp: programs that read uploaded files can make any system call (needs CONFIG_SECCOMP_FILTER)"));
     }
-    assert_int_equal(confine_ruleset_of(-1).files, 0); /* -1 is the kernel's answer where Landlock is absent or switched off */
+    assert_int_equal(confine_ruleset_of(-1).files, 0); /* the kernel returns -1 where Landlock is absent or disabled */
 }
 
 /* --- older kernels: what a confined process can do with each Landlock ABI ----------------------------------------------------- */

@@ -11,7 +11,7 @@
 enum { BOX = 192 }; /* triangles of shape_box */
 static const double low[3] = { -1, -1, -1 }, high[3] = { 1, 1, 1 };
 
-/* Consumes the shape. Returns how many of its triangles bound closed bodies. */
+/* Consumes the shape. Returns how many of its triangles belong to closed bodies. */
 static uint32_t closed_triangles(struct test_shape *shape)
 {
     struct toy *toy = toy_create();
@@ -19,7 +19,7 @@ static uint32_t closed_triangles(struct test_shape *shape)
     const struct closed_bodies *closed = asset_closed(toy->scene.assets[asset].file, 0);
     uint32_t indices = 0, end = 0;
     for (size_t i = 0; i < closed->run_count; i++) {
-        /* runs of the closed bodies' indices that follow each other directly are merged into one run */
+        /* adjacent runs of the closed bodies' indices are merged into one run */
         assert_true(closed->runs[i].index_count > 0 && (i == 0 || closed->runs[i].first_index > end));
         end = closed->runs[i].first_index + closed->runs[i].index_count;
         indices += closed->runs[i].index_count;

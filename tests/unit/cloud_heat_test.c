@@ -31,7 +31,7 @@ static void finish(struct made *made)
     mem_free(made->along_m);
 }
 
-/* Asserts the mean and the largest difference from the true distance, as shares of the largest distance. */
+/* Asserts the mean and the largest difference from the exact distance, as shares of the largest distance. */
 static void expect_errors(const struct made *made, const char *what, const double *truth, double mean, double worst)
 {
     double sum = 0, most = 0, largest_m = 0;
@@ -115,7 +115,7 @@ TEST(test_reaches_through_what_is_thin)
         add_plate(&made.cad, gap_m);
         make(&made, (const double[3]){ 0, 0, 0 });
         assert_true(fabs((double)made.along_m[3] - sqrt(2)) < 0.03); /* distance across the source's own plate */
-        /* the other plate cannot be reached, unless the gap is too thin for the cloud */
+        /* the other plate cannot be reached, unless the gap is too narrow for the cloud */
         assert_int_equal(isinf((double)made.along_m[7]) != 0, !thin);
         assert_true(surface_distances(made.surface, (const double(*)[3])(double[3]){ 0, 0, 0 }, 1, along_m));
         assert_true(isinf((double)along_m[7]) || gap_m < surface_report(made.surface)->tolerance_m);

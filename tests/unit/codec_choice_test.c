@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Choice between H.264 and JPEG by network throughput and free processor time, without switching to and fro. */
+/* Choice between H.264 and JPEG by network throughput and free processor time, without oscillation. */
 #include "session/pacing/codec_choice.h"
 
 #include "tests/support/test.h"

@@ -84,7 +84,7 @@ TEST(test_tables_are_whole)
     assert_memory_equal(colormap_at(NULL, 2)->rgb[0], viridis_first, 3);
     assert_memory_equal(colormap_at(NULL, 2)->rgb[255], viridis_last, 3);
     assert_memory_equal(colormap_at(NULL, 5)->rgb[255], turbo_last, 3);
-    for (size_t i = 0; i < colormap_count(NULL); i++) /* the rows of a map are complete and in order: neighbouring colours differ little */
+    for (size_t i = 0; i < colormap_count(NULL); i++) /* a map's rows are complete and in order: neighbouring colours differ little */
         for (int row = 1; row < 256; row++)
             for (int k = 0; k < 3; k++)
                 assert_true(abs(colormap_at(NULL, i)->rgb[row][k] - colormap_at(NULL, i)->rgb[row - 1][k]) <= 8);

@@ -27,7 +27,7 @@ static void move(struct cad *cad, double turn_rad, double x, double y, double z)
 struct outer { /* the union's surface */
     struct oracle_mesh mesh;
     double *distances, source[3];
-    long *of_vertex; /* by vertex of the tested shape: the outer surface's vertex at its position; -1: covered */
+    long *of_vertex; /* by vertex of the tested shape: the outer surface's vertex at that position; -1: covered */
 };
 
 static void outer_init(struct outer *outer, const struct cad *a, const struct cad *b, const struct cad *tested)
@@ -339,7 +339,7 @@ TEST(a_tube_passes_through_itself)
 {
     struct cad tube = { 0 }, up = { 0 }, down = { 0 };
     struct outer outer;
-    double radius = 0.12 + 0.05 * cad_random(&chance); /* the sharpest bend has a radius of 0.178: a thicker tube would fold there */
+    double radius = 0.12 + 0.05 * cad_random(&chance); /* the sharpest bend has a radius of 0.178; a thicker tube would fold there */
     skip_if_watched();
     cad_eight(&tube, &chance, 150, 36, radius, 0);
     cad_eight(&up, &chance, 150, 36, radius, 1);

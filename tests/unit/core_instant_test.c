@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Historical readings sent from a core to a renderer: exact to the bit; invalid messages are refused. */
+/* Historical readings sent from a core to a renderer: bit-exact; invalid messages are refused. */
 #include "tests/support/test.h"
 
 #include "corelink/core_instant.h"
@@ -57,7 +57,7 @@ TEST(any_bytes_are_read_or_refused)
     srand(seed);
     for (int round = 0; round < ROUNDS; round++) {
         size_t length = rand() % 4 ? text.length : (size_t)rand() % (text.length + 1);
-        uint8_t *bytes = mem_array(length + 1, 1); /* exactly sized allocation, so that the sanitizer finds a read beyond its end */
+        uint8_t *bytes = mem_array(length + 1, 1); /* allocated at the exact size, so that the sanitizer finds a read beyond the end */
         int64_t first_us;
         memcpy(bytes, text.at, length);
         for (int i = rand() % 4; i > 0 && length > 0; i--)

@@ -101,7 +101,7 @@ TEST(nonsense_is_refused)
     way_finish(&way);
 }
 
-/* Asserts that a reading delayed on its way arrives older by late_ns. */
+/* Asserts that a reading delayed in transit arrives older by late_ns. */
 #define DRIFT_NS (S / 500) /* nanoseconds that two clocks may drift apart between two messages */
 
 static void assert_late(struct readings_path *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
@@ -119,7 +119,7 @@ TEST(late_readings_are_older)
 {
     struct readings_path way;
     way_init(&way);
-    for (int i = 0; i < 3; i++) { /* one message per second; the second one is delayed by 5 s */
+    for (int i = 0; i < 3; i++) { /* one message per second; the second message is delayed by 5 s */
         int64_t late_ns = i == 1 ? 5 * S : 0;
         assert_late(&way, (50 + i) * S, (1000 + i) * S + late_ns, late_ns);
     }

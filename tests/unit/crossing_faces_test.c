@@ -113,7 +113,7 @@ static bool piece_crosses(const struct crossing_model *model, const uint32_t edg
     return true;
 }
 
-/* Many triangles on few points: triangles meet at corners and along sides, overlap, and cross each other. */
+/* Many triangles on few points: they meet at corners and along sides, overlap, and cross. */
 static void make_tangle(struct crossing_model *model, uint32_t points, double flatness)
 {
     *model = (struct crossing_model){ .vertex_count = points, .triangle_count = (size_t)between(4, MOST_FACES) };
@@ -125,7 +125,7 @@ static void make_tangle(struct crossing_model *model, uint32_t points, double fl
     model_join(model, 1e-3);
 }
 
-/* Counts how often edges of one sampled triangle (`piece`) cross sampled triangles of other faces. */
+/* Counts the crossings between edges of one sampled triangle (`piece`) and sampled triangles of other faces. */
 static size_t count_crossings(const struct crossing_model *model, size_t piece)
 {
     const struct trimesh *mesh = &model->mesh;

@@ -111,7 +111,7 @@ CASE(a_damaged_file_is_set_aside)
     assert_int_equal(system(look), 0);
 }
 
-/* A statement that cannot be prepared accepts binding like any other; stepping it returns the error. */
+/* A statement with an SQL error accepts bindings like any other; stepping it returns the error. */
 CASE(a_wrong_statement_is_an_error_when_it_is_stepped)
 {
     write_once(s, &first);

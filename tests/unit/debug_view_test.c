@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Debug views: the GLB files follow the rules of glTF 2.0 and show what the report counts. */
+/* Debug views: the GLB files follow glTF 2.0 and show what the report counts. */
 #include "tests/support/test.h"
 #include <sys/stat.h>
 
@@ -214,7 +214,7 @@ CASE(bridges_and_points_are_those_of_the_report)
     assert_float_equal(prep_case_number(positions, "min.0"), 0, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.0"), 0.0002, 1e-6);
     assert_null(node_shape(&glb, "unreachable"));
-    /* faces where one of the two boxes covers the other are in the debug view's node "hidden" */
+    /* faces where one of the two boxes covers the other are in the node "hidden" of the debug view */
     assert_non_null(node_shape(&glb, "hidden"));
     glb_close(&glb);
 }

@@ -54,7 +54,7 @@ static const struct {
     { DATA_FLOAT32, BYTE_ORDER_CDAB, { 0x4000, 0xC2ED }, -118.625 },
     { DATA_FLOAT32, BYTE_ORDER_BADC, { 0xEDC2, 0x0040 }, -118.625 },
     { DATA_FLOAT32, BYTE_ORDER_DCBA, { 0x0040, 0xEDC2 }, -118.625 },
-    /* Test values: 4886718345 = 1 2345 6789 (hex); -4886718345 = FFFF FFFE DCBA 9877 (hex). */
+    /* Test values: 4886718345 = 0x1 2345 6789; -4886718345 = 0xFFFF FFFE DCBA 9877. */
     { DATA_INT64, BYTE_ORDER_ABCD, { 0xFFFF, 0xFFFE, 0xDCBA, 0x9877 }, -4886718345.0 },
     { DATA_INT64, BYTE_ORDER_CDAB, { 0x9877, 0xDCBA, 0xFFFE, 0xFFFF }, -4886718345.0 },
     { DATA_INT64, BYTE_ORDER_BADC, { 0xFFFF, 0xFEFF, 0xBADC, 0x7798 }, -4886718345.0 },
@@ -191,7 +191,7 @@ TEST(square_root_scaling)
     check_scaled(&tag, 2500, 25, QUALITY_GOOD);
     check_scaled(&tag, 10000, 50, QUALITY_GOOD);
     check_scaled(&tag, 12100, 55, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
-    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the square root of a negative number gives 0 with quality Uncertain */
+    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the square root of a negative number yields 0 with quality Uncertain */
 }
 
 TEST(unscaled_negation)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deferred requests come back in order, none is lost, and other requests get every second turn. */
+/* Deferred requests come back in order, none is lost, and every second turn goes to other requests. */
 #include "tests/support/test.h"
 
 #include "service/deferred_requests.h"

@@ -67,7 +67,7 @@ static void body_finish(struct body *body)
     geometry_finish(&body->geometry);
 }
 
-/* Returns the number of all triangles of the body, including degenerate ones. */
+/* Returns the total number of triangles of the body, including degenerate ones. */
 static size_t body_triangles(const struct body *body)
 {
     return body->geometry.index_count / 3 + body->geometry.degenerate_triangles;

@@ -28,7 +28,7 @@ static struct depth_picture picture_of(int width_px, int height_px)
     return picture;
 }
 
-/* A plane over each rectangle of a random patchwork, with background between some. */
+/* A plane over each rectangle of a random patchwork, with background between some rectangles. */
 static struct depth_picture patchwork(int width_px, int height_px)
 {
     struct depth_picture picture = picture_of(width_px, height_px);
@@ -74,7 +74,7 @@ static int count_behind(const struct depth_lens *lens, const float *all, int cou
     return divided ? behind : background;
 }
 
-/* Computes what a cell must hold by the rule of depth_cells.c, from the cell's depths in order. */
+/* Computes a cell's expected content by the rule of depth_cells.c, from the cell's sorted depths. */
 static void expect_cell(const struct depth_picture *picture, const struct depth_lens *lens, int column, int row, struct depth_cell *out)
 {
     float all[64];
@@ -155,7 +155,7 @@ static double in_metres(const struct depth_lens *lens, float depth)
     return (depth - lens->offset) / lens->factor;
 }
 
-/* Encodes and reads a picture, and compares codes with cells. Returns the bytes of the payload. */
+/* Encodes and decodes a picture, and compares codes with cells. Returns the size of the payload in bytes. */
 static size_t round_trip(const struct depth_picture *picture, const struct depth_lens *lens, int *divided)
 {
     struct depth_cell *cells = cells_of(picture, lens);
@@ -219,7 +219,7 @@ TEST(the_ground_is_behind_surfaces)
     struct depth_picture picture = picture_of(64, 64);
     lens.has_ground = true;
     lens.ground[1] = 0.01; /* depth of the ground: 0.01 y */
-    lens.ground_from_pixel[0][0] = 1 / 64.0; /* the ground is seen in the upper half of the picture only */
+    lens.ground_from_pixel[0][0] = 1 / 64.0; /* the ground is visible only in the upper half of the picture */
     lens.ground_from_pixel[1][1] = 1 / 32.0;
     lens.ground_from_pixel[2][2] = 1;
     for (int y = 0; y < 64; y++)

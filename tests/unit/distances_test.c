@@ -55,7 +55,7 @@ static void check(struct prep_case *c, const char *tag, const double sensor[2], 
                   100 * worst_m / longest_m, worst_straight_m);
     assert_int_equal(lines, vertices);
     assert_true(sum_m / (double)lines <= 0.006 * longest_m && worst_m <= 0.03 * longest_m);
-    assert_true(worst_straight_m < 0.002); /* deviation from the cylinder: the sensor is projected onto a flat triangle */
+    assert_true(worst_straight_m < 0.002); /* deviation from the cylinder, because the sensor is projected onto a flat triangle */
 }
 
 TEST_WITH(round_a_cylinder, prep_case_set_up, prep_case_tear_down)

@@ -42,7 +42,7 @@ static void solve(double a[UNKNOWNS][UNKNOWNS + 1])
     }
 }
 
-/* Mean change per hour, from three hours before `hour` to three hours after. */
+/* Returns the mean change per hour, from three hours before `hour` to three hours after it. */
 static double change_at(const double *predicted, int hours, int hour)
 {
     double sum = 0;
@@ -188,12 +188,12 @@ TEST(test_what_cannot_be_told_is_unknown)
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
     assert_non_null(strstr(drift_unknown_cause(&drift, 3), "changes in plant operation"));
-    for (int h = 0; h < DRIFT_HOURS; h++) /* all sensors are stuck: no drift, although a drift would be detected */
+    for (int h = 0; h < DRIFT_HOURS; h++) /* all sensors are stuck: no drift, although the fit could detect one */
         values[h] = predicted[h] = 50;
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_NONE);
     assert_string_equal(drift_unknown_cause(&drift, 3), "");
-    drift.verdict = DRIFT_UNKNOWN; /* sets the verdict that drift_find() gives a sensor if all others drift */
+    drift.verdict = DRIFT_UNKNOWN; /* the verdict that drift_find() gives a sensor if all others drift */
     assert_non_null(strstr(drift_unknown_cause(&drift, 3), "that do not drift"));
 }
 
@@ -203,7 +203,7 @@ struct recorded_series {
     const char *file, *columns[SENSORS];
     int count; /* number of columns */
     double noise, beyond; /* noise of a reading; distance of the alarm limit beyond all readings (a tenth of the range) */
-    double from, to;      /* part of the file (0 to 1) that is stretched over a week */
+    double from, to;      /* part of the file that is stretched over a week; 0: its beginning, 1: its end */
     double hours[DRIFT_HOURS][SENSORS];
 };
 
@@ -424,7 +424,7 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 }
 
 struct drift_detection {
-    int hours;      /* hour of the week at which the added drift was found; 0: not found */
+    int hours;      /* hour of the week in which the added drift was found; 0: not found */
     double drifted; /* amount drifted by that hour */
     double limit;   /* smallest distance so far between the reading and its alarm limit */
 };
@@ -450,7 +450,7 @@ static struct drift_detection search(const struct row_of_sensors *row, const str
     return out;
 }
 
-/* Returns whether at the week's end a sensor other than the drifting one is found to drift. */
+/* Returns whether, at the end of the week, a sensor other than the drifting one is found to drift. */
 static bool accuses_another(const struct row_of_sensors *row, const struct recorded_series *s, int sensor, double change)
 {
     struct drift drifts[SENSORS];
@@ -471,7 +471,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
        fault, not tested */
     static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
-    int others = 0; /* number of sensors that were wrongly found to drift, instead of the drifting one or in addition */
+    int others = 0; /* number of sensors wrongly found to drift, instead of the drifting one or in addition to it */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
         struct recorded_series *s = &all_series[k];
         if (least[k][0] == 0)
@@ -491,7 +491,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
                     others += accuses_another(&row, s, i, sign * sizes[size] * none[i].scatter);
                     if (at.hours == 0)
                         continue;
-                    assert_true(at.limit > 0); /* when the drift was found, the reading had not yet reached its alarm limit */
+                    assert_true(at.limit > 0); /* when the drift was found, the reading was still within its alarm limit */
                     most_sigmas = fmax(most_sigmas, fabs(at.drifted) / none[i].scatter);
                     least_limit = fmin(least_limit, at.limit);
                 }

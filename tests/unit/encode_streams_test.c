@@ -125,7 +125,7 @@ static struct depth_grid *grid_create(void)
     return grid;
 }
 
-/* Clients that want a depth grid get it with the newest packet. */
+/* Clients that request a depth grid get it with the newest packet. */
 static void check_depth(const struct encode_streams_fixture *f, const struct request_group *tickets)
 {
     const struct encode_stream *stream = f->plan.stream;
@@ -134,7 +134,7 @@ static void check_depth(const struct encode_streams_fixture *f, const struct req
         assert_true(newest->frame->depth[0]);
 }
 
-/* Shows one frame to `clients` (one bit each); afterwards all of them show it. */
+/* Shows one frame to `clients` (a bit mask), after which all of them display it. */
 static void show(struct encode_streams_fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
 {
     struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
@@ -226,11 +226,11 @@ CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
 CASE(a_slow_one_does_not_cost_the_others_key_frames)
 {
     int before = 0;
-    for (int i = 0; i < 2000; i++) { /* 100 s at 20 frames per second; the slow client (bit 0) gets every 50th frame */
+    for (int i = 0; i < 2000; i++) { /* 100 s at 20 frames per second; the slow client (bit 0) gets only every 50th frame */
         show(f, i % 50 == 49 ? 0xfff : 0xffe, i, (uint64_t)i + 1, false);
         before = i == 999 ? f->keys : before;
     }
-    assert_in_range(f->keys - before, 0, 24); /* a slow client gets its own key frames: one at each of its 20 frames */
+    assert_in_range(f->keys - before, 0, 24); /* a slow client gets its own key frames, one for each of its 20 frames */
     assert_in_range(chain_count(f), 1, 2);
 }
 
@@ -241,11 +241,11 @@ CASE(depth_that_packets_lack_is_sent_to_clients_that_want_it)
     show(f, 1, 0, 1, false);
     f->gives_depth = true;
     show(f, 1, 0, 1, false);
-    assert_int_equal(f->encodes, 1); /* client 0 wants no depth, so the packet that was encoded without depth is used again */
+    assert_int_equal(f->encodes, 1); /* client 0 wants no depth, so the packet encoded without depth is reused */
     show(f, 2, 0, 1, false);
     assert_true(f->encodes == 2 && f->plan.again);
     show(f, 2, 0, 1, true);
-    assert_int_equal(f->encodes, 2); /* for client 1, the packet that was encoded with depth is used again */
+    assert_int_equal(f->encodes, 2); /* client 1 gets the reused packet that was encoded with depth */
 }
 
 /* Hundreds of acknowledgements arrive one by one, so some clients request the next view while others still wait for the previous one. */

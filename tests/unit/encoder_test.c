@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoders: decoded output equals the input within the loss that the codec may have. */
+/* Encoders: decoded output equals the input, within the loss that each codec permits. */
 #include "encode/encoder.h"
 
 #include "tests/support/test.h"
@@ -16,7 +16,7 @@ static struct frame *gradient(int w, int h)
             p[0] = (uint8_t)(x * 255 / w);
             p[1] = (uint8_t)(y * 255 / h);
             p[2] = x < w / 2 ? 200 : 40;
-            p[3] = 0x5a; /* BGRX: the fourth byte is not part of the picture, so any value must do */
+            p[3] = 0x5a; /* BGRX: the fourth byte is not part of the picture, so it may have any value */
         }
     frame->marker_count = 1;
     frame->markers = mem_new(sizeof(*frame->markers));
@@ -90,7 +90,7 @@ static bool is_line(int x)
 
 static struct frame *thin_lines(int w, int h)
 {
-    /* colours of the two kinds of lines and of the background: blue, green, red */
+    /* colours of the two kinds of lines and of the background, in the order blue, green, red */
     static const uint8_t colors[3][3] = { { 231, 146, 89 }, { 42, 183, 216 }, { 230, 231, 232 } };
     struct frame *frame = frame_create(NULL, w, h);
     for (int y = 0; y < h; y++)

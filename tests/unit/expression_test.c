@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Expressions: their values, their syntax errors with positions, and derived tags that pass quality and age on. */
+/* Expressions: their values, syntax errors with positions, and how derived tags pass on quality and age. */
 #include "tests/support/test.h"
 
 #include "plant/tags/expression.h"
@@ -164,7 +164,7 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     derived_destroy(&derived);
 }
 
-/* Inputs have their devices' times. A sample that is not the newest input still changes the result. */
+/* Inputs carry their devices' times. A late sample that is not the newest input still changes the result. */
 TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;

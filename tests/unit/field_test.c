@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field compared with plain double-precision loops, and each rule that keeps it true. */
+/* The field compared with plain double-precision loops, and each rule that keeps it exact. */
 #include "tests/support/test.h"
 #include <float.h>
 #include <malloc.h>
@@ -52,7 +52,7 @@ static double truth_radius(const struct synthetic *plant, const struct field_par
     return most;
 }
 
-/* Returns the factor by which a sensor's weight fades towards the reach, relative to the nearest sensor. */
+/* Returns the factor by which a sensor's weight fades towards its reach, relative to the nearest sensor. */
 static double faded(const struct field_params *params, double near_m, double distance_m)
 {
     if (isinf(params->reach_m) || distance_m <= near_m)
@@ -123,7 +123,7 @@ static struct vertex_truth truth_at(const struct synthetic *plant, const struct 
         truth.near_tie |= s.distance_m[i] > params->reach_m - 1e-5;
         bool at_the_rim = s.distance_m[i] > nearest_usable && nearest_usable > 0.999 * params->reach_m; /* both have hardly any weight */
         truth.near_tie |= at_the_rim && s.distance_m[i] < params->reach_m;
-        /* near the radius R, the weight 1 - d/R, raised to a small power, is mostly rounding */
+        /* near the radius R, the weight 1 - d/R raised to a small power is mostly rounding error */
         truth.near_tie |= paper && fabs(s.distance_m[i] - radius_m) < 1e-4 * radius_m;
     }
     for (size_t i = 0; i < count; i++) {
@@ -179,7 +179,7 @@ static void assert_all_finite(const struct scalars *scalars)
         assert_true(isfinite(scalars->at[j].value));
 }
 
-/* Asserts that the field has the same bits as one that was just created. */
+/* Asserts that the field has the same bits as a newly created one. */
 static void assert_as_fresh(const struct field_rig *rig)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
@@ -366,7 +366,7 @@ TEST(test_losing_the_hottest_is_not_painted_over)
             size_t nearest = 0;
             for (size_t i = 1; i < 5; i++) {
                 float least_m = asset_distance_m(&rig.plant->file.view, nearest, j), m = asset_distance_m(&rig.plant->file.view, i, j);
-                /* sensor 2 is lost: a vertex that is equally near to another sensor takes that sensor's value */
+                /* sensor 2 is lost: a vertex equally near to another sensor takes that sensor's value */
                 if (m < least_m || (m == least_m && nearest == 2))
                     nearest = i;
             }
@@ -486,7 +486,7 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
     set(&rig, 2, 5, QUALITY_GOOD);
     assert_even(&rig, 5);
     rig.plant->plant.tags[0].alarms.limits[LIMIT_H] = 35;
-    assert_even(&rig, 40); /* the asset shows the only reading that is beyond a limit of its own tag */
+    assert_even(&rig, 40); /* the asset shows the only reading that exceeds a limit of its own tag */
     assert_as_fresh(&rig);
     set(&rig, 0, 40, QUALITY_BAD_NO_COMMUNICATION);
     assert_even(&rig, 5);
@@ -505,7 +505,7 @@ TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
     set(&with, 2, 99, QUALITY_GOOD);
     without.plant = synthetic_create(.vertices = 700, .sensors = 3);
     without.field = field_create(workers, &without.plant->scene);
-    without.plant->plant.tags[2].group = -1; /* reference: tag 2 has no group, as if its sensor did not exist */
+    without.plant->plant.tags[2].group = -1; /* reference: tag 2 belongs to no group, as if its sensor did not exist */
     const struct scalars *got = show(&with), *want = show(&without);
     assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
     assert_false(field_is_assumed(with.field, 0, &with.params));
@@ -585,7 +585,7 @@ TEST(test_half_the_weight_uncertain)
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
-        for (size_t j = 0; j < 3; j++) { /* vertices nearer to the good sensor, between both, nearer to the uncertain one */
+        for (size_t j = 0; j < 3; j++) { /* vertices nearer to the good sensor, half-way between the two, nearer to the uncertain one */
             synthetic_set_distance(rig.plant, 0, 10 + j, 1 + (float)j);
             synthetic_set_distance(rig.plant, 1, 10 + j, 3 - (float)j);
         }
@@ -626,7 +626,7 @@ TEST(test_a_sensor_out_of_reach_does_not_make_its_place_lost)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (size_t j = 0; j < 300; j++)
-        /* sensor 0 is Bad and has no path to these vertices, because it is on another part */
+        /* sensor 0 is Bad, and no path leads to it from these vertices because it is on another part */
         synthetic_set_distance(rig.plant, 0, j, INFINITY);
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 1, 40, QUALITY_GOOD);
@@ -674,11 +674,11 @@ TEST(test_a_sensor_fades_towards_its_reach)
             synthetic_set_distance(rig.plant, 1, 20 + k, 2.5f + 0.01f * (float)k);
         }
         synthetic_set_distance(rig.plant, 0, 20, 4);
-        synthetic_set_distance(rig.plant, 1, 20, 4);      /* exactly at the reach of both sensors: the value is a mixture of both */
+        synthetic_set_distance(rig.plant, 1, 20, 4);      /* exactly at the reach of both sensors: the value mixes both readings */
         synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* a vertex reached by one sensor alone shows no fading */
         synthetic_set_distance(rig.plant, 1, 21, 4.001f);
         const struct scalar *at = show(&rig)->at + 20;
-        /* at 3 m the second sensor has half of the weight that the nearest one leaves */
+        /* at 3 m the second sensor has half of the weight that remains beside the nearest one */
         double weight = (paper ? exp(-1 / 8.0) : pow(2 / 3.0, 2)) * pow(0.5, 2);
         double part = weight / (1 + weight);
         assert_true(fabs((double)at[50].value - (20 + 60 * part)) < 1e-4);
@@ -897,7 +897,7 @@ TEST(test_version_grows_with_real_changes_only)
     rig.params.interpolation = INTERPOLATION_PAPER;
     set(&rig, 1, 300, QUALITY_GOOD);
     uint64_t paper = show(&rig)->version;
-    assert_true(paper > version); /* versions increase even if other parameters are shown, because all scalars share one counter */
+    assert_true(paper > version); /* versions increase even when different parameters are shown: all scalars share one counter */
     set(&rig, 1, 400, QUALITY_GOOD);
     assert_int_equal(show(&rig)->version, paper); /* both are clamped to MAX */
     rig_finish(&rig);
@@ -969,7 +969,7 @@ static size_t bytes_allocated(void)
 
 TEST(test_dragging_stays_under_the_bound)
 {
-    const size_t slack = 256 << 10; /* bytes for layouts and for memory that exists only during a call */
+    const size_t slack = 256 << 10; /* bytes for layouts and for temporary memory during a call */
     struct field_rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
     field_set_cache_limit(rig.field, bound);
@@ -1091,7 +1091,7 @@ TEST(test_few_sensors_are_summed_in_one_go)
         }
 }
 
-/* Asserts that the first `count` vertices equal those of a field that was just created. */
+/* Asserts that the first `count` vertices equal those of a newly created field. */
 static void assert_first_as_fresh(const struct field_rig *rig, size_t count)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
@@ -1216,7 +1216,7 @@ TEST(test_a_prefix_costs_less)
     assert_int_equal(scalars->version, version);
     show(&rig); /* the asset is seen from near, with all its vertices */
     assert_true(scalars->ready == 20000 && scalars->version > version && scalars->grown > grown && scalars->flags_version > version);
-    for (int tick = 0; tick < 3; tick++) { /* nobody needs the other vertices: after a while only the first 500 are kept up to date */
+    for (int tick = 0; tick < 3; tick++) { /* no client needs the other vertices: after a while only the first 500 are kept up to date */
         set(&rig, 2, 10 + tick, QUALITY_GOOD);
         field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
     }
@@ -1360,14 +1360,14 @@ TEST(test_distance_from_one_sensor)
     field_default_range(&rig.plant->scene, &rig.params, &low, &high);
     assert_true(low == 0 && high >= (double)most * (1 - 1e-6) && high < 1.06 * (double)most);
     uint64_t version = way->version;
-    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* distances do not depend on readings: a Bad sensor keeps its position */
+    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* distances do not depend on readings: a Bad sensor still has its position */
     assert_int_equal(field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot)->version, version);
     rig_finish(&rig);
 }
 
 /* --- difference, overrides ------------------------------------------------------------------------------------------------ */
 
-/* Returns the scalars of a separate field for these parameters, to compare with the shared one. */
+/* Returns the scalars of a separate field with these parameters, to compare with the shared one. */
 static struct scalar *shown_alone(const struct field_rig *rig, const struct field_params *params, const struct snapshot *snapshot)
 {
     struct field *alone = field_create(workers, &rig->plant->scene);
@@ -1403,7 +1403,7 @@ TEST(test_difference_is_that_of_two_fields)
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (size_t i = 0; i < 12; i++)
-            /* readings beyond the colour scale's range, which interpolation paper clamps before it takes the difference */
+            /* readings beyond the colour scale's range, which interpolation paper clamps before computing the difference */
             set(&rig, i, between(&random, -30, 130), QUALITY_GOOD);
         rig.params.baseline = baselines_set(baselines, "then", rig.plant->snapshot);
         assert_int_equal(show(&rig)->at[500].value, 0);

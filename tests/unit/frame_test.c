@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Marker texts equal the values that the frame shows at their positions. */
+/* Marker texts equal the values that the frame shows at the markers' positions. */
 #include "tests/support/test.h"
 
 #include "render/frame.h"

@@ -183,8 +183,7 @@ static void expect_framed(struct toy *toy, int outside)
 
 TEST(a_stray_piece_is_left_out)
 {
-    static const double sizes[] = { 0.001, 0.1, 1 }; /* sizes up to a third of the whole area are stray if
-                                                        extremely far away */
+    static const double sizes[] = { 0.001, 0.1, 1 }; /* objects of up to a third of the whole size count as stray if extremely far away */
     for (int i = 0; i < 3; i++) {
         struct toy *toy = toy_create();
         double size = sizes[i];

@@ -126,7 +126,7 @@ static void gauss(size_t n, double *a, size_t columns, double *b)
 
 struct dense {
     size_t rows, sensors;
-    double *kernel;  /* [row][row]: covariance at unit deviation at the sensors, without the constant part */
+    double *kernel;  /* [row][row]: covariance between the sensors at unit deviation, without the constant part */
     double *sensing; /* [sensor][row] */
 };
 

@@ -114,7 +114,7 @@ static char *path_of(const struct prep_case *c, const char *folder, const json_t
     return mem_printf("%s/%s/%s", c->folder, folder, json_string_value(json_object_get(asset, "file")));
 }
 
-/* Restores FOLDER/kept as a first run with first_tags leaves it. Returns the asset's report. */
+/* Restores FOLDER/kept to its state after a first run with first_tags. Returns the asset's report. */
 static json_t *prepare_first(struct prep_case *c)
 {
     bool model_read;
@@ -127,7 +127,7 @@ static json_t *prepare_first(struct prep_case *c)
     return made.first;
 }
 
-/* Prepares `tags` into an empty folder, once. Returns the index in made.fresh. */
+/* Prepares `tags` into an empty folder, unless already done. Returns the index in made.fresh. */
 static size_t prepare_fresh(struct prep_case *c, const char *tags)
 {
     bool model_read;
@@ -194,7 +194,7 @@ CASE(a_changed_sensor_costs_its_own_distances)
         { "b,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },                        /* removed */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },   /* added */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 4, false },   /* of another group */
-        /* no tag was on node TT-2 before, so the model must be read for the node's position */
+        /* TT-2 had no tag before, so the model must be read for the node's position */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },
         { "d,,,,t,A,TT-1,,,\nc,,,,t,A,TT-2,,,\ne,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0.01\n", 3, false }, /* in another order */
     };
@@ -550,7 +550,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
         print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
         first_found = move == 0 ? measured + kept : first_found;
         assert_true(measured > 0);
-        if (move > 0) /* levels of detail that an earlier run rejected are not tried again, so fewer measurements are needed */
+        if (move > 0) /* levels of detail rejected by an earlier run are not tried again, so fewer measurements are needed */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
         /* after the last move of the sensor (the second one with PLANTCAST_LONG=1, else the first), the errors of cached

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loading of glTF models: valid content is read as specified, and every error is refused by name. */
+/* Loading of glTF models: valid content is read as specified, and every error is refused with its reason. */
 #include "preprocess/geometry/geometry.h"
 
 #include "tests/support/test.h"
@@ -316,12 +316,12 @@ CASE(nodes_are_chosen_by_pattern_and_taken_once)
 {
     good(l, FACILITY);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
-    assert_int_equal(g.primitive_count, 3); /* the node "seal" is part of two nodes that match, but its triangles are taken only once */
+    assert_int_equal(g.primitive_count, 3); /* the node "seal" lies below two matching nodes, but its triangles are taken only once */
     assert_string_equal(g.names.at + g.primitives[2].name, "P-101B/seal");
     geometry_finish(&g);
     g = cut(l, &(struct geometry_params){ .nodes = "E-7", .unit_m = 1, .up = AXIS_Z });
     assert_float_equal(g.origin_m[0], 1000000.5, 0);
-    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* the model is a million metres away, but its vertices are exact */
+    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* the model is a million metres away, yet its vertices are exact */
     geometry_finish(&g);
     char why[MODEL_WHY_BYTES];
     assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "X*", .unit_m = 1 }, why));
@@ -337,7 +337,7 @@ CASE(units_and_axes_are_turned_to_metres_and_z_up)
     assert_float_equal(g.origin_m[2], 0.0005, 1e-9); /* y of the model is z of the asset */
     float n[3];
     face_normal(&g, 0, n);
-    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f); /* the face pointed to +z in the model, and to -y here */
+    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f); /* the face pointed to +z in the model and points to -y here */
     geometry_finish(&g);
 }
 
@@ -413,7 +413,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     geometry_finish(&g);
 }
 
-/* Models whose file is valid but from which no asset can be cut. */
+/* Valid model files from which no asset can be extracted. */
 CASE(what_cannot_be_cut_is_refused)
 {
     static const struct {

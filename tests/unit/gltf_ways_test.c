@@ -267,7 +267,7 @@ CASE(broken_compression_is_refused_or_harmless)
     sheet_finish(&sheet);
 }
 
-/* Opens the JSON and bytes of a seed again, for a test to change them. */
+/* Opens the JSON and bytes of a seed again so that a test can change them. */
 static struct model_maker seed_open(int number, const char *name, const struct wavy_sheet *sheet)
 {
     struct seed seed;
@@ -575,7 +575,7 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     assert_true(g.second_texcoords && g.materials[0].second == m->second);
     geometry_finish(&g);
 
-    /* the material's occlusion texture uses a coordinate set that the primitive does not have */
+    /* the material's occlusion texture uses a coordinate set that the primitive lacks */
     maker = seed_open(15, "textured.glb", sheet);
     json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 7));
     try_model(l, &maker);
@@ -666,7 +666,7 @@ CASE(textures_lie_where_their_transform_puts_them)
     try_model(l, &maker);
     assert_refused(l, "alphaMode 'GLOW'");
 
-    maker = seed_open(15, "textured.glb", &sheet); /* the image is broken, which is noticed only when it is needed */
+    maker = seed_open(15, "textured.glb", &sheet); /* the image is corrupt, which is noticed only when it is needed */
     const json_t *number = json_object_get(maker_get(&maker, "images", 0), "bufferView");
     const json_t *view = maker_get(&maker, "bufferViews", (int)json_integer_value(number));
     memset(maker.bin.at + json_integer_value(json_object_get(view, "byteOffset")) + 8, 'X', 16);
@@ -764,7 +764,7 @@ CASE(mirrored_instances_keep_their_outside)
     assert_int_equal(g.index_count, 3 * sheet.index_count);
     for (uint32_t t = 0; t < g.index_count / 3; t++) {
         double n[3], y = (double)g.positions_m[g.indices[3 * t]][1] + g.origin_m[1];
-        bool upside_down = y > 1.5 && y < 3.5; /* the second of three instances is turned by a scale of -1 */
+        bool upside_down = y > 1.5 && y < 3.5; /* a scale of -1 turns the second of three instances upside down */
         face_normal(&g, t, n);
         assert_true(upside_down ? n[2] < 0 : n[2] > 0);
         assert_true(upside_down == (g.normals[g.indices[3 * t]][2] < 0));

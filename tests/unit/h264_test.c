@@ -116,7 +116,7 @@ CASE(colours_are_kept_at_any_size)
     check_size(f, 16, 16);
 }
 
-/* Colour conversion split by rows among threads gives the same picture as one thread. */
+/* Colour conversion with rows split among threads gives the same picture as one thread. */
 CASE(many_make_the_same_picture)
 {
     for (int odd = 0; odd < 2; odd++) {

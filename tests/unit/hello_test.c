@@ -362,7 +362,7 @@ CASE(who_is_hidden_gives_its_place_back_and_takes_it_again)
     expect_error(f, hidden, "limit", 0);
     assert_false(session_next_request(hidden, f->now_ns, &request));
     leave_share(f, &second);
-    /* another session has left: at its next tick, the hidden session is admitted without a further request */
+    /* another session has left: the hidden session is admitted at its next tick, without another request */
     session_on_tick(hidden, f->now_ns += NS_PER_S);
     assert_int_equal(share.pixels, 230400);
     assert_true(session_next_request(hidden, f->now_ns, &request) && request.account == 1);

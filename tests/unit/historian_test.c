@@ -91,7 +91,7 @@ TEST_FIXTURE(struct historian_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct historian_setup *s, name, set_up, tear_down)
 
-/* Returns values that never lie on a line: history drops inner points of straight lines. */
+/* Returns values that never lie on a line, because history drops inner points of straight lines. */
 static double bent(int i)
 {
     return i * i * 7919 % 1009;
@@ -142,7 +142,7 @@ static size_t points_of(struct historian_setup *s, int tag, struct history_serie
     return points_around(s, tag, clock_utc_ns() / 1000, series);
 }
 
-/* Returns how many events of this kind the month file for utc_ns contains. */
+/* Returns how many events of this kind the month file of utc_ns contains. */
 static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns)
 {
     char name[MONTH_NAME_BYTES], *query = mem_printf("SELECT count(*) FROM event WHERE kind = '%s'", kind);
@@ -168,7 +168,7 @@ static void wait_until_counted(struct historian_setup *s, const char *name, doub
     assert_true(counted(s, name) == wanted);
 }
 
-/* Values without a deadband: every value is recorded exactly, with connection losses in between. */
+/* Values without a deadband: every value is recorded exactly, even with connection losses in between. */
 CASE(all_that_was_told_is_there)
 {
     int64_t times_ns[40], lost_ns = 0;
@@ -192,7 +192,7 @@ CASE(all_that_was_told_is_there)
     assert_int_equal(snapshot->readings[3].quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
 }
 
-/* Passes the samples of a leader to its standby, as the link between two cores does. */
+/* Passes a leader's samples to its standby, as the link between two cores does. */
 static void pass_on(struct core_samples *link, struct historian *standby)
 {
     struct text bytes = { 0 };
@@ -238,7 +238,7 @@ CASE(a_standby_records_what_time_alone_changes)
     struct historian *standby = historian_start(&(struct historian_params){
         .log = s->log, .counters = s->counters, .plant = s->plant, .store = mirror, .folder = folder, .stands_by = true });
     struct core_samples *link = core_samples_listen(s->store);
-    store_link_lost(s->store, 0, clock_mono_ns()); /* no sample of this source has come yet, so the store reports the loss without a time */
+    store_link_lost(s->store, 0, clock_mono_ns()); /* this source has not sent a sample yet, so the store reports the loss without a time */
     start(s);
     do {
         sleep_ns(50 * NS_PER_MS);
@@ -495,7 +495,7 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
     int64_t last_ns = write_all(s, 7);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);
-    start(s); /* a second start without a usable folder loses nothing of the spool */
+    start(s); /* a second start, still without a usable folder, loses nothing of the spool */
     sleep_ns(300 * NS_PER_MS);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);
@@ -535,7 +535,7 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     assert_int_equal(events_of(s, "clock", after_ns), 1);
 }
 
-/* The clock is set back by an hour: no sample of either pass is lost. */
+/* The clock is set back by an hour, which is passed twice: no sample of either pass is lost. */
 CASE(a_clock_set_back_loses_nothing)
 {
     int64_t times_ns[6];
@@ -622,7 +622,7 @@ CASE(a_full_disk_has_room_for_a_spool)
         print_message("# no file system can be mounted here\n");
         skip();
     }
-    /* a reserve without its size, as a process leaves it that is killed while it makes it */
+    /* a reserve file without its full size, as left by a process that is killed while creating it */
     char *reserve = temp_write_text(folder, "spool.reserve", "");
     char *spool = temp_path(folder, "unwritten.spool");
     struct stat st = { 0 };

@@ -69,7 +69,7 @@ static void end(struct history_loader_setup *s)
 
 TEST_FIXTURE(struct history_loader_setup, begin, end)
 
-/* Asks the loader for the instant and returns the tag's reading at that time. */
+/* Requests a snapshot of the instant from the loader. Returns the tag's reading at that time. */
 static struct reading read_at(struct history_loader_setup *s, int64_t at_us)
 {
     int before = s->notified;

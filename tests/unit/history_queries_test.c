@@ -150,7 +150,7 @@ CASE(csv_has_quotes_where_it_needs_them)
     history_answer_free(&answer);
 }
 
-/* Records 20,000 points per tag: more than one part of an answer holds. */
+/* Records 20,000 points per tag, more than one part of an answer holds. */
 static void record_much(struct history_queries_setup *s)
 {
     struct history_tag *tags = history_tags(s->plant);
@@ -204,7 +204,7 @@ CASE(who_is_forgotten_leaves_room)
     for (int i = 0; i < 4 * HISTORY_QUERIES_MOST; i++) {
         query.client = (uint64_t)i + 1;
         assert_true(history_queries_ask(s->queries, &query));
-        /* forgets an earlier query, because the limit counts all queries whose answers have not been collected */
+        /* forgets an earlier query, because the limit counts all queries whose answers are not yet collected */
         if (i >= HISTORY_QUERIES_MOST - 2)
             history_queries_forget(s->queries, query.client - HISTORY_QUERIES_MOST + 2);
         for (struct history_answer *answer = history_queries_collect(s->queries), *next; answer; answer = next) {

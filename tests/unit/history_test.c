@@ -227,7 +227,7 @@ CASE(a_line_does_not_slope_over_a_long_silence)
     assert_float_equal(recorded_at(s, sent, 2, 300).value, 50, 1e-9);
 }
 
-/* A sample that arrives before the historian notices that the one before was stale. */
+/* A sample that arrives before the historian notices that the previous one was stale. */
 CASE(a_gap_is_unknown_however_short)
 {
     const struct history_point sent[] = { { NOVEMBER, 10, 0 }, { NOVEMBER + 6 * S, 20, 0 }, { NOVEMBER + 9 * S, 30, 0 } };
@@ -341,7 +341,7 @@ CASE(points_that_are_months_apart_are_found)
         assert_int_equal(series.buckets.count, i < 65 ? 2 + (i == -120) : 1);
         history_series_finish(&series);
     }
-    /* a month between that cannot be read: the reading is unknown, all others are there */
+    /* a month in between is unreadable: its reading is unknown, all others are returned */
     char *august = temp_path(s->folder, "history-2026-08.sqlite");
     assert_int_equal(truncate(august, 100), 0);
     history_reader_destroy(&s->reader);
@@ -360,7 +360,7 @@ static void set_zone(const char *zone)
     tzset();
 }
 
-/* The time zone changes during recording, across a month border and the end of summer time. */
+/* The time zone changes during recording, and recording crosses a month border and the end of summer time. */
 CASE(time_zones_do_not_touch_what_is_recorded)
 {
     const char *const zones[] = { "Pacific/Kiritimati", "Europe/Berlin", "America/Adak", "UTC" }, *before = getenv("TZ");
@@ -391,7 +391,7 @@ CASE(time_zones_do_not_touch_what_is_recorded)
             struct history_series series;
             set_zone(zones[zone]);
             assert_int_equal(history_series(s->reader, "TT-1", begins[b], begins[b] + 3599 * S, 1000000, &series), 0);
-            /* includes the last point before the range and the first one after it, if any */
+            /* includes the last point before the range and the first point after it, if they exist */
             const struct history_point *at = series.points.at;
             at += at->t_us < begins[b];
             assert_true(series.points.at + series.points.count - at >= 3600);
@@ -421,7 +421,7 @@ static bool same(double a, double b)
     return memcmp(&a, &b, sizeof(a)) == 0 || (isnan(a) && isnan(b));
 }
 
-/* Compares a tag's points with `truth`, whose quality 1 marks a second without a point. */
+/* Compares a tag's points with `truth`, where quality 1 marks a second without a point. */
 static void assert_points(struct history_setup *s, int tag, const struct history_point *truth)
 {
     struct history_series series;
@@ -455,7 +455,7 @@ CASE(every_point_comes_back_bit_by_bit)
         struct history_row rows[TAGS];
         size_t count = 0;
         for (int tag = 0; tag < TAGS; tag++) {
-            /* now and then a point is older than those before, as after the clock was set back */
+            /* some points are older than the ones before, as after the clock was set back */
             int at = rand() % 20 == 0 ? rand() % (second + 1) : second;
             uint32_t quality = rand() % 8 ? QUALITY_GOOD : 0x80000000U + (unsigned)rand();
             struct history_point point = { NOVEMBER + at * S + at % 7, odd_value(), quality };
@@ -480,7 +480,7 @@ CASE(every_point_comes_back_bit_by_bit)
     month_file_close(&file);
 }
 
-/* Importing points older than the existing ones updates the rollups to what they would have been. */
+/* Importing points older than the existing ones updates the rollups as if they had been recorded in order. */
 CASE(an_import_is_rolled_up_again)
 {
     enum { COUNT = 20000 };
@@ -513,7 +513,7 @@ static sqlite3 *open_database(const char *path)
     return db;
 }
 
-/* Sums up the line through the points of a tag from begin_us to end_us, minute by minute. */
+/* Integrates the line through a tag's points from begin_us to end_us, minute by minute. */
 static void sum_up(const struct history_point *points, int count, bool step, int64_t begin_us, int64_t end_us, struct history_bucket *out)
 {
     double sum = 0;
@@ -566,7 +566,7 @@ CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
                 sum_up(truth[tag], COUNT, series.step, got->t_us, got->t_us + series.bucket_us, &wanted);
                 assert_int_equal(got->good_us, wanted.good_us);
                 assert_int_equal(got->bad_us, wanted.bad_us);
-                /* a change of quality at a border is lost in files of earlier versions */
+                /* files of earlier versions lose a change of quality at a bucket boundary */
                 assert_true(wanted.good_us == 0 || (earlier && tag == 1) || fabs(got->mean - wanted.mean) < 1e-9);
             }
             history_series_finish(&series);
@@ -696,7 +696,7 @@ static int make_points(struct history_point *points, int most, bool step)
                                                 : rand() % 6 == 0 ? QUALITY_UNCERTAIN
                                                                   : QUALITY_GOOD };
         t_us += (1 + rand() % apart_s[rand() % 5]) * S;
-        if (rand() % 4 == 0) /* some points lie on full hours, as in tables of other systems */
+        if (rand() % 4 == 0) /* some points lie on full hours, as in tables from other systems */
             t_us += 3600 * S - t_us % (3600 * S);
     }
     return count;
@@ -746,7 +746,7 @@ CASE(intervals_are_those_of_the_line)
     mem_free(points);
 }
 
-/* A span of any length has its points if they are few enough, otherwise intervals. */
+/* A query of any length returns points if they are few enough, otherwise intervals. */
 CASE(few_points_of_a_long_time_come_as_points)
 {
     enum { MOST = 3000, DAY = 86400 };
@@ -883,7 +883,7 @@ CASE(a_newer_version_is_left_alone)
     assert_int_equal(count_damaged(s->folder), 0);
 }
 
-/* The exact statements that version 1 of the month file used to create its tables. */
+/* The exact statements with which version 1 created the tables of a month file. */
 static const char version_1[] =
     "CREATE TABLE tag(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL, step INTEGER NOT NULL, within REAL NOT NULL);"
     "CREATE TABLE sample(tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL, PRIMARY KEY(tag, t)) WITHOUT ROWID;"
@@ -940,7 +940,7 @@ CASE(an_older_version_is_read_and_brought_up)
     assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 5 * S, snapshot), 0);
     assert_true(snapshot->readings[0].value == 20);
     assert_rows(db, "PRAGMA user_version", "1; ");
-    /* fault of the old version: its view returned the newest point twice */
+    /* a fault of the old version: its view returned the newest point twice */
     assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "6; ");
     struct month_file *file = open_file(s, NOVEMBER);
     assert_rows(db, "PRAGMA user_version", "3; ");
@@ -971,7 +971,7 @@ static int on_open(sqlite3 *db, const char **error, const void *api)
     return sqlite3_set_authorizer(db, refuse_views, NULL);
 }
 
-/* If an upgrade fails midway, the file keeps the old version intact. */
+/* If an upgrade fails midway, the file of the old version stays intact. */
 CASE(what_cannot_be_brought_up_stays_as_it_was)
 {
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
@@ -1001,7 +1001,7 @@ CASE(old_and_large_months_go)
         char *name = test_printf("history-2026-%02d.sqlite", m);
         make_month(s, name, 1000);
     }
-    /* keeping 100 days before November deletes the months that ended before 24 July */
+    /* keeping 100 days before November deletes months that ended before 24 July */
     int64_t unsent;
     assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 100 }, NOVEMBER, &unsent), 3000);
     int *months = month_list(s->folder, &count);
@@ -1022,7 +1022,7 @@ CASE(old_and_large_months_go)
 enum { LOT = 60000 };
 static const int64_t LIMIT = 700000;
 
-/* Records two tags with one point per second, none on a straight line between others. */
+/* Records two tags with one point per second, none on a straight line between its neighbours. */
 static void record_a_lot(struct history_setup *s, int64_t from_us)
 {
     int error;
@@ -1109,7 +1109,7 @@ CASE(a_month_that_is_over_shrinks)
     }
 }
 
-/* A day and more of history shows for how long keep_gb suffices; less shows nothing. */
+/* From a day of history on, the estimate shows how long keep_gb suffices; with less, it shows nothing. */
 CASE(the_days_that_fit_are_estimated)
 {
     record_a_lot(s, NOVEMBER);
@@ -1170,7 +1170,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     assert_int_equal(unsent, 0);
     mem_free(month_list(s->folder, &count));
     assert_int_equal(count, 2); /* the month whose points were all sent was deleted */
-    /* a month file that is too large loses its oldest points, including unsent ones, which are counted */
+    /* an oversized month file loses its oldest points; unsent ones among them are counted */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
     assert_int_equal(waiting, 20000);
     limits.bytes = (double)size_of_month(s, month_begin_us(november + 1)) * 0.7;
@@ -1187,7 +1187,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     assert_int_equal(unsent, 20000 - lost);
     mem_free(month_list(s->folder, &count));
     assert_int_equal(count, 1);
-    /* a plant without a database to send to keeps nothing for sending */
+    /* without a database in the plant file, nothing is kept for sending */
     record_to_send(s, NOVEMBER, 100);
     retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 30 }, march_us, &unsent);
     assert_int_equal(unsent, 0);
@@ -1293,7 +1293,7 @@ CASE(points_of_another_quantity_are_left_out)
         const char *before = changes[c][0], *after = changes[c][1];
         struct history_series series;
         write_in_unit(s, before, NOVEMBER, 100, 3, true);
-        /* the plant now has the new unit, but the file has only points in the old one */
+        /* the plant now has the new unit, but the file has points only in the old one */
         char *said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
         assert_int_equal(series.points.count, 0);
         char *line = test_printf("TT-1: 3 points in '%s' are left out, because '%s' cannot be converted to '%s'", before, before, after);
@@ -1332,7 +1332,7 @@ CASE(points_of_another_quantity_are_left_out)
         assert_int_equal(batch.row_count, 5);
         month_outbox_batch_finish(&batch);
         month_outbox_close(&outbox);
-        /* the change is undone: the first points are back, and no line leads across the time between */
+        /* the change is undone: the first points are shown again, and no line spans the time between */
         write_in_unit(s, before, NOVEMBER + 20 * S, 110, 1, false);
         mem_free(read_in_unit(s, before, NOVEMBER + 100 * S, 1000, &series));
         assert_int_equal(series.points.count, 5);

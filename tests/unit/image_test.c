@@ -148,7 +148,7 @@ TEST(jpeg_in_cmyk_is_read)
     unsigned char pixels[16 * 16 * 4], *bytes = NULL;
     struct image image;
     char why[IMAGE_WHY_BYTES] = "";
-    memset(pixels, 255, sizeof(pixels)); /* CMYK in inverted form, as Adobe's programs write it: 255 is no ink */
+    memset(pixels, 255, sizeof(pixels)); /* inverted CMYK, as Adobe's programs write it: 255 means no ink */
     tjhandle handle = tjInitCompress();
     assert_int_equal(tjCompress2(handle, pixels, 16, 0, 16, TJPF_CMYK, &bytes, &out.size, TJSAMP_444, 95, 0), 0);
     if (!image_decode(&image, bytes, out.size, 2048, why))

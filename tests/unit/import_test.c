@@ -105,7 +105,7 @@ CASE(long_rows_are_taken)
     assert_int_equal(s->counts.samples, 5);
     assert_int_equal(s->counts.tags, 2);
     struct history_series series = read_series(s, "h", "FT-1");
-    assert_int_equal(series.points.count, 5); /* five points, including the one without a value after which no line is drawn */
+    assert_int_equal(series.points.count, 5); /* five points, including one without a value, after which the line ends */
     assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S); /* the hour that occurs twice in that night */
     assert_true(series.points.at[1].value == 2.5);
     assert_true(isnan(series.points.at[2].value) && series.points.at[2].quality == QUALITY_BAD_COMMUNICATION_ERROR);
@@ -166,7 +166,7 @@ CASE(times_without_a_zone_are_the_plant_s)
                        INT64_MIN, 0));
     struct history_series wide = read_series(s, "wide", "FT-1"), fresh = read_series(s, "long", "FT-1");
     static const int minutes[] = { -30, 30, 60, 90, 150 };
-    assert_int_equal(wide.points.count, 6); /* six points, including the one without a value after which no line is drawn */
+    assert_int_equal(wide.points.count, 6); /* six points, including one without a value, after which the line ends */
     for (int i = 0; i < 5; i++)
         assert_true(wide.points.at[i].t_us == OCTOBER_25 + minutes[i] * 60 * US_PER_S);
     assert_true(fresh.points.at[0].t_us == OCTOBER_25 + 30 * 60 * US_PER_S + US_PER_S / 2);
@@ -184,7 +184,7 @@ CASE(files_that_are_no_series_are_refused)
     assert_int_equal(s->diag.errors, 3);
 }
 
-/* An export prints the imported points, and importing that export gives the same points. */
+/* An export contains the imported points, and importing that export gives the same points. */
 CASE(out_and_in_again_is_the_same)
 {
     struct text csv = { 0 }, out = { 0 };
@@ -247,7 +247,7 @@ CASE(two_samples_alone_are_no_line)
     assert_int_equal(s->counts.gaps, 0);
 }
 
-/* Rollup buckets and hourly means have no data within a gap either. */
+/* Rollup buckets and hourly means have no data within a gap, either. */
 CASE(a_gap_is_no_data_in_rollups)
 {
     double means[60];

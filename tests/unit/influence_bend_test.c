@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The error bound of fields inside drawn triangles holds at random points for the worst possible readings. */
+/* The error bound for fields inside drawn triangles holds at random points for the worst possible readings. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -13,7 +13,7 @@ static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
 struct bend_case { /* a shape with coarse triangles, and random points in them at which the field is checked */
     struct cad shape;
-    float (*positions)[3], (*facing)[3]; /* of the vertices, then of the random points; `facing` (normals) is not used for vertices */
+    float (*positions)[3], (*facing)[3]; /* of the vertices, then of the random points; `facing` (normals) is unused for vertices */
     uint32_t tri[PLACES];
     double weights[PLACES][3], normals[PLACES][3];
 };
@@ -65,7 +65,7 @@ static void make_sphere(struct cad *shape)
     cad_sphere(shape, &chance, 7);
 }
 
-/* Makes a box through a sphere's wall: a part of each lies inside the other. */
+/* Makes a box that passes through a sphere's wall: a part of each lies inside the other. */
 static void make_crossing(struct cad *shape)
 {
     struct cad box = { 0 };

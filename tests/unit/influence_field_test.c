@@ -91,7 +91,7 @@ static bool use(struct plant_in_use *u, const struct prep_case *c)
     return true;
 }
 
-/* Prepares and opens a plant with these keys of the asset and of the group. */
+/* Prepares and opens a plant with these keys for the asset and the group. */
 static void begin(struct plant_in_use *u, struct prep_case *c, const char *wall, const char *group, size_t sensors)
 {
     write_model(c);
@@ -131,13 +131,13 @@ CASE(test_harmonic_is_straight_and_follows_readings)
     for (size_t i = 0; i < SENSORS; i++)
         assert_true(fabs((double)look(&u, place_of(i))->value - 10.0 * (double)i) < 0.05);
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 35) < 0.5);
-    u.snapshot->readings[4].value = 90; /* a changed reading adds its change times the weights of its own sensor only */
+    u.snapshot->readings[4].value = 90; /* a changed reading adds its change times the weights of that sensor only */
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 60) < 0.5);
     assert_true(fabs((double)look(&u, place_of(4))->value - 90) < 0.1);
     finish(&u);
 }
 
-/* Readings that change one by one leave the same field as all of them set at once. */
+/* Readings changed one by one leave the same field as all readings set at once. */
 CASE(test_steps_and_lost_sensors_agree_with_all_anew)
 {
     struct plant_in_use u, fresh;
@@ -172,7 +172,7 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     /* sensor 4 is lost: outside the discs that the sensors cover, the field is linear from sensor 3 to sensor 5 */
     assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4);
     assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
-    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* the Uncertain tag contributes half of the value at the lost sensor */
+    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* the Uncertain tag contributes half of the value at the lost sensor's position */
     assert_true(look(&u, place_of(4) - 0.3)->uncertain > 127);
     u.snapshot->readings[5].quality = QUALITY_GOOD;
     u.params.fill = FILL_NEIGHBOURS;
@@ -193,7 +193,7 @@ CASE(test_fin_knows_how_far_it_sees)
     for (double x = 0.1; x < 3 * decay_m; x += 0.1) {
         const struct scalar *at = look(&u, place_of(1) + x);
         double expected = 20 + 80 * exp(-fmax(x - 0.0957, 0) / decay_m);
-        /* tolerance: the vertex at which the field is read is up to 5 cm away from x */
+        /* tolerance: the field is read at a vertex up to 5 cm away from x */
         assert_true(fabs((double)at->value - expected) < 2.5);
         if (fabs(x - 0.0957 - decay_m * log(10)) > 0.1)
             assert_int_equal(at->no_data, x - 0.0957 < decay_m * log(10) ? 0 : 255);
@@ -204,7 +204,7 @@ CASE(test_fin_knows_how_far_it_sees)
     assert_int_equal(u.params.interpolation, INTERPOLATION_SHEPARD); /* harmonic is not prepared */
     assert_null(field_params_wrong(u.plant, &u.params));
     u.params.interpolation = INTERPOLATION_FIN;
-    u.params.show = SHOW_DIFFERENCE; /* without a baseline there is no difference, and the rule must not add the ambient value */
+    u.params.show = SHOW_DIFFERENCE; /* without a baseline there is no difference, and the ambient value must not be added */
     u.params.baseline = 1;
     assert_true(look(&u, place_of(1))->no_data == 255);
     finish(&u);
@@ -356,7 +356,7 @@ CASE(test_distances_by_heat)
     prep_case_says(&c->err, "geodesic: expected");
 }
 
-/* Writes four sensors along the strip, each with three components or with a bearing. */
+/* Writes four sensors along the strip, each with either three components or a bearing. */
 static void write_directions(struct prep_case *c, bool bearings)
 {
     static const char *const directions[2] = { "U%zu V%zu W%zu", "B%zu" };
@@ -407,7 +407,7 @@ static void expect_along(const struct direction *found, double x, double y)
                 fabs((double)found->along[2]) < 1e-6);
 }
 
-/* Directions are averaged by 1 / D^2; the result is unknown where the sensors say nothing. */
+/* Directions are averaged by 1 / D^2; the result is unknown where no direction results. */
 CASE(test_directions)
 {
     struct plant_in_use u;
@@ -725,7 +725,7 @@ CASE(test_gp_fitted_to_readings)
     text_finish(&rows);
 }
 
-/* One or two sensors cannot be fitted: the asset takes the defaults, and the plant says so. */
+/* One or two sensors are too few for a fit: the asset uses the defaults, and the plant reports it. */
 CASE(test_gp_of_few_sensors_takes_defaults)
 {
     struct plant_in_use u;
@@ -776,7 +776,7 @@ CASE(test_not_prepared_is_refused)
     assert_false(use(&u, c));
 }
 
-/* Nothing is prepared for an asset without sensors, and no file is missed. */
+/* For an asset without sensors nothing is prepared, and no file is reported as missing. */
 CASE(test_without_sensors_no_file_is_missed)
 {
     struct plant_in_use u;

@@ -60,7 +60,7 @@ static void make_strip(struct influence_case *s)
     cad_plate(&s->shape, &chance, 200, 3, STRIP_M, WIDTH_M, 0);
 }
 
-/* Half of the length that a disc covers along the strip, averaged over the width. */
+/* half of the length that a disc covers along the strip, averaged over the strip's width */
 static const double covered_m = 0.0957;
 
 TEST(test_rod_is_straight_between_sensors)

@@ -20,7 +20,7 @@ static bool takes_part(const struct weights_trial *trial, double near_m, double 
     return isfinite(d) && (d < (double)trial->group.reach_m || d <= near_m);
 }
 
-/* Returns the factor by which a sensor's weight fades towards the reach; 1 for the nearest sensor. */
+/* Returns the factor by which a sensor's weight fades towards its reach; 1 for the nearest sensor. */
 static double faded(const struct weights_trial *trial, double near_m, double d)
 {
     double reach_m = (double)trial->group.reach_m;
@@ -152,7 +152,7 @@ TEST(no_value_changes_faster_than_is_said)
             if (fabsf(trial.distance_m[i] - reach_m) < 0.2f * reach_m)
                 trial.distance_m[i] = i % 2 ? 0.8f * reach_m : 1.2f * reach_m;
         }
-        if (least_of(&trial) > (double)reach_m) /* no sensor is in reach: the nearest one has all the weight */
+        if (least_of(&trial) > (double)reach_m) /* no sensor is within reach: the nearest one gets all the weight */
             continue;
         float said = interp_paper(&trial.group, radius_m, trial.distance_m, shares[0]);
         for (size_t i = 0; i < trial.count; i++)

@@ -39,7 +39,7 @@ static void write_rows(struct journal_setup *s)
     mem_free(entries);
 }
 
-/* Writes rows, many of them at the same time as in an alarm flood, and some gaps. */
+/* Writes rows, many of them with the same time as in an alarm flood, and leaves some gaps. */
 static void begin(struct journal_setup *s)
 {
     bool renewed;
@@ -142,7 +142,7 @@ CASE(pages_follow_each_other)
     check_pages(s, NULL, s->rows[ROWS - 1].t_us + 1, INT64_MAX, 5);
 }
 
-/* The row with which a page ended may have been deleted before the next page is requested. */
+/* The last row of a page may be deleted before the next page is requested. */
 CASE(a_page_after_rows_that_are_gone)
 {
     struct found_rows found = { .count = 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shaded colours: only lightness changes, by no more than allowed, and never outside sRGB. */
+/* Shaded colours: only lightness changes, by at most the allowed amount, and never outside sRGB. */
 #include "tests/support/test.h"
 
 #include "plant/colormaps.h"
@@ -62,7 +62,7 @@ TEST(test_no_shading_leaves_the_color)
     }
 }
 
-/* The shading that the colour map files declare is what their colours allow. */
+/* The shading that the colour map files declare is the most that their colours allow. */
 TEST(test_shading_and_safety)
 {
     for (size_t m = 0; m < colormap_count(NULL); m++) {

@@ -13,12 +13,12 @@ enum { NODES = 3, FLIGHTS = 512, STEP_MS = 10 };
 
 enum what { LOOK, BID, RENEW, GIVE, ROW, DONE, ASK, PROMISE };
 struct flight { /* a message on its way */
-    int64_t at_ns; /* time of the message's arrival on the simulation's clock; 0: this entry is free */
+    int64_t at_ns; /* arrival time of the message on the simulation's clock; 0: this entry is free */
     enum what what;
     int from, to;  /* index of the sending and of the receiving node; NODES: the database */
     /* id of the process that sends or receives the message: a restarted node is a new process and must not get old answers */
     uint64_t life;
-    struct lease_row row; /* row of the database that an answer contains, or that a request expects to find */
+    struct lease_row row; /* database row that an answer contains, or that a request expects to find */
     char standby[LEASE_NODE_BYTES];
     bool good;
     int64_t sent_ns; /* time of sending on the node's clock */
@@ -26,7 +26,7 @@ struct flight { /* a message on its way */
 
 struct lease_node {
     struct lease lease;
-    uint64_t life;       /* number of the node's running process, another one after each restart; 0: none runs */
+    uint64_t life;       /* id of the node's current process, a new one after each restart; 0: no process */
     int64_t starts_ns, wakes_ns, next_ns, asked_ns; /* of the world */
     int64_t ahead_ns, sent_ns; /* sent: on its own clock */
     double rate;
@@ -49,8 +49,8 @@ struct lease_world {
     unsigned seed;
     bool calm;
     int most;      /* largest number of nodes that acted as leader at the same time */
-    int takes;     /* number of nodes that became leader within LEASE_NS after another one had given up its lease */
-    int64_t given_ns; /* time on the simulation's clock when a leader last gave up its lease */
+    int takes;     /* number of nodes that became leader within LEASE_NS after another gave up its lease */
+    int64_t given_ns; /* simulation time when a leader last gave up its lease */
 };
 
 static int chance(struct lease_world *world, int n)
@@ -185,7 +185,7 @@ static void on_node(struct lease_world *world, struct lease_node *node, int i, c
         struct flight *promise = send(world, PROMISE, i, flight->from);
         if (promise) {
             promise->sent_ns = flight->sent_ns;
-            promise->life = flight->life; /* number of the process that asked for the promise not to bid */
+            promise->life = flight->life; /* id of the process that requested the promise not to bid */
         }
         break;
     case PROMISE: {
@@ -475,7 +475,7 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     given.beat++;
     given.leader[0] = 0;
     lease_saw(&b, &given, 2 * S + 1);
-    assert_true(lease_may_bid(&b, 2 * S + 1)); /* b had promised only a not to bid, and a has given up the lease */
+    assert_true(lease_may_bid(&b, 2 * S + 1)); /* b had only promised not to bid against a, and a has given up the lease */
     lease_saw(&c, &given, 2 * S + 1);
     assert_false(lease_may_bid(&c, 5 * S));
     assert_true(lease_may_bid(&c, 5 * S + 1)); /* b may have ended */

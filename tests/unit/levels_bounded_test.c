@@ -8,7 +8,7 @@
 
 #define ROUND 96u /* corners of a circle */
 
-struct bounded_shape { /* an asset of one part, with triangles of one material or two */
+struct bounded_shape { /* an asset with one part, whose triangles have one or two materials */
     struct geometry g;
     struct welds welds;
     struct trimesh mesh;

@@ -377,7 +377,7 @@ TEST(what_is_alone_and_small_goes_but_no_crowd)
     for (int i = 0; i < 400; i++)
         add_box(&g, 40 + 0.1 * (i % 20), 0.1 * (i / 20), 1, 0.05, 0.05, 0.05);
     assert_true(levels_make(&levels, &g, NULL));
-    /* the grating of small bars disappears only in levels whose error is at least its size */
+    /* the grating of small bars disappears only in levels whose error is at least the grating's size */
     assert_true(error_without(&g, &levels, 39.9) >= 2.75);
     alone_m = INFINITY;
     for (size_t l = 0; l < levels.count; l++) {

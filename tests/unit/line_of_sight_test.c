@@ -63,7 +63,7 @@ static double way_round(const struct sheet_and_rod *pair, const double p[3], con
    separate. beside: the rod lies along a rim. */
 static void test_pair(const char *name, const struct sheet_and_rod *pair, bool below, bool beside, size_t pieces)
 {
-    /* no fault with gaps: gaps would be as wide as the sheet is thick */
+    /* no faults with gaps: gaps would be as wide as the sheet is thick */
     static const enum cad_fault faults[] = { CAD_CLEAN, CAD_SOUP, CAD_REPEATED };
     for (size_t i = 0; i < sizeof(faults) / sizeof(faults[0]); i++) {
         struct cad broken;

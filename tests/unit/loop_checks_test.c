@@ -110,7 +110,7 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
         assert_true(loop_checks_unproven(f->loop_checks, 0));
     }
     *tag = was;
-    tag->strength = 3; /* a tag's strength affects drawing only, so the loop check stays valid */
+    tag->strength = 3; /* a tag's strength affects only drawing, so the loop check stays valid */
     open_again(f);
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
 }

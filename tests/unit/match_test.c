@@ -53,7 +53,7 @@ TEST_FIXTURE(struct match_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct match_fixture *f, name, set_up, tear_down)
 
-/* Asserts the match of one tag. asset: NULL if none. why: text that the reason must contain. */
+/* Asserts the match of one tag. asset: NULL if none. why: text that the stated reason must contain. */
 static void expect(struct match_fixture *f, const char *name, const char *description, enum match_status status, const char *asset,
                    const char *why)
 {
@@ -96,7 +96,7 @@ CASE(test_by_number)
     expect(f, "TT-101", "pump bearing temperature", MATCH_SURE, "P-101", "");
     expect(f, "TT-101", "Outlet of E-101", MATCH_SURE, "E-101", "the description names E-101; loop 101");
     expect(f, "TT-330", "Outlet of E-101", MATCH_LIKELY, "20-V-330", ", but the description names E-101");
-    /* the equipment number decides, not the instrument's, and that equipment is missing */
+    /* the equipment number decides, not the instrument number, and that equipment does not exist */
     expect(f, "ART1705BA_TT330", "", MATCH_NONE, NULL, "");
 }
 
@@ -202,7 +202,7 @@ TEST(test_quantities)
     print_message("# %zu of %zu quantities\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Different dashes, full-width characters and blanks still match a tag with its equipment. */
+/* Different dashes, full-width characters and blanks do not prevent a match of tag and equipment. */
 TEST(test_folded_names)
 {
     static const char *const written[] = { "TI–101", "TI‑101", "TI−101", "TI－101", "ＴＩ-101", "TI-１０１",

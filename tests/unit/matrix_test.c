@@ -50,7 +50,7 @@ TEST(test_product_is_one_after_the_other)
     assert_close(a, both, 16, 0);
 }
 
-/* A transformed normal stays perpendicular to the surface's tangents and keeps facing outwards, mirrored or not. */
+/* A transformed normal stays perpendicular to the surface's tangents and still faces outwards, mirrored or not. */
 TEST(test_normals_stay_normal)
 {
     for (int round = 0; round < 100; round++) {

@@ -345,7 +345,7 @@ TEST(queries_make_views)
     assert_true(view.width_px == 1280 && view.height_px == 720 && !view.dark);
 }
 
-/* Modes that subdivided triangles do not draw exactly are refused. TI-1 is the only sensor on E-101. */
+/* The triangles around a single sensor are not subdivided: modes that they cannot show exactly are refused. TI-1 is the only sensor on E-101. */
 TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
 {
     static const char *const paper[] = { "interpolation=paper" }, *const split[] = { "split=interpolation=paper" };
@@ -536,7 +536,7 @@ TEST(bad_queries_are_named)
     }
 }
 
-/* A damaged message never yields a view that the renderer cannot handle. */
+/* No damaged message yields a view that the renderer cannot handle. */
 TEST(damaged_messages_stay_harmless)
 {
     static const char *const seeds[] = {
@@ -668,11 +668,11 @@ static double time_message(const struct plant *many, const struct text *said, st
     return least_ms;
 }
 
-/* The event loop serves every client: no message of the maximum length may take long to parse. */
+/* The event loop serves all clients, so no message of the maximum length may take long to parse. */
 TEST(no_long_message_is_slow)
 {
     static const struct {
-        const char *begin, *each, *end; /* begin and end of the message; `each` is repeated in between and may contain its number */
+        const char *begin, *each, *end; /* begin and end of the message; `each` is repeated between them and may contain its number */
         int first, step, count;
         const char *what;
     } all[] = {

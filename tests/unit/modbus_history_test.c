@@ -36,7 +36,7 @@ struct modbus_replay {
     struct sim sim;
     int port, stop_fd;
     _Atomic bool deaf;        /* the device does not answer */
-    _Atomic int spike;        /* tag whose value the simulated device replaces by a spike; -1: none */
+    _Atomic int spike;        /* tag whose value the simulated device replaces with a spike; -1: none */
     struct register_rows *held, *told; /* by tag */
     size_t *mapped, mapped_count;
 };
@@ -82,7 +82,7 @@ static void check_wire(const struct modbus_replay *r, size_t tag)
 {
     const struct register_rows *held = &r->held[tag], *told = &r->told[tag];
     const struct plant_tag *t = &r->plant->tags[tag];
-    /* `within`: allowed error of a reading, half a step of the raw value for integer types */
+    /* `within`: allowed error of a reading, half a raw step for integer types */
     double step =
         t->scale.kind == SCALING_NONE ? 1 : (t->scale.scaled_high - t->scale.scaled_low) / (t->scale.raw_high - t->scale.raw_low);
     double within = t->signal.type == DATA_FLOAT32 ? 0 : 0.501 * step;
@@ -148,7 +148,7 @@ static void check_history(const struct modbus_replay *r, struct history_reader *
     history_series_finish(&series);
 }
 
-/* Keeps the device silent until every tag in the store has lost its device. */
+/* Keeps the device silent until the store has lost every tag. */
 static void outage(struct modbus_replay *r, struct store *store)
 {
     struct snapshot *snapshot = test_snapshot(r->plant->tag_count);

@@ -91,7 +91,7 @@ static bool all_good(struct modbus_case *s)
     return good;
 }
 
-enum { LONGEST_TURN = 20 }; /* each of the device's three blocks must be read again after at most so many requests */
+enum { LONGEST_TURN = 20 }; /* each of the device's three blocks must be read again after at most this many requests */
 
 /* Counts the requests that a device receives until a block has a new reading. Unlike times, counts do not depend on the machine's load. */
 struct turn {
@@ -236,7 +236,7 @@ CASE(a_slow_first_answer)
     await_line("after connecting for its first answer: waiting for it", 5);
 }
 
-/* Each answer of the device comes later than timeout_ms: the log says which timeout would do. */
+/* Every answer of the device exceeds timeout_ms: the log says which timeout would suffice. */
 static void check_slow(struct modbus_case *s, enum device_wire wire)
 {
     s->device.wire = wire;
@@ -331,7 +331,7 @@ CASE(a_device_that_falls_silent_is_not_waited_for)
     s->device.silent_unit = 1;
     int requests = s->device.requests;
     await_line("no readings", 20);
-    /* two timeouts and a few reconnects; waiting for a gateway would repeat the second one 16 times */
+    /* two timeouts and a few reconnects; waiting for a gateway would repeat the second timeout 16 times */
     assert_true(s->device.requests - requests <= 8);
     assert_false(quality_is_good(modbus_case_look(s, 0)->quality));
 }

@@ -103,7 +103,7 @@ TEST_WITH(pymodbus_is_read_in_rtu_over_tcp, modbus_case_set_up, modbus_case_tear
     read_pymodbus(*state, "rtu");
 }
 
-/* Starts plantcast-sim with constant values, for another program to read. Returns its process id. */
+/* Starts plantcast-sim with constant values for another program to read. Returns its process id. */
 static pid_t simulate(const char *folder, int port)
 {
     static const char yaml[] = "plant: { name: P }\n"

@@ -147,7 +147,7 @@ CASE(late_reply_does_not_poison)
 {
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
-    /* a second block, so that there are two requests of the same shape */
+    /* a second block, so that two requests have the same shape */
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.late_ms = 400;                                            /* the timeout is 300 */
     modbus_case_serve(s);
@@ -179,7 +179,7 @@ CASE(reply_sent_twice_does_not_poison)
     }
 }
 
-/* A duplicate reply arrives after the next request, with the transaction number of the previous one. */
+/* A duplicate reply arrives after the next request, with the previous request's transaction number. */
 CASE(late_twin_of_a_reply_does_not_disconnect)
 {
     modbus_case_add_registers(s, 1);
@@ -283,7 +283,7 @@ CASE(one_refusal_loses_nothing)
         }
     }
     assert_int_equal(s->device.refused, 4);
-    assert_int_equal(s->device.most, 10); /* reads of all 10 registers at once were kept: the refusal did not split the block */
+    assert_int_equal(s->device.most, 10); /* all 10 registers are still read at once: the refusal did not split the block */
 }
 
 CASE(what_was_refused_is_asked_again_after_seconds)
@@ -317,7 +317,7 @@ CASE(busy_is_no_verdict)
     for (int code = 5; code <= 6; code++) { /* acknowledge, busy */
         s->device.bad_code = code;
         int64_t received_ns = modbus_case_look(s, 0)->received_utc_ns;
-        /* Bad because of its age: a refused read does not refresh the reading */
+        /* Bad due to its age: a refused read does not refresh the reading */
         modbus_case_expect(s, 0, QUALITY_BAD_COMMUNICATION_ERROR, 2);
         assert_true(modbus_case_look(s, 0)->received_utc_ns - received_ns < NS_PER_S);
         s->device.bad_code = 0;

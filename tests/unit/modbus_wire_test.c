@@ -51,7 +51,7 @@ CASE(a_serial_line_is_read)
     check_rtu(s, DEVICE_LINE);
 }
 
-/* RTU frames have no transaction number: a late answer looks like the answer to the next request. */
+/* RTU frames have no transaction number, so a late answer looks like the answer to the next request. */
 static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
 {
     modbus_case_add_registers(s, 1);
@@ -185,7 +185,7 @@ CASE(the_second_host_stands_in)
     modbus_case_expect(s, 0, QUALITY_GOOD, 2); /* immediately, without a backoff */
     assert_true(second.requests > 0);
     assert_int_equal(host_of(s), 2);
-    device_start(&s->device); /* the first host is back, but the source stays with the second while that one answers */
+    device_start(&s->device); /* the first host is back, but the source stays with the second as long as that one answers */
     for (int asked = second.requests + 10; second.requests < asked;)
         sleep_ns(10 * NS_PER_MS);
     assert_int_equal(s->device.requests, first_asked);
@@ -237,7 +237,7 @@ CASE(busy_is_asked_again_soon)
     s->plant->sources[0].poll_ms = 20000;
     s->device.bad_code = 6;
     modbus_case_serve(s);
-    while (s->device.requests < 2) /* the first request was refused; the second one comes long before the next poll */
+    while (s->device.requests < 2) /* the first request was refused; the second comes long before the next poll */
         sleep_ns(5 * NS_PER_MS);
     s->device.bad_code = 0;
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Findings of --check in the headers of models and of recorded series. */
+/* Findings of --check about the headers of models and of recorded series. */
 #include "tests/support/test.h"
 
 #include "base/text/text.h"
@@ -110,7 +110,7 @@ CASE(nodes_are_looked_up)
           { "tags.csv", 5, 1, "tag T4: asset A: the model has no node '#9'" });
 }
 
-/* A node without triangles has its place at the origin of its frame, as in plantcast-prep. */
+/* A node without triangles is located at the origin of its frame, as in plantcast-prep. */
 CASE(nodes_without_triangles_are_compared)
 {
     temp_write_text(c->folder, "n.gltf",
@@ -159,7 +159,7 @@ CASE(transforms_that_cannot_be_prepared_are_refused)
     }
 }
 
-/* Coordinates of sensors on the equipment reveal the model's up axis and unit. */
+/* Sensor coordinates on the equipment reveal the model's up axis and unit. */
 CASE(sensors_tell_units_and_axes)
 {
     static const struct {

@@ -58,7 +58,7 @@ static void check_asset(const json_t *asset, const char *plant)
     const json_t *sensors = json_object_get(asset, "sensors");
     bool surface = !json_is_null(json_object_get(asset, "surface"));
     const char *state = json_string_value(json_object_get(asset, "state"));
-    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02; /* sensors in thermowells of pumps are up to 12 mm above the surface */
+    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02; /* sensors in thermowells of pumps lie up to 12 mm above the surface */
     assert_true(!strcmp(state, "built") || !strcmp(state, "shared"));
     assert_true(surface == (json_array_size(sensors) > 0));
     assert_true(of(asset, "vertices") == of(asset, "model_vertices") + of(asset, "vertices_added"));
@@ -143,7 +143,7 @@ static void weather_deck(void **state)
     assert_true(prep_case_number(report, "assets.3.surface.components_after") > 50); /* supports stand apart */
 }
 
-/* In this model, by far the largest, every elbow and tee has each face twice. */
+/* In this model, by far the largest, each face of every elbow and tee exists twice. */
 static void building_services(void **state)
 {
     json_t *report = prepare(*state, "duplex_mep");

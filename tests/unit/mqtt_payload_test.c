@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Payloads of MQTT messages: which texts are numbers, JSON paths, timestamps and qualities. */
+/* Payloads of MQTT messages: which texts count as numbers, JSON paths, timestamps and qualities. */
 #include "tests/support/test.h"
 
 #include "plant/sources/json_path.h"
@@ -169,7 +169,7 @@ TEST(values_are_found_by_path)
     check(&named, &(struct expected){ "{\"d\": [1, 2]}", "d[0]", MQTT_FOUND, 1, 0, 0 });
 }
 
-/* Each path selects exactly one value, or no value is taken. The tag is T1. */
+/* Each path must select exactly one value; otherwise no value is taken. The tag is T1. */
 TEST(a_value_of_another_member_is_never_taken)
 {
     static const char T2[] = "{\"values\": [{\"id\": \"A.T2\", \"v\": 22}]}";

@@ -94,7 +94,7 @@ CASE(what_they_were_is_kept)
     char title[12];
     assert_int_equal(save(f, "a", "0", -1), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
-    /* the same view is saved at another place in the order: that makes no new version */
+    /* the same view is saved at another position in the order, which makes no new version */
     assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
     for (int i = 1; i < 2 * NAMED_VIEW_VERSIONS; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A core's seat (its unique identity): kept across restarts, never shared, and not copied with its folder. */
+/* A core's seat (its unique id): kept across restarts, never shared, and not copied with its folder. */
 #include "tests/support/test.h"
 #include <unistd.h>
 

@@ -12,7 +12,7 @@ static const struct model_node nodes[] = {
 };
 enum { COUNT = sizeof(nodes) / sizeof(*nodes) };
 
-/* Returns the indices of the selected nodes as letters, from "a" on. */
+/* Returns the selected nodes' indices as letters, from "a" on. */
 static const char *taken(const char *patterns)
 {
     static char text[COUNT + 1], why[300];

@@ -44,7 +44,7 @@ static enum refusal_code add(struct notes_fixture *f, const char *text, int64_t 
     return notes_add(f->notes, &(struct note){ .text = text, .tag = "TI-1", .until_us = until_us }, "kim", at_us, f->id);
 }
 
-/* Frees the message `text` and asserts its notes' texts, separated by blanks. */
+/* Consumes the message `text` and asserts the texts of its notes, separated by blanks. */
 static void assert_notes(char *text, const char *expected)
 {
     char found[400] = "";
@@ -186,7 +186,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     struct notes *notes = notes_open(f->log, f->history, writer);
     const struct note one = { .text = "one", .tag = "t" }, two = { .text = "two", .tag = "t" }, three = { .text = "three", .tag = "t" };
     assert_int_equal(notes_add(notes, &one, "kim", NOON, f->id), REFUSAL_NONE);
-    /* the second note keeps the first one, which is not written yet */
+    /* writing the second note also keeps the first one, which is not written yet */
     assert_int_equal(notes_add(notes, &two, "kim", NOON, f->id), REFUSAL_NONE);
     assert_notes(notes_text(notes, NOON), "");
     assert_int_equal(notes_number(notes), 0);
@@ -200,7 +200,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     file_writer_end(writer, &ticket);
     collect(writer);
     assert_int_equal(file_writer_settled(writer, &ticket), -ENOTDIR);
-    assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* the note's end could not be written, so the note has not ended */
+    assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* the end of the note could not be written, so the note still exists */
     assert_int_equal(system(mended), 0);
     assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
@@ -209,7 +209,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 2 * S), "one three");
     notes = notes_open(f->log, f->history, writer);
-    notes_close(&notes); /* the daemon ends: the writer has stopped, and is destroyed after its owners */
+    notes_close(&notes); /* the daemon ends: the writer has stopped, and is destroyed after its users */
     file_writer_destroy(&writer);
 }
 

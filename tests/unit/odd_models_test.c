@@ -23,7 +23,7 @@
     "tags: tags.csv\n"
 
 enum {
-    LEVELS_S = 15,    /* seconds; tasks of milliseconds are done by then, tasks of minutes are not */
+    LEVELS_S = 15,    /* seconds; by then, tasks of milliseconds are done and tasks of minutes are not */
     WELL_BEGUN_S = 3, /* seconds of processor time, more than reading a model takes */
     ENDS_S = 30,      /* seconds; the program promises 5, but a machine may be busy */
 };
@@ -48,7 +48,7 @@ static void add_stray(struct model_maker *maker, enum expected_stray stray, cons
     maker_node(maker, "stray", mesh, json_pack("{s:[f,f,f]}", "translation", from_m[0], from_m[1], from_m[2]));
 }
 
-/* Writes model.glb: a plate of squares, `copies` times in one place, and a stray triangle. */
+/* Writes model.glb: a plate of squares, `copies` times in the same place, and a stray triangle. */
 static void write_plates_and(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies,
                              const double at_m[3], enum expected_stray stray)
 {
@@ -227,7 +227,7 @@ static pid_t start(struct prep_case *c)
     return child;
 }
 
-/* Returns the seconds of processor time that the child has used; 0: there is no such process. */
+/* Returns the processor time in seconds that the child has used; 0: no such process. */
 static double seconds_of(pid_t child)
 {
     char path[40], text[1000] = "";

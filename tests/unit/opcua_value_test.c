@@ -106,7 +106,7 @@ TEST(what_is_no_number_is_bad)
     assert_int_equal(value.quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
-/* Status codes and times pass unchanged into the snapshot that frames are drawn from. */
+/* Status codes and times reach the snapshot for drawing unchanged. */
 TEST(status_codes_and_times_stay_as_they_are)
 {
     static const uint32_t codes[] = { 0, 0x00960000, 0x00000480, 0x40930000, 0x40A50480, 0x40000001, 0x808C0000, 0x80AB0000, 0xC0000000 };

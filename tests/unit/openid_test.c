@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* ID tokens: which are accepted and which refused; pending logins; and the file of --openid. */
+/* ID tokens: which are accepted and which are refused; pending logins; and the file of --openid. */
 #include "tests/support/test.h"
 #include <unistd.h>
 #include <cjose/cjose.h>
@@ -78,7 +78,7 @@ static char *sign(const cjose_jwk_t *key, const char *alg, const char *kid, cons
     return copy;
 }
 
-/* Consumes the token. why: part of the reason for refusal; NULL: the token must be accepted. */
+/* Consumes the token. why: part of the reason for the refusal; NULL: the token must be accepted. */
 static enum id_token_fault expect(struct openid_fixture *f, char *token, const char *nonce, const char *sub, const char *why)
 {
     const struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .nonce = nonce, .sub = sub, .now_s = NOW_S };
@@ -97,7 +97,7 @@ static enum id_token_fault expect(struct openid_fixture *f, char *token, const c
     return fault;
 }
 
-/* Returns the claims with one changed; value: JSON, or NULL to remove it. */
+/* Returns the claims with one changed; value: JSON, or NULL to remove the claim. */
 static char *changed(const struct openid_fixture *f, const char *name, const char *value)
 {
     json_t *claims = json_loads(CLAIMS, 0, NULL);
@@ -141,7 +141,7 @@ CASE(test_signatures)
     cjose_jwk_release(curve);
 }
 
-/* {"alg":"none"}, and a signature that uses the public key, which everybody knows, as an HMAC secret. */
+/* {"alg":"none"}, and a signature that uses the well-known public key as an HMAC secret. */
 CASE(test_algorithms)
 {
     static const char none[] = "eyJhbGciOiJub25lIn0.";
@@ -257,7 +257,7 @@ TEST(test_log_ins)
     assert_false(sign_ins_take(table, first.state, first.binding, NS_PER_S, &taken)); /* replayed */
     first = *sign_ins_begin(table, here, "/", NS_PER_S);
     assert_false(sign_ins_take(table, first.state, first.binding, 602 * NS_PER_S, &taken)); /* late */
-    /* an address that begins thousands of logins does not evict those of others */
+    /* an address that starts thousands of logins does not evict those of other addresses */
     first = *sign_ins_begin(table, here, "/", NS_PER_S);
     for (int i = 0; i < 3 * SIGN_INS; i++)
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
@@ -305,7 +305,7 @@ TEST(test_people)
     }
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);
     struct person more = person_of("lee");
-    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* one more login of Lee's ends his oldest one, and Kim's stays */
+    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* one more login of Lee ends Lee's oldest one; Kim's login stays */
     assert_string_equal(left, "of lee");
     mem_free(left);
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);

@@ -57,7 +57,7 @@ TEST(test_limits_that_are_missing)
     expect(&both, 40, 0);
     expect(&both, 20, -1);
     expect(&both, -10, -2.5 + 0.501); /* cut */
-    expect(&beyond, -60, 0);          /* this tag's limit is below MIN: the position 0 is half the range below the limit */
+    expect(&beyond, -60, 0);          /* this tag's limit is below MIN: position 0 is half the range below the limit */
     expect(&beyond, -10, 1);
     struct plant_tag none = with_limits(NAN, NAN, NAN, NAN);
     assert_true(isnan(limit_place(&range_0_100, &none, 5)));
@@ -80,7 +80,7 @@ TEST(test_places_rise_with_readings)
             double place = limit_place(&range_0_100, &tag, value);
             assert_true(place >= before - 1e-12 && fabs(place) <= 3);
             struct reading reading = { .value = value };
-            /* the alarm limits that a reading exceeds must agree with its position and so with its colour */
+            /* the exceeded alarm limits must agree with the reading's position and so with its colour */
             enum alarm_kind alarm = alarm_beyond(&tag, &reading);
             assert_int_equal(alarm == ALARM_HH, place >= 2 - 1e-9 && isfinite(limits[LIMIT_HH]));
             assert_int_equal(alarm == ALARM_LL, place <= -2 + 1e-9 && isfinite(limits[LIMIT_LL]));
@@ -99,7 +99,7 @@ TEST(test_alarms_need_usable_readings)
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_H);
     reading.value = 1;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
-    /* a reading that is Uncertain because it exceeds the instrument's range exceeds its limits, too */
+    /* a reading that is Uncertain because it exceeds the instrument's range still exceeds its limits */
     reading.quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
     reading.quality = QUALITY_BAD_SENSOR_FAILURE;
@@ -129,7 +129,7 @@ static void compare(enum interpolation interpolation, double least_place, double
     uint64_t random = 11;
     for (size_t i = 0; i < SENSORS; i++) {
         double place = least_place + (most_place - least_place) * synthetic_random_unit(&random);
-        set_limits(plant, i, 10 * (double)i, 10 * (double)i + 4); /* limits of its own for each tag; the middle is 2 above L */
+        set_limits(plant, i, 10 * (double)i, 10 * (double)i + 4); /* limits differ per tag; the middle is 2 above L */
         double from_middle = fabs(place) <= 1 ? 2 * place : copysign(2 + 4 * (fabs(place) - 1), place);
         plant->snapshot->readings[i].value = 10 * (double)i + 2 + from_middle;
         places->snapshot->readings[i].value = place;
@@ -155,7 +155,7 @@ static void compare(enum interpolation interpolation, double least_place, double
 TEST(test_places_are_interpolated_with_the_same_weights)
 {
     compare(INTERPOLATION_SHEPARD, -2.5, 2.5);
-    compare(INTERPOLATION_PAPER, 0, 1); /* only positions from L to H: the other plant would clamp others to its range */
+    compare(INTERPOLATION_PAPER, 0, 1); /* only positions from L to H: the other plant would clamp positions beyond them to its range */
 }
 
 TEST(test_tags_without_limits_have_no_place)
@@ -168,7 +168,7 @@ TEST(test_tags_without_limits_have_no_place)
     for (int i = 0; i < LIMIT_COUNT; i++)
         plant->plant.tags[1].alarms.limits[i] = NAN;
     plant->snapshot->readings[0].value = 60;
-    plant->snapshot->readings[1].value = 1e6; /* this tag has no limits, so its huge reading must not count in the field of positions */
+    plant->snapshot->readings[1].value = 1e6; /* this tag has no limits, so its huge reading must not affect the field of positions */
     plant->snapshot->readings[2].value = 60;
     struct field_params params;
     field_params_default(&plant->plant, 0, &params);

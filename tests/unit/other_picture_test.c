@@ -68,7 +68,7 @@ static struct text make_png(void)
 
 static bool is_png(const struct text *png, size_t count)
 {
-    uint8_t *own = mem_array(count + 1, 1); /* exactly sized allocation, so that the sanitizer finds a read beyond its end */
+    uint8_t *own = mem_array(count + 1, 1); /* allocated at the exact size, so that the sanitizer finds a read beyond the end */
     memcpy(own, png->at, count);
     bool good = other_picture_is_png(own, count, 256, 144);
     mem_free(own);

@@ -113,7 +113,7 @@ CASE(a_flood_is_one_message)
     for (int i = 0; i < 500; i++)
         put(f, i, LOCAL, true, true, T0, T0 + i * S / 500);
     assert_int_equal(deliver(f, OPS, T0 + 2 * S), 0);
-    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* each alarm is delivered once, although two rules match some of them */
+    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* each alarm is delivered once, even if two rules match it */
     for (int s = 5; s < 200; s++)
         assert_int_equal(deliver(f, OPS, T0 + s * S), 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
@@ -210,7 +210,7 @@ CASE(nobody_is_told_twice_after_a_restart)
     outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the daemon ended: only the journal has it */
     assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
     assert_int_equal(message.count, 1);
-    /* after a restart the message is sent again with the same id, so that Alertmanager recognises it */
+    /* after a restart the message is sent again with the same id, by which Alertmanager recognises it */
     assert_string_equal(message.id, id);
     outbox_sent(f->outbox, BOSS, T0 + 10 * S);
     assert_int_equal(deliver(f, OPS, T0 + 70 * S), 1);
@@ -258,7 +258,7 @@ CASE(what_waits_is_bounded_and_said)
     assert_int_equal(message.left_out, 999);
     outbox_sent(f->outbox, OPS, T0 + 60 * S);
     assert_int_equal(deliver(f, OPS, T0 + 200 * S), OUTBOX_ITEMS - 1);
-    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* sending fails for more than a day, so the message is dropped */
+    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* delivery fails for more than a day, so the message is dropped */
     assert_true(outbox_next(f->outbox, OPS, T0 + 303 * S, &message));
     outbox_failed(f->outbox, OPS, T0 + 303 * S);
     outbox_tick(f->outbox, T0 + 303 * S + OUTBOX_KEEP_US + S);
@@ -336,7 +336,7 @@ CASE(what_ended_while_nobody_looked_is_over)
     assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
     restart(f);
     struct alarm stands = alarm_of(f, 1, LOCAL, true, true, T0);
-    /* after a restart, alarm 0 is not reported again, because its limit no longer exists */
+    /* after a restart alarm 0 is not reported again, because its limit no longer exists */
     outbox_put(f->outbox, &stands, true, T0 + 60 * S);
     outbox_end_unseen(f->outbox, T0 + 60 * S);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
@@ -482,7 +482,7 @@ CASE(a_damaged_file_is_refused)
     deliver(f, OPS, T0 + 4 * S);
 }
 
-/* The notifier may sleep until the next change only if no timer is pending. */
+/* The notifier may sleep until the next alarm change only if no timer is pending. */
 CASE(it_rests_when_time_changes_nothing)
 {
     load(f, "  - { id: all, to: [ops, am] }\n");

@@ -17,7 +17,7 @@ static struct {
     struct snapshot *snapshot;
 } stand;
 
-/* Makes a white frame with the marker of one tag in its middle. */
+/* Makes a white frame with one tag's marker in its middle. */
 static struct frame *draw_view(int tag, bool occluded, const struct view *view)
 {
     struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
@@ -30,7 +30,7 @@ static struct frame *draw_view(int tag, bool occluded, const struct view *view)
     return frame;
 }
 
-/* Makes the same frame; right: right half of a split view, or NULL. */
+/* Makes the same frame; right: the right half's view in a split view, or NULL. */
 static struct frame *draw_beside(int tag, bool occluded, const struct view *right)
 {
     struct view view;
@@ -173,7 +173,7 @@ TEST(the_window_is_what_is_left_free)
     assert_true(none.right == 1);
 }
 
-/* Returns how many pixels of a half's right edge, at half height, the legend covers. */
+/* Returns how many pixels of a half's right edge the legend covers at half height. */
 static int legend_px(const struct frame *frame, int half)
 {
     int count = 0;
@@ -260,7 +260,7 @@ TEST(the_legend_lists_unknown_directions_where_there_are_any)
     north.dx = 0;
     north.dy = 1;
     nowhere.dx = 0;
-    still.value = 0; /* drawn as a dot: the speed is 0 and the direction known */
+    still.value = 0; /* drawn as a dot: the direction is known, but the speed is 0 */
     stand.toy->plant.groups[0].directed = true;
     assert_int_equal(arrow_legends_differ_px(&east, &north), 0);
     assert_int_equal(arrow_legends_differ_px(&east, &still), 0);
@@ -274,7 +274,7 @@ TEST(what_rounds_to_nought_has_no_sign)
     assert_true(pen_rounded(-0.06, 1) == -0.06 && pen_rounded(-0.4, 0) == 0 && pen_rounded(-0.0, 6) == 0);
 }
 
-/* Returns how many pixels of a half's upper left corner differ between two frames. */
+/* Returns by how many pixels a half's upper left corner differs between two frames. */
 static int caption_px(const struct frame *frame, const struct frame *plain, int half)
 {
     int count = 0, left = half ? WIDTH / 2 + 4 : 4;
@@ -299,11 +299,11 @@ static void differ(struct view *right, int way)
     }
 }
 
-/* If the two halves are computed differently, captions say how, because the legend does not show it. */
+/* If the halves are computed differently, captions state how, because the legend does not. */
 TEST(halves_say_what_they_differ_in)
 {
     struct frame *plain = draw(0, false, true);
-    for (int x = 0; x < 240; x++) /* both halves of this frame are computed alike, so no caption says how */
+    for (int x = 0; x < 240; x++) /* both halves of this frame are computed alike, so neither has a caption */
         assert_int_equal(plain->bgrx[20 * plain->stride_bytes + 4 * (WIDTH / 2 + 4 + x)], 255);
     for (int way = 0; way < 9; way++) {
         struct view right;

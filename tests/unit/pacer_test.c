@@ -69,7 +69,7 @@ TEST(a_picture_cut_short_is_not_waited_for)
     pacer_asked(&pacer);
     pacer_sent(&pacer, 1000, &note, MS);
     pacer_gave_up(&pacer);
-    /* the frame was given up, but its remaining bytes must be sent before another one is requested */
+    /* the frame was given up, but its remaining bytes must be sent before another is requested */
     assert_false(pacer_may_ask(&pacer, 2 * MS));
     assert_int_equal(pacer_state(&pacer, 2100 * MS), PACER_STALLS);
     pacer_wrote(&pacer, true, 2200 * MS);
@@ -122,13 +122,13 @@ TEST(silence_is_a_stall_and_then_the_end)
     assert_int_equal(pacer_state(&pacer, 3615000 * MS), PACER_FLOWS);
 }
 
-/* A simulated network with one queue, and a client that decodes one frame after the other. */
+/* A simulated network with one queue, and a client that decodes frames one after another. */
 struct pacer_world {
     double bytes_per_s;
     int64_t rtt_ns, decode_ns;
-    double pixels; /* pixels per frame, on which the simulated decoding time and the size in bytes depend */
+    double pixels; /* pixels per frame, which determine the simulated decoding time and the size in bytes */
     int64_t now_ns, link_free_ns, decoder_free_ns;
-    int64_t draw_ns;       /* time in which the simulated server draws a frame; 0: 20 ms */
+    int64_t draw_ns;       /* time that the simulated server takes to draw a frame; 0: 20 ms */
     int64_t busy_until_ns; /* until this time the simulated client is busy with other work and acknowledges nothing */
     struct {
         uint32_t seq;
@@ -213,7 +213,7 @@ TEST(a_long_way_does_not_cost_rate)
     assert_true(rate(&world) > 25 && world.oldest_ns < 150 * MS);
 }
 
-/* The network has 1 Mbit/s and a round trip of 200 ms. */
+/* The network has a throughput of 1 Mbit/s and a round trip of 200 ms. */
 TEST(a_slow_network_gets_small_pictures_in_time)
 {
     struct pacer pacer = fresh();
@@ -315,7 +315,7 @@ TEST(a_decoder_that_begins_is_not_slow)
     }
 }
 
-/* At the threshold between two quality steps the pacer must not oscillate. */
+/* At the threshold between two quality steps, the pacer must not oscillate. */
 TEST(steps_do_not_swing)
 {
     for (int kbit_per_s = 500; kbit_per_s <= 64000; kbit_per_s = kbit_per_s * 5 / 4) {
@@ -356,7 +356,7 @@ TEST(who_see_the_same_take_one_step)
     assert_int_equal(quality_ladder_step(&ladder, common), 5);
 }
 
-/* Whatever a client acknowledges, the window is never exceeded, and a valid acknowledgement always opens it. */
+/* Whatever a client acknowledges, the window is never exceeded; a valid acknowledgement always opens it. */
 TEST(random_clients)
 {
     unsigned seed = (unsigned)sweep_seed();

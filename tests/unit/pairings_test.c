@@ -38,7 +38,7 @@ static void print_secret(int i, char secret[TOKEN_MAX_CHARS + 1])
     assert_true(pairings_secret_valid(secret));
 }
 
-/* Requests a pairing for the i-th device; every eight devices share an address. */
+/* Requests a pairing for the i-th device; eight devices share each address. */
 static enum pairing ask(struct pairings_fixture *f, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
 {
     char secret[TOKEN_MAX_CHARS + 1];
@@ -150,7 +150,7 @@ CASE(few_wait_and_few_guesses_are_judged)
                      PAIRING_FULL); /* refused: this address already has eight pending requests */
     for (int i = 0, now_s = PAIRING_QUIET_S; i < PAIRING_WRONG; i++)
         assert_int_not_equal(approve(f, "abcdef", now_s * NS_PER_S), REFUSAL_NONE);
-    /* right digits, but after too many wrong ones no digits are accepted for a minute */
+    /* correct digits, but after too many wrong ones no digits are accepted for a minute */
     assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE);
     assert_int_equal(ask(f, PAIRINGS, (PAIRING_QUIET_S + 30) * NS_PER_S, more), PAIRING_WAITS);
     assert_int_equal(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S), REFUSAL_NONE);
@@ -172,7 +172,7 @@ static void mirror(const struct pairings_fixture *f, struct pairings *renderer, 
     json_decref(told);
 }
 
-/* The renderer has no folder of its own, and its clock differs. */
+/* The renderer has no folder of its own, and its clock differs from the core's. */
 CASE(a_renderer_asks_its_core)
 {
     struct pairings *renderer = pairings_open(f->log, NULL, NULL);

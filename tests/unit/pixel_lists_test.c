@@ -90,7 +90,7 @@ static void make_field(struct pixel_field *field, int count, bool paper, bool od
                                          .state = PIXEL_CONFIGURED | PIXEL_USABLE };
         for (int c = 0; c < 3; c++)
             sensor->place_m[c] = (float)(c == 2 ? between(0, 1) < 0.5 ? 0 : between(0, 0.3) : between(0, 4));
-        if (odd && i % 7 == 3) /* some sensors are at the same place as the sensor before, or a micrometre beside it */
+        if (odd && i % 7 == 3) /* some sensors are at the same position as the previous one, or a micrometre away */
             memcpy(sensor->place_m, sensor[-1].place_m, sizeof(sensor->place_m));
         if (odd && i % 14 == 3)
             sensor->place_m[0] += 1e-6f;

@@ -20,7 +20,7 @@ struct placing_fixture {
     char *folder;
     pthread_mutex_t lock;
     pthread_cond_t came;
-    int count; /* number of times that the module announced an answer; needs the lock */
+    int count; /* number of answers that the module announced; needs the lock */
 };
 
 static void notify(void *arg)

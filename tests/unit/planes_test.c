@@ -56,7 +56,7 @@ static int chroma_of(const uint8_t bgr[3], int c)
     return (int)lround(of[c]) + 128;
 }
 
-/* Lines one pixel wide at every position of a block, vertical and horizontal. */
+/* Lines one pixel wide, vertical and horizontal, at every position within a block. */
 TEST(thin_lines_keep_their_colour)
 {
     for (int turn = 0; turn < 2; turn++)

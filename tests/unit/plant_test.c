@@ -102,7 +102,7 @@ CASE(everything_is_read)
          "Source,Group,Asset,Node,X,Y,Z,Strength,Decay,Byte Order,Stale s,LL,L,H,HH\n"
          "A,40001,Float,500,Square Root,0,27648,-50,150,mm,1,say \"hi\",s,g,101,,1,2,3,7,8,BADC,9,-2,,,2\n"
          "B,3!300007.4,,,,,,,,,,,,g,101,TI-B,,,,,,,,,,,\n");
-    plant_case_assert_loaded(f, 1); /* the group has no unit, but its tag has mm: a warning */
+    plant_case_assert_loaded(f, 1); /* the group has no unit, but its tag has mm: a warning is expected */
     const struct plant *p = f->plant;
     assert_string_equal(p->name, "Werk Süd");
     assert_true(p->up == AXIS_Y && p->display.view.set && p->display.view.eye_m[1] == 2.5 && p->display.view.target_m[2] == 10 &&
@@ -248,7 +248,7 @@ CASE(an_asset_stands_upright_in_a_plant_that_is_y_up)
          placed_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
-    assert_point(s[0].position_m, 1, -3, -8); /* 8 below the foot; 3 towards the south, which is z in the model and -y here */
+    assert_point(s[0].position_m, 1, -3, -8); /* 8 below the foot; 3 to the south, which is z in the model and -y here */
     mem_free(s);
 }
 
@@ -274,7 +274,7 @@ CASE(the_locale_changes_nothing)
 
 /* --- plant.yaml, bad -------------------------------------------------------------------------------------------------------- */
 
-/* Loads small_yaml with one line replaced by `text`, together with the tag list; line 0 replaces nothing. */
+/* Loads small_yaml with one line replaced by `text`, together with the tag list; line 0: no replacement. */
 static void load_csv_with(struct plant_case *f, int line, const char *text, const char *csv)
 {
     struct text yaml = { 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The program plantcast-prep: which files it builds, leaves alone and builds again, and which errors it reports. */
+/* The program plantcast-prep: which files it builds, leaves alone and rebuilds, and which errors it reports. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
@@ -136,7 +136,7 @@ CASE(a_plant_is_prepared)
     assert_int_equal(own, (ACROSS + 1) * (UP + 1));
     assert_true(v->header->level_count > 1 && own < v->header->vertex_count);
     assert_true(v->sensors[1].node_hash != 0 && v->sensors[0].node_hash == 0);
-    /* on a flat plate, stored distances along the surface must equal straight distances */
+    /* on a flat plate, stored distances along the surface must equal straight-line distances */
     for (uint32_t i = 0; i < v->header->vertex_count; i++) {
         float x = v->positions_m[i][0] + 1, y = v->positions_m[i][1] + 0.5f;
         assert_float_equal(asset_distance_m(v, 0, i), hypotf(x, y), 1e-3);
@@ -223,7 +223,7 @@ CASE(another_reach_is_another_file)
     assert_states(s, "unchanged", "shared", "unchanged");
 }
 
-/* Each pixel evaluates the field of few sensors by straight-line distance: no triangle is cut for it. */
+/* The field of few sensors is evaluated per pixel by straight-line distance, so no triangle is subdivided for it. */
 CASE(straight_distances_of_few_sensors_cut_nothing)
 {
     size_t cut, whole;
@@ -302,7 +302,7 @@ CASE(distances_are_printed)
     prep_case_expect(s, "distances $PLANT --asset B", 2);
 }
 
-/* plantcast-prep reads PNG itself; the module that reads other images is a package of its own. */
+/* plantcast-prep reads PNG itself; a separate package has the module that reads other formats. */
 CASE(textures_are_read)
 {
     struct prep_case *c = s;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour ramps that previews look up: equal rows are shared, and their number is limited. */
+/* Colour ramps that previews use: equal rows are shared, and the number of rows is limited. */
 #include "tests/support/test.h"
 
 #include "render/soft/ramp_rows.h"

@@ -96,9 +96,9 @@ TEST(gaps_are_bridged_up_to_the_device_s_limit)
     plant->sources[0].max_gap = 5;
     read_plan_init(&plan, plant, 0);
     assert_block(&plan, 0, 0, 15, 3); /* registers 0, 6 and 13 are read together, across gaps of 4 and 5 unused registers */
-    assert_block(&plan, 1, 23, 2, 1); /* register 23 is read separately, because the gap before it, 8 registers, is longer than allowed */
+    assert_block(&plan, 1, 23, 2, 1); /* register 23 is read separately, because the gap of 8 registers before it exceeds the limit */
     read_plan_split(&plan, plant, 0);
-    assert_block(&plan, 0, 0, 2, 1); /* a refused block is split at its first gap, which is then not read any more */
+    assert_block(&plan, 0, 0, 2, 1); /* a refused block is split at its first gap, which is then no longer read */
     assert_block(&plan, 1, 6, 9, 2);
     read_plan_finish(&plan);
     plant->sources[0].max_registers = 8;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recent-frame cache: which of the last frames can serve a request that comes a moment later. */
+/* Recent-frame cache: which of the last frames can serve a request that follows shortly. */
 #include "service/recent_frames.h"
 
 #include "tests/support/test.h"
@@ -28,7 +28,7 @@ TEST(a_view_is_found_while_nothing_newer_was_said_of_its_readings)
     struct recent_frames recent = { 0 };
     struct view view = view_of(1), other = view_of(2);
     draw(&recent, 1, 7, NOW_NS);
-    view.camera_seq = 99; /* another camera number must not matter: views are compared by what they show */
+    view.camera_seq = 99; /* a different camera number must not matter: views are compared by what they show */
     assert_true(recent_frames_find_view(&recent, &view, NOW_NS - 50 * MS, NOW_NS + 20 * MS)->content == 7);
     assert_non_null(recent_frames_find_view(&recent, &view, NOW_NS, NOW_NS + 20 * MS));
     assert_null(recent_frames_find_view(&recent, &view, NOW_NS + 10 * MS, NOW_NS + 20 * MS));

@@ -21,7 +21,7 @@
 /* metres; a point nearer than this counts as on the surface: bridging of cracks moves the surface by less */
 #define ON 1e-3
 #define SEEN 1e-5 /* metres; a vertex of the finest level this near to the visible surface counts as visible */
-#define NEAR 0.05 /* metres; the same for vertices that only coarser levels have, which lie off the surface */
+#define NEAR 0.05 /* metres; as SEEN, for vertices that only coarser levels have, which lie off the surface */
 
 struct result_box { /* receives a result */
     pthread_mutex_t lock;
@@ -113,7 +113,7 @@ static struct asset *prepared(struct prep_case *c)
     return asset;
 }
 
-struct most {           /* largest differences that are allowed between computed and stored distances, as shares of the largest distance */
+struct most {           /* largest allowed differences between computed and stored distances, as shares of the largest distance */
     double mean, worst; /* mean and largest allowed difference among the compared vertices */
     double far_share;   /* allowed share of the finest level's visible vertices that differ by more than 0.3 % */
 };
@@ -223,7 +223,7 @@ static void try_sensors(const struct asset *asset, const struct relocation_shape
 
 TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
 {
-    /* largest differences from stored distances that are allowed; the largest ones occur where two parts intersect */
+    /* largest allowed differences from stored distances; they are largest where two parts intersect */
     static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.0065 } };
     static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.014 } };
     struct asset *asset = prepared(*state);
@@ -232,7 +232,7 @@ TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
     shape.surface_path = path;
     enum sight *sights = sights_of(&shape);
     try_sensors(asset, &shape, sights, as_stored);
-    shape.surface_key++; /* the key of another asset's file, so the file is not used */
+    shape.surface_key++; /* the key of another asset's file, so the file must not be used */
     try_sensors(asset, &shape, sights, as_made_anew);
     mem_free(sights);
     asset_unref(&asset);
@@ -282,7 +282,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
         box_init(&box);
         struct relocation *relocation = relocation_create(the_log, workers, &shapes[i]);
         uint64_t ticket = relocation_request(relocation, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
-        assert_true((ticket > 0) == (i == 0)); /* on the first shape, a degenerate triangle, sensors may be placed, too */
+        assert_true((ticket > 0) == (i == 0)); /* sensors may be placed on the first shape too, a degenerate triangle */
         assert_true(relocation_place(relocation, (const double[3]){ 0.5, 0.1, 0 }, &place, NULL) == (i == 0));
         if (ticket) {
             wait_for(&box, 1);
@@ -409,7 +409,7 @@ TEST(what_waits_is_cancelled)
     struct relocation_shape shape = shape_of(&plate);
     struct workers *one = test_workers(1);
     pthread_mutex_lock(&gate);
-    workers_submit(one, hold, &gate); /* the worker is blocked, so nothing becomes warm until the gate opens */
+    workers_submit(one, hold, &gate); /* the worker is blocked, so nothing can be warmed up until the gate opens */
     struct relocation *relocation = relocation_create(the_log, one, &shape);
     uint64_t first = relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &cancelled);
     relocation_request(relocation, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, &kept);

@@ -55,7 +55,7 @@ static void on_sample_event(void *arg, const struct sample_event *event)
     if (all->count == MOST)
         return;
     all->at[all->count] = *event;
-    all->count++; /* the count is raised last, so that readers see a complete entry */
+    all->count++; /* the count is increased last, so that readers see complete entries only */
 }
 
 static void play(struct replay_setup *s, const char *keys, const char *csv, const char *tags)
@@ -86,7 +86,7 @@ static void wait_for_link(struct replay_setup *s, bool up)
     assert_true(store_link_is_up(s->store, 0) == up);
 }
 
-/* Collects the events of one tag in the order of arrival. Returns their number. */
+/* Collects the events of one tag in order of arrival. Returns their number. */
 static size_t of_tag(const struct replay_setup *s, int tag, struct sample_event *out, size_t most)
 {
     size_t count = 0;

@@ -103,7 +103,7 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         if (!(found >= expected[i].least && found <= expected[i].most))
             fail_msg("%s is %.9g, expected %g to %g", expected[i].path, found, expected[i].least, expected[i].most);
     }
-    for (int asset = 0; asset < 4; asset++) { /* numbers in the asset file must agree with those of the report's levels of detail */
+    for (int asset = 0; asset < 4; asset++) { /* numbers in the asset file must agree with the levels of detail in the report */
         char path[60];
         snprintf(path, sizeof(path), "assets.%d.levels.0.triangles", asset);
         double split = prep_case_number(report, path);
@@ -225,7 +225,7 @@ TEST(the_time_left_follows_the_work)
     assert_float_equal(progress_left_s(&progress, 5 * s), 7, 1e-9);
     progress_step(&progress, 100, 6 * s);
     for (int i = 0; i < 3; i++)
-        progress_expect(&progress, 1); /* the work of the other three assets turns out to be small, so the remaining time shrinks */
+        progress_expect(&progress, 1); /* the other three assets turn out to take little work, so the remaining time shrinks */
     assert_float_equal(progress_left_s(&progress, 6 * s), 0.03, 1e-9);
     progress_end(&progress);
     fclose(out);

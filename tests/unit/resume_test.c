@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Preparation of a facility is interrupted in every way and then resumed. */
+/* Preparation of a facility is interrupted in every possible way and then resumed. */
 #include "tests/support/test.h"
 #include <dirent.h>
 #include <errno.h>
@@ -32,7 +32,7 @@ static int set_up(void **state)
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, set_up, prep_case_tear_down)
 
-/* Returns the number of files in the prepared folder with this ending. */
+/* Returns the number of files in the prepared folder with this suffix. */
 static size_t count_files(const struct prep_case *c, const char *ending)
 {
     char *folder = temp_path(c->folder, "facility.prepared");
@@ -134,7 +134,7 @@ CASE(interrupted_it_finishes_what_it_has_begun)
     assert_continued(c, there);
 }
 
-/* On a terminal progress is one line that is updated and finally erased. */
+/* On a terminal, progress is one line that is updated and erased at the end. */
 CASE(a_terminal_shows_one_line)
 {
     struct text seen = { 0 };

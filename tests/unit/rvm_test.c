@@ -141,7 +141,7 @@ static double volume_m3(const struct cad_node *node)
     return sum / 6;
 }
 
-/* Asserts that normals point to the side from which their triangle appears counter-clockwise. */
+/* Asserts that each normal points to the side from which its triangle appears counter-clockwise. */
 static void check_normals(const struct cad_node *node)
 {
     for (size_t i = 0; i < node->triangle_count; i++) {
@@ -201,7 +201,7 @@ TEST(test_areas_and_volumes_are_those_of_the_formulas)
         }
 }
 
-/* Counts edges with only one triangle; vertices closer than a micrometre are merged. */
+/* Counts edges with only one triangle, after merging vertices closer than a micrometre. */
 static size_t open_edges(const struct cad_model *model)
 {
     size_t triangles = 0, open = 0;
@@ -243,7 +243,7 @@ TEST(test_a_pipe_run_is_closed)
     const double turned[12] = { 0.001, 0, 0, 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, 0, 0, 0 };
     /* The elbow's first end faces -y, where a pipe 1 m long along y has its centre at (300, -500, 0). */
     const double first[12] = { 0.001, 0, 0, 0, -0.001 * s, 0.001 * c, 0, -0.001 * c, -0.001 * s, 0.3, -0.5 * c, -0.5 * s };
-    /* The elbow's second end faces -x: pipe, reducer and dish continue in this direction. */
+    /* The elbow's second end faces -x; pipe, reducer and dish continue in this direction. */
     const double second[12] = { 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, -0.001, 0, 0, -0.5, 0.3 * c, 0.3 * s };
     double third[12], fourth[12];
     memcpy(third, second, sizeof(third));

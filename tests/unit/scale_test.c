@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scale of the legend: from values to positions to colours, in bands and on logarithmic scales. */
+/* The legend's scale: from values to positions to colours, in bands and on logarithmic scales. */
 #include "field/scale.h"
 #include "plant/colormaps.h"
 
@@ -42,7 +42,7 @@ TEST(test_outside)
     }
 }
 
-/* A reading of exactly MAX is stored as a float, which may exceed MAX as a double. */
+/* A reading of exactly MAX is stored as a float, which may be larger than MAX as a double. */
 TEST(test_limits_are_compared_as_floats)
 {
     assert_true((double)0.3f > 0.3);
@@ -59,7 +59,7 @@ TEST(test_bands_of_an_interval)
     expect_row(243, 99, 0, 100, 10);
     expect_row(243, 100, 0, 100, 10); /* a value of exactly MAX belongs to the last band */
     expect_row(243, (double)0.3f, 0, 0.3, 0.03);
-    expect_row(249, 100, 0, 100, 19);   /* bands at 0, 19, ... 95; the last one ends at 100, so its centre is 97.5 */
+    expect_row(249, 100, 0, 100, 19);   /* bands begin at 0, 19, ... 95; the last one ends at 100, so its centre is 97.5 */
     expect_row(128, 3, 0, 100, 1e6);    /* one band only */
     expect_row(51, -95, -100, 100, 80); /* bands count from MIN, not from 0: -100 to -20 */
 }

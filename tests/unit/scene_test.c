@@ -78,7 +78,7 @@ static void write_manifest(const struct scene_fixture *f, const char *text)
     temp_write_text(f->prepared, "manifest.json", text);
 }
 
-/* Writes a manifest of all assets in reverse order that all refer to one file. */
+/* Writes a manifest that lists all assets in reverse order, all with the same file. */
 static void write_good_manifest(const struct scene_fixture *f)
 {
     struct text text = { 0 };
@@ -273,7 +273,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "m.glb, or the asset's 'nodes'");
 }
 
-/* If the manifest states why one asset is missing, the other assets are loaded. */
+/* If the manifest states why one asset is missing, the other assets are still loaded. */
 CASE(a_missing_asset_does_not_keep_the_others_away)
 {
     uint64_t model;
@@ -292,7 +292,7 @@ CASE(a_missing_asset_does_not_keep_the_others_away)
     assert_string_equal(scene->assets[1].missing, "no node's name matches 'B'");
     assert_int_equal(scene->assets[1].sensor_count, 0);
     assert_true(scene->assets[0].sensor_count > 0);
-    for (int axis = 0; axis < 3; axis++) { /* B stood at (10, 20, 30); the bounds of the plant no longer include it */
+    for (int axis = 0; axis < 3; axis++) { /* B stood at (10, 20, 30), which the plant's bounds no longer include */
         assert_true(scene->bounds_max_m[axis] < 9);
         assert_true(scene->assets[1].bounds_max_m[axis] == scene->bounds_max_m[axis]);
     }
@@ -312,7 +312,7 @@ CASE(home_is_the_view_of_the_plant)
     scene_home(scene, 1.5, &camera);
     assert_true(camera_valid(&camera));
     assert_true(scene->extreme_count >= 4);
-    /* scene->extremes_m: outermost points of the assets, which lie within the plant's bounds and nearly reach them */
+    /* scene->extremes_m: outermost points of the assets, within the plant's bounds and nearly at them */
     for (int i = 0; i < 3; i++) {
         double least = INFINITY, most = -INFINITY, slack = 0.15 * (scene->bounds_max_m[i] - scene->bounds_min_m[i]) + 1e-6;
         for (size_t n = 0; n < scene->extreme_count; n++) {
@@ -347,7 +347,7 @@ CASE(home_is_of_what_is_shown_at_the_start)
     for (size_t n = 0; n < scene->extreme_count; n++)
         assert_true(scene->extremes_m[n][0] < scene->assets[1].bounds_min_m[0]);
     scene_destroy(&scene);
-    /* all assets are hidden at the start: the home view then covers all of them */
+    /* all assets are hidden at the start, so the home view covers all of them */
     f->plant->assets[0].start = f->plant->assets[2].start = PLANT_START_HIDDEN;
     scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);

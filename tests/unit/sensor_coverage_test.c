@@ -115,7 +115,7 @@ TEST_WITH(test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
     assert_true(sensor_coverage_find(&order, &gaps));
     /* the farthest point is the corner that the moved sensor left */
     assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5);
-    trial.sensors[0].asset = 1; /* in the trial, sensor 0 moves to the other asset, which has no sensor of its own */
+    trial.sensors[0].asset = 1; /* the trial moves sensor 0 to the other asset, which has no sensor of its own */
     order.asset = 1;
     trial.sensors[0].vertex = 0;
     memset(trial.sensors[0].surface_m, 0, sizeof(trial.sensors[0].surface_m));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests for more time to the service manager: sent while the program makes progress, and no longer. */
+/* Requests for more time to the service manager: sent only while the program makes progress. */
 #include "tests/support/test.h"
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -37,7 +37,7 @@ TEST_FIXTURE(struct service_manager_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct service_manager_setup *s, name, set_up, tear_down)
 
-/* Returns how many requests for more time arrived since the last call. */
+/* Returns how many requests for more time have arrived since the last call. */
 static int asked(const struct service_manager_setup *s)
 {
     char line[200];
@@ -102,7 +102,7 @@ CASE(one_step_may_not_last_for_ever)
     else /* the machine was too busy: the thread got no processor time and made no progress, so the number of requests proves nothing */
         print_message("# not judged: asked %d times in %lld ms of a processor\n", asks,
                       (long long)((clock_work_ns() - before_ns) / NS_PER_MS));
-    rest_ms(200); /* one more request may have been waiting for space in the socket */
+    rest_ms(200); /* one more request may have been waiting for room in the socket */
     asked(s);
     work_ms(1000);
     assert_int_equal(asked(s), 0);

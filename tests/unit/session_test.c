@@ -40,7 +40,7 @@ static const char *type_of(const json_t *message)
     return message ? json_string_value(json_object_get(message, "type")) : "(nothing)";
 }
 
-/* Takes all due messages and asserts that their types are these, in this order. */
+/* Takes all due messages and asserts their types, in this order. */
 static void expect(struct session_case *f, const char *types)
 {
     char got[256] = "";
@@ -164,7 +164,7 @@ static struct depth_grid *grid_of(int width_px)
     return depth_grid_create(cells, &(struct depth_lens){ .factor = 1, .step = 0.01f }, width_px, 8);
 }
 
-/* Requests, draws, sends and acknowledges a frame with these grids, which the test keeps. */
+/* Requests, draws, sends and acknowledges a frame with these grids, which stay the test's. */
 static enum session_depth show_depth(struct session_case *f, const struct frame_request *request, struct depth_grid *grids[2])
 {
     struct encoded_frame *encoded = empty_picture(f, request);
@@ -199,7 +199,7 @@ CASE(depth_is_sent_when_it_changes)
     assert_int_equal(show_depth(f, &request, none), SESSION_DEPTH_NONE);
     assert_int_equal(show_depth(f, &request, split), SESSION_DEPTH_NEW);
     assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NEW);
-    request.depth = false; /* like a frame that was requested without depth, while the session followed another one */
+    request.depth = false; /* as if the frame was requested without depth, while the session followed another one */
     assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NONE);
     for (int i = 0; i < 2; i++) {
         depth_grid_unref(&first[i]);
@@ -363,7 +363,7 @@ CASE(rests_once_nothing_waits_for_time)
     uint32_t seq = send_picture(f);
     assert_false(session_rests(f->session, f->now_ns)); /* the frame is under way */
     ack(f, seq);
-    assert_false(session_rests(f->session, f->now_ns)); /* a preview was acknowledged, but its refined frame is still to be drawn */
+    assert_false(session_rests(f->session, f->now_ns)); /* a preview was acknowledged, but its refined frame has not been drawn yet */
     f->now_ns += 250 * MS;
     show(f);
     assert_false(session_rests(f->session, f->now_ns)); /* counts as moving */
@@ -372,7 +372,7 @@ CASE(rests_once_nothing_waits_for_time)
     session_on_data(f->session, f->now_ns);
     assert_false(session_rests(f->session, f->now_ns));
     show(f);
-    assert_false(session_rests(f->session, f->now_ns)); /* the frame was acknowledged, but the readings' values are still to be sent */
+    assert_false(session_rests(f->session, f->now_ns)); /* the frame was acknowledged, but the readings' values have not been sent yet */
     expect(f, "tags ");
     assert_true(session_rests(f->session, f->now_ns));
     session_on_data(f->session, f->now_ns);
@@ -397,7 +397,7 @@ CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
     assert_int_equal(session_fresh_ns(f->session), f->now_ns);
     int64_t then_ns = f->now_ns;
     f->now_ns += 100 * MS;
-    session_on_data(f->session, f->now_ns); /* new readings outdate the shown frame from now on, although it was drawn a minute ago */
+    session_on_data(f->session, f->now_ns); /* from now on new readings outdate the shown frame, although it was drawn a minute ago */
     session_on_tick(f->session, f->now_ns);
     assert_int_equal(session_fresh_ns(f->session), then_ns);
     f->now_ns += NS_PER_S;
@@ -489,7 +489,7 @@ CASE(a_view_that_cannot_be_drawn_is_said_once)
     show(f);
 }
 
-/* No data changes, but a frame that failed for lack of memory is requested again, at intervals. */
+/* No data changes, but a frame that failed for lack of memory is requested again at intervals. */
 CASE(a_view_that_cannot_be_drawn_is_tried_again)
 {
     struct frame_request request;
@@ -678,7 +678,7 @@ CASE(data_does_not_wait_for_the_first_refined_picture)
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
-    for (int i = 0; i < 5; i++) { /* the link is so slow that a single frame of 20 kB fills it */
+    for (int i = 0; i < 5; i++) { /* on this slow link a single frame of 20 kB fills the window */
         session_on_data(f->session, f->now_ns += 3 * NS_PER_S);
         assert_true(ask(f, &data) && (i > 0 || (data.view.tier == TIER_REFINED && data.or_moving)));
         session_on_data(f->session, f->now_ns += 100 * MS);
@@ -742,7 +742,7 @@ CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
     assert_false(ask(f, &request));
 }
 
-/* At 125 kB/s moving previews become smaller, and still views are refined in two stages. */
+/* At 125 kB/s moving previews become smaller, and views at rest are refined in two stages. */
 CASE(a_slow_client_gets_less_and_everything_in_the_end)
 {
     struct frame_request request;
@@ -850,7 +850,7 @@ CASE(views_shown_again_and_again_are_admitted_as_new_ones)
     f->now_ns += NS_PER_S;
     say(f, HIDE);
     say(f, SHOW);
-    assert_true(ask(f, &request)); /* a view that was hidden only for a moment keeps its admission */
+    assert_true(ask(f, &request)); /* a view hidden only for a moment keeps its admission */
     assert_true(session_has_pixels(f->session));
     say(f, HIDE);
     say(f, SHOW);
@@ -1107,7 +1107,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     request = show(f);
     assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 9);
     session_follow(f->session, leader, f->now_ns);
-    session_leader_gone(f->session, f->now_ns); /* the last frame stays at its size and is marked: its leader has gone */
+    session_leader_gone(f->session, f->now_ns); /* the leader has gone: the last frame keeps its size and is marked */
     following = hear(f);
     assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);
     assert_true(json_is_true(json_object_get(following, "gone")));

@@ -29,7 +29,7 @@ static void tear_down(struct wall_case *wall)
     }
 }
 
-/* Records that tile i was sent a frame of the wall's `picture` and has acknowledged it. */
+/* Records that tile i got a frame of the wall's `picture` and has acknowledged it. */
 static void have(struct wall_case *wall, int i, uint64_t picture, uint32_t seq)
 {
     session_tile_sent(wall->members[i], picture, seq);
@@ -121,7 +121,7 @@ TEST(test_a_skipped_picture_is_not_one_that_the_tile_shows)
         assert_int_equal(tile->delivery.pacer.asked, 0);
         session_tiles_present(&wall.tiles, &presented, 0, 0);
         assert_int_equal(presented, unchanged ? 6 : 5);
-        assert_true(tile->demand.any == !unchanged); /* if a tile's request was skipped, another picture is requested for all tiles */
+        assert_true(tile->demand.any == !unchanged); /* if one tile's request was skipped, a new picture is requested for all tiles */
         tear_down(&wall);
     }
 }
@@ -215,7 +215,7 @@ TEST(test_a_move_is_sent_once)
     tear_down(&wall);
 }
 
-/* Returns the size step after frames of made_ms each, one every 50 ms. */
+/* Returns the size step after frames that take made_ms each, one every 50 ms. */
 static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t from_ms, int64_t to_ms)
 {
     for (int64_t ms = from_ms; ms <= to_ms; ms += 50)

@@ -88,7 +88,7 @@ static void go(struct session_case *f, int64_t ago_s, double speed)
     say(f, text);
 }
 
-/* Returns the instant that the session requests, in seconds before NOW; NAN if it requests none. */
+/* Returns the instant that the session requests, in seconds before NOW; NAN: none requested. */
 static double wanted(struct session_case *f)
 {
     int64_t at_us;

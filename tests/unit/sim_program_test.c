@@ -24,7 +24,7 @@ static const char plant_text[] = "plant: { name: Test }\n"
                                  "sources: [ { id: plc, type: modbus, host: 127.0.0.1, port: %d, poll_ms: 50,\n"
                                  "             timeout_ms: 300, byte_order: CDAB, address_base: 1 } ]\n"
                                  "tags: sim-test.csv\n";
-/* uint16 is stale only after a minute, so that it stays Uncertain while the device pauses. */
+/* uint16 becomes stale only after a minute, so that it stays Uncertain while the device pauses. */
 static const char tags_text[] =
     "Tag Name,Address,Data Type,Byte Order,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Sim Value,Sim Loop,Stale s\n"
     "int16,40001,Short,,,,,,,,-1234,,\n"
@@ -376,7 +376,7 @@ CASE(says_what_stops_it)
     s->out = first_out;
 }
 
-/* Plants of real models and recorded series; skipped where the data is absent. */
+/* Plants with real models and recorded series; skipped where the data is absent. */
 CASE(real_plants_are_served)
 {
     const char *const plants[] = { "tests/plants/plant_room.yaml", "tests/plants/cookie_line.yaml" };

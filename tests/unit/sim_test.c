@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parts of plantcast-sim: encoding compared with the daemon's decoding, the process model, recorded series and their map. */
+/* Parts of plantcast-sim: encoding compared with the daemon's decoding, the process model, and recorded series and their mapping. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -287,7 +287,7 @@ TEST(wide_series)
     assert_true(series_at(&series, 200, false) == -2);
     series_finish(&series);
     assert_false(series_read(&series, path, "d", &found, why));
-    assert_non_null(strstr(why, ":4: d: expected a number")); /* line 3 has a status word instead of a number, which is no error */
+    assert_non_null(strstr(why, ":4: d: expected a number")); /* line 3 has a status word instead of a number, which is not an error */
     series_finish(&series);
     assert_true(series_read(&series, path, "c", &found, why));
     assert_false(found);

@@ -103,7 +103,7 @@ CASE(nothing_else_is)
     site_destroy(&nowhere);
 }
 
-/* An upgrade replaces the files under a running daemon: it keeps serving the files from its start. */
+/* An upgrade replaces the files under a running daemon: it keeps serving the files that it had at start. */
 CASE(files_stay_as_they_were_at_the_start)
 {
     struct web_site *before = site_create(NULL, f->web);
@@ -133,7 +133,7 @@ static void expect_gzip(const struct site_file *file, const char *text)
     inflateEnd(&stream);
 }
 
-/* A file is compressed where the browser accepts that and the file shrinks. */
+/* A file is compressed if the browser accepts that and compression makes it smaller. */
 CASE(text_is_compressed_if_the_browser_accepts_gzip)
 {
     static const struct {

@@ -191,7 +191,7 @@ CASE(counts_every_change)
     store_link_lost(s->store, 0, 13 * S);
     store_link_lost(s->store, 0, 13 * S);
     assert_int_equal(look(s, 0, 13 * S)->changes, ++wanted);
-    /* the reading's quality falls from Uncertain to Bad by age alone, which counts as a change */
+    /* age alone lowers the reading's quality from Uncertain to Bad, which counts as a change */
     assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted);
     write_one(s, 0, 0, QUALITY_BAD_DEVICE_FAILURE, 18 * S);
     assert_int_equal(look(s, 0, 18 * S)->changes, ++wanted);
@@ -236,7 +236,7 @@ CASE(readings_go_on_in_another_plant)
     store_adopt(store, s->store);
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
-    /* readings are taken over without their alarms: the alarms of the new plant have reported none yet */
+    /* readings are taken over without their alarms: the new plant has not reported any yet */
     assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE);
     assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* the new plant's stale time is longer */
     assert_true(snapshot->readings[1].age_ns == 20 * S);
@@ -321,7 +321,7 @@ CASE(a_value_that_never_moves_is_doubted)
     assert_quality(look(s, 1, 1000 * S)->quality, QUALITY_GOOD); /* this tag has no flatline_s */
 }
 
-/* A gateway keeps answering with the last values of a controller that has stopped. */
+/* A gateway still answers with the last values of a controller that has stopped. */
 CASE(a_stopped_heartbeat_makes_quality_tags_unreadable)
 {
     s->plant->sources[0].heartbeat_s = 3;
@@ -388,7 +388,7 @@ CASE(other_tags_vouch)
     store_listen(s->store, on_sample_event, heard);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
     write_one(s, 2, 30, QUALITY_GOOD, 0);
-    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* tag 0 has its quality from another tag, which has no value yet */
+    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* tag 0 gets its quality from another tag, which has no value yet */
     const struct {
         double word;
         uint32_t pattern, any;
@@ -415,7 +415,7 @@ CASE(other_tags_vouch)
     assert_quality(look(s, 0, 3 * S)->quality, QUALITY_UNCERTAIN);
 }
 
-/* Wall clock times in samples are for display only; ages use the monotonic clock. */
+/* Wall clock times of samples are for display only; ages use the monotonic clock. */
 CASE(a_step_of_the_wall_clock_makes_nothing_fresh_or_stale)
 {
     store_write(s->store, &(struct sample){ 0, 7, QUALITY_GOOD }, 1, 10 * S, 1000 * S);

@@ -14,7 +14,7 @@ static void expect_same(const struct strip *a, const struct strip *b)
     assert_string_equal(a->unit, b->unit);
 }
 
-/* Pins the byte format: later versions must be able to read existing pictures. */
+/* Fixes the byte format: later versions must be able to read existing pictures. */
 TEST(test_bytes)
 {
     static const uint8_t head[] = { 1, 4, 0, 0, 0x48, 0xc1, 0, 0, 0xf0, 0x43, 't', 'e', 'm', 'p' };

@@ -45,7 +45,7 @@ TEST(a_sample_is_some_neighbours_of_every_part)
     level_finish(&sample);
 }
 
-/* Prepares `split` with three edges per triangle, each with errors[triangle of the level] times the allowed error. */
+/* Prepares `split` with three edges per triangle of the level; each edge's error is errors[triangle] times the allowed one. */
 static void take_in_hand(struct subdiv *split, const struct level *level, const float *errors)
 {
     size_t count = level->index_count / 3;
@@ -73,7 +73,7 @@ static void release(struct subdiv *split)
     mem_free(split->mesh.cuts);
 }
 
-/* An edge whose error is e times too large needs log4(e) rounded up cuts. */
+/* An edge whose error is e times too large needs ceil(log4(e)) cuts. */
 TEST(a_sample_says_what_the_level_needs)
 {
     struct level level, sample;

@@ -14,7 +14,7 @@
 #define PI 3.14159265358979323846
 #define SENSORS 6
 
-struct prepared_body { /* one asset with the sensors of two groups, as the test prepares it */
+struct prepared_body { /* one asset with the sensors of two groups, as this test prepares it */
     struct geometry g;
     struct plant plant;
     struct plant_sensor sensors[SENSORS];
@@ -253,7 +253,7 @@ static void onto_surface(const struct prepared_body *body, double p[3])
     memcpy(p, hit.point_m, sizeof(hit.point_m));
 }
 
-struct field_shown { /* a field as a level of detail shows it: group, formula, kind of distance and readings */
+struct field_shown { /* a field as shown on a level of detail: group, formula, kind of distance and readings */
     int group;
     bool paper, geodesic;
     unsigned readings;
@@ -496,7 +496,7 @@ static void assert_pixels(const struct prepared_body *body, size_t number, const
     say_errors(body, number, name, "within", errors[0], counts[0]);
     say_errors(body, number, name, "at the outline", errors[1], counts[1]);
     assert_true(counts[0] + counts[1] > PIXELS * 9 / 10);
-    bool large = counts[0] > PIXELS / 2; /* otherwise the body is a few pixels wide, most of them at its outline */
+    bool large = counts[0] > PIXELS / 2; /* otherwise the body is only a few pixels wide, most of them at its outline */
     bool some = counts[0] > PIXELS / 50; /* with fewer pixels inside the outline, percentages mean nothing */
     size_t most_of_1000 = large ? 995 : counts[0] > PIXELS / 10 ? 980 : 950;
     assert_true(!some || errors[0][counts[0] * most_of_1000 / 1000] <= 1 / 255.0);
@@ -552,7 +552,7 @@ static void assert_no_cracks(const struct prepared_body *body, double border_m)
     welded_finish(&places);
 }
 
-/* Asserts that each sensor's own vertex has distance 0 by both measures. */
+/* Asserts that each sensor's own vertex has distance 0, both along the surface and straight. */
 static void assert_sensors(const struct prepared_body *body)
 {
     for (size_t i = 0; i < SENSORS; i++) {
@@ -752,7 +752,7 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
     finish(&body);
 }
 
-/* A fine plate stays as it is, except for the sensors' vertices. */
+/* A fine plate stays as it is, except where sensors add vertices. */
 TEST(straight_edges_are_not_cut)
 {
     struct prepared_body body = { 0 };
@@ -821,7 +821,7 @@ TEST(random_plates_show_the_field)
         assert_sensors(&body);
         if (body.levels.at[0].index_count / 3 < body.own_triangles + 100000)
             assert_field(&body, "random plate", stay, 2);
-        else /* adjacent sensors of one group on a large plate exceed the limit of subdivide.h, which is reported */
+        else /* adjacent sensors of one group on a large plate exceed the limit of subdivide.h, which must be reported */
             assert_true(body.levels.at[0].left[LEVEL_LIMIT_TRIANGLES].edges > 0);
         finish(&body);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shadow lookups by the bounds of tiles equal the lookups of all texels, bit by bit. */
+/* Shadow lookups that use the bounds of tiles equal lookups of all texels, bit by bit. */
 #include "render/soft/lookups.h"
 
 #include "tests/support/test.h"
@@ -11,7 +11,7 @@ struct lookup_counts {
     int told, open, half;
 };
 
-/* Returns the depth at a texel of a random map with flat areas, slopes and noise. */
+/* Returns the depth of a texel in a random map with flat areas, slopes and noise. */
 static uint16_t depth_at(const uint16_t areas[], int x, int y)
 {
     uint16_t area = areas[y / AREA_PX * (SIDE_PX / AREA_PX) + x / AREA_PX];

@@ -159,7 +159,7 @@ static struct score score_of(const struct surface_shape *shape, const double siz
     return (struct score){ score.mean / largest, score.worst / largest };
 }
 
-/* Tests a shape with every fault; the default run takes every other fault, alternating by shape. */
+/* Tests a shape with every fault; the default run tests every other fault, alternating by shape. */
 static void test_shape(const struct surface_shape *shape)
 {
     struct cad clean = { 0 };
@@ -289,7 +289,7 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     struct cad pipe = { 0 }, both = { 0 };
     cad_sphere(&both, &chance, 40);
     cad_cylinder(&pipe, &chance, 48, 60, 3, 0);
-    for (size_t v = 0; v < pipe.vertex_count; v++) { /* the pipe has radius 0.2 and leads from inside the sphere outwards */
+    for (size_t v = 0; v < pipe.vertex_count; v++) { /* the pipe has a radius of 0.2 and leads out of the sphere */
         pipe.positions[v][0] *= 0.2f;
         pipe.positions[v][1] *= 0.2f;
         pipe.positions[v][2] += 0.5f;
@@ -581,7 +581,7 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
     assert_true(worst < 0.03);
 }
 
-/* On the smaller of two pieces, a propagation ends sooner than the one running in parallel. */
+/* On the smaller of two pieces, propagation ends sooner than the one that runs in parallel. */
 TEST(many_sources_at_once_are_as_one_by_one)
 {
     enum { SOURCES = 21 };
@@ -639,7 +639,7 @@ TEST(a_surface_without_area_is_refused)
     assert_null(surface_create(quiet, NULL, line, 3, triangle, 0, &(struct surface_params){ 0 }));
 }
 
-/* Sizes whose squares underflow; the result does not matter, but the computation must end. */
+/* Sizes whose squares underflow: the result does not matter, but the computation must end. */
 TEST(a_speck_ends)
 {
     static const float sizes[] = { 1e-15f, 1e-24f, 1e-30f };

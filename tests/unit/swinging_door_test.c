@@ -67,7 +67,7 @@ static double noise(void)
     return (double)rand() / RAND_MAX - 0.5;
 }
 
-/* Random walks, noise, jumps, flat parts and lost quality: the line is never farther off than promised. */
+/* Random walks, noise, jumps, flat parts and lost quality: the line never deviates by more than promised. */
 TEST(the_line_keeps_its_promise)
 {
     for (unsigned seed = 1; seed <= 300; seed++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tag lists exported by control systems, in various encodings and with various separators; and errors in them. */
+/* Tag lists exported by control systems, in various encodings and with various separators, and errors in them. */
 #include "preprocess/match/tag_export.h"
 
 #include "tests/support/test.h"
@@ -243,7 +243,7 @@ TEST(test_udt_kinds)
     print_message("# %zu of %zu kinds of UDT\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Headers of lists in other languages and from other systems: which columns are recognised. */
+/* Column headers of lists in other languages and from other systems: which columns are recognised. */
 TEST(test_header_kinds)
 {
     static const struct {
@@ -545,7 +545,7 @@ TEST(test_checksum)
     mem_free(bytes);
 }
 
-/* A workbook with a cover, a hidden sheet and a list, and unusual names of its parts. */
+/* A workbook with a cover, a hidden sheet and a list, whose parts have unusual names. */
 TEST(test_sheets)
 {
     struct tag_export list;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fair sharing of render time between addresses, tested by simulating clients and counting the time of each. */
+/* Fair sharing of render time among addresses, tested by simulating clients and measuring the time of each. */
 #include "service/time_accounts.h"
 
 #include "tests/support/test.h"
@@ -26,7 +26,7 @@ TEST(each_address_has_half_of_the_time)
     struct time_account *large = time_accounts_join(&accounts, 1), *small = time_accounts_join(&accounts, 2);
     int64_t had_ns[2] = { 0 };
     for (int i = 0; i < 29; i++)
-        /* further sessions of an address share the account that its first session has */
+        /* further sessions from an address share the account of its first session */
         assert_ptr_equal(time_accounts_join(&accounts, 1), large);
     while (had_ns[0] + had_ns[1] < 60 * NS_PER_S) {
         struct time_account *next = who_has_had_less(large, small);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The token file: which tokens are accepted, which are revoked, and which files accept nobody. */
+/* The token file: which tokens are accepted, which are revoked, and which files admit nobody. */
 #include "access/tokens.h"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light packed into 32 bits decodes within half a step of its largest channel. */
+/* Light packed into 32 bits decodes to within half a step of its largest channel. */
 #include "tests/support/test.h"
 
 #include "render/soft/tones.h"

@@ -70,7 +70,7 @@ static size_t nearest_vertex(const struct cad *shape, const double point[3])
     return best;
 }
 
-/* On a plane a vector stays constant, also around slots; on a separate plate it is unknown. */
+/* On a plane a vector stays constant, even around slots; on a separate plate it is unknown. */
 TEST(test_plane)
 {
     struct carried c = { 0 };
@@ -126,7 +126,7 @@ TEST(test_accordion)
     finish(&c);
 }
 
-/* Transport along great circles up to near the antipode, where all of them meet. */
+/* Transport along great circles until close to the antipode, where all of them meet. */
 TEST(test_sphere)
 {
     struct carried c = { 0 };

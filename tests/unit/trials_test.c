@@ -148,7 +148,7 @@ CASE(test_what_it_does_not_touch_is_shared)
     assert_int_equal(plain->version, version);
 }
 
-/* Each step of a drag replaces a trial; none of the replaced ones stays in memory. */
+/* Each step of a drag replaces a trial, and no replaced trial stays in memory. */
 CASE(test_dragging_leaves_nothing_behind)
 {
     uint32_t id = 0, first = 0;

@@ -164,7 +164,7 @@ CASE(rows_are_in_their_own_unit)
     }
 }
 
-/* An expression computes in the units of the tag rows that it uses. */
+/* An expression is computed in the units of the tag rows that it uses. */
 CASE(derived_tags_compute_as_rows_say)
 {
     plant_case_load(c, yaml,
@@ -245,7 +245,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
         struct history_reader *reader = history_reader_create(log, pass ? again : folder);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 9 * US_PER_S, 100, &series), 0);
         history_reader_destroy(&reader);
-        assert_int_equal(series.points.count, 4); /* four points, including the one without a value after which no line is drawn */
+        assert_int_equal(series.points.count, 4); /* four points, including one without a value, after which the line ends */
         for (int i = 0; i < 3; i++)
             assert_true(fabs(series.points.at[i].value - (i < 2 ? 100 : 50)) < 1e-6);
         series_text_csv_head(&out, false);
@@ -282,7 +282,7 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
         struct history_tag *tags = history_tags(c->plant);
         struct snapshot *snapshot = snapshot_create(1);
         struct history_series points, buckets;
-        /* in the second pass the reader knows no plant, and takes the unit from the month file */
+        /* in the second pass the reader knows no plant and takes the unit from the month file */
         history_reader_show_by(reader, pass ? NULL : c->plant);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 7200 * US_PER_S, 20000, &points), 0);
         assert_int_equal(history_intervals(reader, "F", start_us, start_us + 3600 * US_PER_S, 10, &buckets), 0);

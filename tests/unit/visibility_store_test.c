@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The store of visibility buffers: lookup by shape, memory limit, least recently used evicted first. */
+/* The store of visibility buffers: lookup by shape, memory limit, and eviction of the least recently used. */
 #include "tests/support/test.h"
 
 #include "render/soft/visibility_store.h"

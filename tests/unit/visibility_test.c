@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility: shown, ghosted, hidden and clipped assets, and the messages by which clients set them. */
+/* Visibility: shown, ghosted, hidden and clipped assets, and the client messages that set them. */
 #include "message/visibility.h"
 
 #include "tests/support/test.h"

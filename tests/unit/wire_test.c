@@ -125,7 +125,7 @@ TEST(every_cut_of_a_frame_is_refused)
     mem_free(bytes);
 }
 
-/* An accepted header is within its ranges and is written back as it was read. */
+/* The values of an accepted header are within their ranges, and it is written back unchanged. */
 TEST(random_headers_are_refused_or_sane)
 {
     unsigned seed = (unsigned)sweep_seed(), accepted = 0;

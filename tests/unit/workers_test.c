@@ -95,7 +95,7 @@ static void loop_in_a_job(void *arg)
     workers_for(nested->workers, COUNT, 16, visit, &nested->range);
 }
 
-/* More loops than threads, all at once: none may wait for a helper that never comes. */
+/* More concurrent loops than threads: none may wait for a helper that never comes. */
 TEST(loops_inside_of_jobs_end)
 {
     struct nested jobs[8];
