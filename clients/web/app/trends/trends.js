@@ -60,6 +60,7 @@ export class Trends {
         const { session, overlay, handlers } = page;
         Object.assign(this, { page, session, tags: [], plots: [], focus: null, isAsking: false });
         Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
+        this.unread = null; // the text in the range field, if it was not understood
         this.isChosen = false; // whether a user or a wall has chosen the time range
         this.unknown = []; // names that the plant has no tag for
         this.undrawn = []; // names beyond the largest number of tags
@@ -95,9 +96,10 @@ export class Trends {
         byId('trend-ranges').append(...EXAMPLES.map((name) => make('option', { value: say(`trends.example.${name}`) })));
         const range = byId('trend-range'), add = byId('trend-add');
         // the browser filters the list of example ranges by the field's text, so the text becomes the placeholder while the field has the
-        // focus
-        range.addEventListener('focus', () => Object.assign(range, { placeholder: range.value, value: '' }));
+        // focus; a text that was not understood stays, so that users can correct it
+        range.addEventListener('focus', () => this.unread === null && Object.assign(range, { placeholder: range.value, value: '' }));
         range.addEventListener('blur', () => { range.value ||= range.placeholder; });
+        range.addEventListener('input', () => this.markRange(null));
         add.addEventListener('input', () => this.offer(add.value));
         for (const [field, f] of [[range, () => this.typeRange()], [add, () => this.typeTag()]]) {
             field.addEventListener('change', f);
@@ -322,12 +324,20 @@ export class Trends {
         if (!text)
             return;
         const range = readRange(text, this.nowUs, this.zone);
-        field.toggleAttribute('aria-invalid', !range);
+        this.markRange(range ? null : text);
         if (!range)
-            return void this.note(say('trends.unread', { text, example: say('trends.example.night') }));
-        this.note('');
+            return;
         this.goTo(range);
         field.blur();
+    }
+
+    // Marks the text in the range field as not understood, with a message below the charts; null: removes both.
+    markRange(unread) {
+        byId('trend-range').setAttribute('aria-invalid', String(unread !== null));
+        if (unread === this.unread)
+            return;
+        this.unread = unread;
+        this.note(this.words());
     }
 
     // Returns the time range as a text that readRange() understands.
@@ -344,8 +354,10 @@ export class Trends {
 
     showRange() {
         const field = byId('trend-range'), text = this.zone ? this.rangeText() : '';
-        if (document.activeElement !== field)
+        if (document.activeElement !== field) {
             field.value = text;
+            this.markRange(null);
+        }
         field.placeholder = text;
         markSegment(byId('trend-span'), this.fixed ? '' : String(this.spanS));
         byId('trend-back').disabled = this.before.length === 0;
@@ -422,13 +434,16 @@ export class Trends {
         setText(byId('trend-note'), text);
     }
 
-    // Returns what the charts do not show: periods without values, unknown names, and tags beyond the largest number.
+    // Returns why a typed range was not understood, and what the charts do not show: periods without values, unknown names, and tags beyond
+    // the largest number.
     words() {
         const [from, to] = this.span ?? this.range;
         const lacks = (one) => gaps(one, from, to).some(({ severity }) => severity === BAD);
         const lacking = [...this.series.values()].filter(lacks).map(({ tag }) => tag);
-        return [['gaps', lacking], ['unknown', this.unknown], ['undrawn', this.undrawn]].filter(([, names]) => names.length > 0)
-            .map(([key, names]) => say(`trends.${key}`, { tags: names.join(', '), count: MOST })).join(' · ');
+        const unread = this.unread === null ? [] : [say('trends.unread', { text: this.unread, example: say('trends.example.night') })];
+        const unshown = [['gaps', lacking], ['unknown', this.unknown], ['undrawn', this.undrawn]].filter(([, names]) => names.length > 0)
+            .map(([key, names]) => say(`trends.${key}`, { tags: names.join(', '), count: MOST }));
+        return [...unread, ...unshown].join(' · ');
     }
 
     // Requests the alarms of the tags in the time range, and earlier ones, which may last into the range.
