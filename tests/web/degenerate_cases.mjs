@@ -15,6 +15,7 @@ import * as history from '../../clients/web/core/history.js';
 import * as instant from '../../clients/web/core/instant.js';
 import * as labels from '../../clients/web/core/labels.js';
 import * as legend from '../../clients/web/core/legend.js';
+import * as limitNames from '../../clients/web/core/limit_names.js';
 import * as listWindow from '../../clients/web/core/list_window.js';
 import * as measure from '../../clients/web/core/measure.js';
 import * as meters from '../../clients/web/core/meters.js';
@@ -39,8 +40,8 @@ import * as drift from '../../clients/web/app/cards/drift.js';
 import * as toolbar from '../../clients/web/app/toolbar/toolbar.js';
 
 const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlight, camera_moves: cameraMoves, clip_gizmo: clipGizmo,
-    declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, pins,
-    query, scroll, section, split_view: splitView, sun, timings, trend_range: trendRange, trend_values: trendValues, vector, wall, wire,
+    declutter, format, gestures, history, instant, labels, legend, limit_names: limitNames, list_window: listWindow, measure, meters,
+    nearest, patterns, pins, query, scroll, section, split_view: splitView, sun, timings, trend_range: trendRange, trend_values: trendValues, vector, wall, wire,
     'app/alarm_bar': alarmBar, 'app/chart_style': chartStyle, 'app/drift': drift, 'app/toolbar': toolbar };
 globalThis.devicePixelRatio = 1; // charts are drawn in device pixels
 export const CASES = [];
@@ -191,6 +192,12 @@ add('history', 'nextTo', [marks, 1.5e6, false], ENDS);
 add('history', 'clustered', [marks, 2e6], ENDS);
 add('history', 'density', [marks, 0, 10e6, 20], ENDS);
 add('history', 'arrowS', [3600], ENDS);
+const plotBox = { left: 10, top: 5, width: 300, height: 90 }, lines = [{ y: 20, words: 'A H 3' }, { y: 30, words: 'A L 1', short: 'L 1' }];
+const curve = (...given) => limitNames.extentOf(...given, (s) => s, (value) => value);
+add('limit_names', 'extentOf', [plotBox, [10, 50, 300], [20, 60, 40], [[[10, 50, 15, 25]]]], { ends: true, call: curve });
+const namesAt = (limits, bbox, x, y, height, gap) =>
+    limitNames.placeNames({ limits, bbox, extents: [curve(bbox, x, y, [])], widthOf: (text) => 6 * text.length, height, gap });
+add('limit_names', 'placeNames', [lines, plotBox, [10, 50, 300], [20, 60, 40], 15, 5], { ends: true, call: namesAt });
 add('trend_range', 'zoomed', [[0, 100e6], 0.5, 25e6, 200e6], ENDS);
 add('trend_range', 'panned', [[0, 100e6], 0.5, 200e6], ENDS);
 add('trend_range', 'newSpanS', [5000], ENDS);

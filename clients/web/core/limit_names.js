@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds places for the names of alarm limits in a chart, at their lines and next to the curves.
 
-const COLUMN_PX = 3; // width of the columns in which the extent of a curve is stored, in device pixels
+// COLUMN_PX: width of the columns in which the extent of a curve is stored, in device pixels; MOST_PX: largest width of a chart
+const COLUMN_PX = 3, MOST_PX = 30000;
 
 // Extent of one curve and its band: the highest and the lowest position in each column of the chart.
 class Extent {
     constructor({ left, width }) {
         this.left = left;
-        this.tops = new Array(Math.ceil(width / COLUMN_PX) + 1).fill(Infinity);
+        this.tops = new Array(Math.ceil(width > 0 && width < MOST_PX ? width / COLUMN_PX : 0) + 1).fill(Infinity);
         this.bottoms = this.tops.map(() => -Infinity);
     }
 
@@ -66,7 +67,8 @@ export function placeNames({ limits, bbox, extents, widthOf, height, gap }) {
     const placeOf = (limit, text, away) => {
         const highest = bbox.top + height / 2, lowest = bbox.top + bbox.height - height / 2, wide = widthOf(text);
         const middle = Math.min(lowest, Math.max(highest, limit.y + away));
-        for (let left = bbox.left + gap; left + wide <= bbox.left + bbox.width; left += COLUMN_PX) {
+        const columns = Math.min(bbox.width, MOST_PX) / COLUMN_PX;
+        for (let k = 0, left = bbox.left + gap; k < columns && left + wide <= bbox.left + bbox.width; k++, left += COLUMN_PX) {
             const box = { ...limit, text, left, right: left + wide, top: middle - height / 2, bottom: middle + height / 2 };
             if (isFree(box) && !(away && crosses(box, limit.y)))
                 return box;
