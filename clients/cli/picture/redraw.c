@@ -13,8 +13,7 @@
 #include "value/quality.h"
 
 /* Copies the arguments of the snapshot query in the picture's signed statement to *options, except `at`: a relative `at=-8h`
-   would mean another instant today, and the statement also has the absolute instant. Returns false if an argument is invalid.
-   */
+   would mean another instant today, and the statement also has the absolute instant. Returns false if one is invalid. */
 static bool take_query(const json_t *statement, struct snapshot_options *options)
 {
     const json_t *args = json_object_get(statement, "query");

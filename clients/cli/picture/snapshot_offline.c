@@ -29,7 +29,7 @@ static void print_pick(struct offline_renderer *offline, const struct snapshot_o
     mem_free(answer);
 }
 
-/* Reads the recorded values of an instant, if the options give an instant but no file of values. Returns false on failure, printed. */
+/* If the options have an instant but no values file, reads the values recorded at that instant. Returns false on failure (printed). */
 static bool go_back(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view)
 {
     return !options->at || options->value_count > 0 ||

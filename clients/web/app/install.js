@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reloads a page that the browser cached from another version of the server. Registers the service worker, which lets users install the
-// page, if the page came over https.
+// Reloads a page that the browser has cached from another version of the server. Registers the service worker, which lets users
+// install the page, if the page came over https.
 import { store, stored } from './common/storage.js';
 
 const versionIn = (text) => text.match(/version = '(\w+)'/)?.[1];
 const fetched = (options) => fetch('made/version.js', options).then((answer) => (answer.ok ? answer.text() : ''), () => '');
-const ours = fetched({}).then(versionIn); // undefined: built without a version
+const ours = fetched({}).then(versionIn); // undefined: this build has no version
 
 // Compares the version of the page with that of the server, which may have been updated. Called at each `welcome` of the server and when a
 // module is loaded late. Returns true if the page reloads, which it does once per version. key: name under which the version is stored;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loads modules that the first picture does not need, on their first use: script, style sheets, markup. With the first module it also loads
-// the words that all these modules share.
+// Loads modules that the first picture does not need, on their first use: script, style sheets, markup. The first module also
+// loads the words that all these modules share.
 import { learnWords, say } from '../core/words.js';
 import { sayAll, styled } from './common/dom.js';
 import { renewIfOld } from './install.js';
 
 const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // retry interval, first and longest
 
-// For each module: file below app/ without extension, class, style sheets, and id of the element that its markup fills. wordless: the
-// module needs no words loaded later; words: it has its own file of words.
+// For each module: file below app/ without extension, class, style sheets, and id of the element that its markup fills.
+// wordless: needs no words loaded later; words: has its own file of words.
 const MODULES = {
     about: { file: 'assets/about', type: 'About', styles: ['assets/about'] },
     account: { file: 'sharing/account', type: 'Account', styles: ['help/help', 'sharing/account'] },
@@ -65,9 +65,9 @@ export class LazyModules {
         Object.assign(this, { page, tell });
         this.made = new Map();     // created parts by name
         this.awaited = new Map();  // name -> promise of a module that is being loaded
-        this.uses = new Map(); // name -> Map of callbacks by kind, which are called once the module is loaded
+        this.uses = new Map(); // name -> Map of callbacks by kind, called once the module is loaded
         this.missed = new Set();   // names of modules that the user waits for and that failed to load, without a message to the user so far
-        this.pauses = new Set();   // functions that end the wait before a retry at once
+        this.pauses = new Set();   // functions that end a retry's wait at once
     }
 
     // Returns a module by its name if it is loaded, else undefined.
@@ -75,8 +75,8 @@ export class LazyModules {
         return this.made.get(name);
     }
 
-    // Calls f with a module, which it loads first if necessary. Of several waiting callbacks of one kind only the last is called: pressing
-    // a button again while its panel loads must not close the panel.
+    // Calls f with a module, loading it first if necessary. Of several waiting callbacks of one kind, only the last is called:
+    // pressing a button again while its panel loads must not close the panel.
     async use(name, f, kind = f) {
         if (this.made.has(name)) {
             f(this.made.get(name));
@@ -88,14 +88,14 @@ export class LazyModules {
         wishes?.forEach((wish) => wish(part));
     }
 
-    // Drops the callbacks that wait for modules that did not load.
+    // Drops the callbacks that wait for modules whose loading failed.
     giveUp() {
         this.uses.clear();
         this.missed.clear();
     }
 
-    // Returns a promise of a module, which it loads if necessary. A failure is shown to the user, and loading is tried again until it
-    // succeeds.
+    // Returns a promise of a module, loading it if necessary. Shows a failure to the user, and retries until the module is
+    // loaded.
     get(name) {
         if (!this.made.has(name)) {
             this.missed.add(name);
@@ -104,7 +104,7 @@ export class LazyModules {
         return this.prepare(name);
     }
 
-    // Loads a module in advance. Failures are not shown, because the user has not asked for the module yet.
+    // Loads a module in advance. Failures are not shown, because the user has not asked for it yet.
     prepare(name) {
         if (!this.awaited.has(name))
             this.awaited.set(name, this.bring(name));
@@ -127,20 +127,20 @@ export class LazyModules {
         }
     }
 
-    // Tries to load modules again without waiting, because the server is reachable again or the user asks again.
+    // Retries loading modules without waiting, because the server is reachable again or the user asks again.
     retryNow() {
         for (const go of this.pauses)
             go();
         this.pauses.clear();
     }
 
-    // Loads a module. Browsers may remember a failed fetch of a module's URL forever, so further tries add another query to the URL.
+    // Loads a module. Browsers may remember a failed fetch of a URL forever, so retries add another query to it.
     async load(name, tries) {
         const { file, type, styles = [], fills, wordless, words } = MODULES[name], again = tries > 0 ? `?again=${tries}` : '';
         const [module, markup] = await Promise.all([import(`./${file}.js${again}`), fills && markupOf(file), wordless || learnWords(),
             words && learnWords(words), ...styles.map(styled)]);
         if (await renewIfOld())
-            // never resolves, because the page is about to reload: script and page may be of different versions
+            // never resolves: the page is about to reload, because script and page may be of different versions
             return new Promise(() => {});
         if (fills) {
             const element = document.getElementById(fills);

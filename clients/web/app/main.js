@@ -26,7 +26,7 @@ const modules = new LazyModules(page, tell);
 const does = (name) => (...given) => modules.use('commands', (commands) => commands[name](...given));
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
-// one legend is enough if the legends of both halves of a split view would be equal
+// one legend suffices if both halves of a split view would have the same
 const isShared = (params, right) => right && legend.contents(params) === legend.contents(right);
 const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
     paramsOf: (params) => !isShared(params, rightOf(params)) && params });
@@ -64,7 +64,7 @@ const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snaps
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 
-// Stores the pointer's position for commands.js, which may still be loading, and passes it on once that is loaded.
+// Stores the pointer's position for commands.js, and passes it on once that module is loaded.
 function point(place) {
     page.pointed = place;
     modules.there('commands')?.point(place);
@@ -75,7 +75,7 @@ page.handlers = {
     group: does('group'),
 };
 listenToInput(byId('viewport'), modules);
-// A finger gives no warning before its first touch, unlike a mouse, so the code that follows it is loaded after the first picture.
+// Unlike a mouse, a finger gives no warning before its first touch, so the camera controller is loaded after the first picture.
 if (window.matchMedia('(pointer: coarse)').matches)
     session.on('frame', () => modules.prepare('cameraController'));
 
@@ -174,13 +174,13 @@ session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
-// Loads the panel of views, and then a module whose content is shown inside that panel.
+// Loads the panel of views, and then a module shown inside it.
 async function bring(name) {
     await modules.get('views');
     modules.get(name);
 }
 
-// Opens the saved view that the URL names, or takes parameters from that view, once the server has sent the list of views.
+// Opens the saved view named in the URL, or takes parameters from it, once the server has sent the list of views.
 let fields = new URLSearchParams(location.hash.slice(1));
 session.named = fields.get('named');
 session.on('views', () => {
@@ -192,7 +192,8 @@ session.on('views', () => {
     fields = new URLSearchParams();
 });
 
-// Shows what the link that opened the page names. Reports parts of the link, or of the previous view, that this plant does not have.
+// Shows what is named in the link that opened the page. Reports parts of the link, or of the previous view, that this plant
+// does not have.
 let arrived = false, astray = [];
 session.on('astray', (message) => astray.push(message));
 function arrive() {
@@ -207,14 +208,14 @@ let toastTimer;
 session.on('error', async ({ text, about, code, refusal }) => {
     console.warn(`error about ${about}: ${text}`);
     if (['ack', 'share_view'].includes(about))
-        // shows no message for two kinds of requests: the user does not cause acknowledgements, and if a view gets no short link, the share
-        // dialog shows the long link
+        // no message for two kinds of requests: acknowledgements, which the user does not cause, and short links, without which
+        // the share dialog shows the long link
         return;
     const { put, refusalText } = await import('../core/refusals.js');
     tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });
 
-// Reports that an action took effect, but that the server could not, or not completely, write it to its disk.
+// Reports that an action took effect, but that the server could not write it to its disk, or not completely.
 session.on('unkept', async ({ not_kept: count, why, refusal, unaudited, unaudited_refusal: missing }) => {
     const { put, refusalText } = await import('../core/refusals.js');
     tell(count ? put('page.unkept', { text: refusalText(why, refusal) })
@@ -230,7 +231,7 @@ function tell(text, ms = TOAST_MS) {
 
 // --- the page
 
-// Returns true if the user has changed nothing since the page opened; the URL then stays unchanged.
+// Returns true if the user has changed nothing since the page opened, so that the URL stays unchanged.
 const isUntouched = () => !location.hash && session.paramsSeq <= 1 && !moved && !selection.tag && session.time.atUs === null;
 
 let addressTimer;
@@ -267,11 +268,11 @@ for (const query of ['(forced-colors: active)', '(prefers-contrast: more)'].map(
     wear();
 }
 serveInstalled();
-// Loads the button that shows the plant on a VR headset, if the browser supports headsets and one is connected, now or later.
+// Loads the button that shows the plant on a VR headset, if the browser supports headsets and one is connected now or later.
 const offerVr = () => navigator.xr?.isSessionSupported('immersive-vr').then((yes) => yes && modules.prepare('enterVr'), () => {});
 navigator.xr?.addEventListener('devicechange', offerVr);
 offerVr();
-// Loads the watchdog of the main thread; if the server does not answer, tries again later.
+// Loads the watchdog of the main thread; retries later if the server does not answer.
 const watch = () => setTimeout(() => import('./common/watchdog.js').then(({ watchMainThread }) => watchMainThread(
     { scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window })).catch(watch), WATCH_AFTER_MS);
 // no watchdog in a pane of a wall: the pane has the same main thread as the wall's page, which has a watchdog

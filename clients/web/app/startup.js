@@ -11,7 +11,7 @@ import { chooseTheme } from './common/theme.js';
 import { Viewport } from './viewport/viewport.js';
 
 const query = new URLSearchParams(location.search);
-// if `wall` in the URL is not the size in inches and metres but the id of a wall, goes to that wall's page
+// if `wall` in the URL is the id of a wall, not a size in inches and metres, opens that wall's page
 if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) {
     location.replace(`wall.html${location.search}`);
     await new Promise(() => {}); // never resolves, because the browser is leaving for that page
@@ -23,7 +23,8 @@ document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);
 export const narrow = window.matchMedia('(max-width: 1023px)'); // true on narrow screens, where the equipment list covers the picture
-// touch screens load the style sheet for narrow screens at the start: if the user turns the device later, the server may be unreachable
+// touch screens load the style sheet for narrow screens at the start, because the server may be unreachable when the user turns
+// the device
 const turned = window.matchMedia('(any-pointer: coarse)');
 const fold = () => Promise.all([(narrow.matches || turned.matches) && styled('common/narrow'), phone.matches && !query.has('wall') &&
     styled('common/sheet')])
@@ -64,8 +65,8 @@ export const session = new Session({ connection, now: clock.now, wanted, codecs:
 session.wantsDepth = !query.has('wall') && 'WebGL2RenderingContext' in globalThis;
 session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
-// After a reload, followers find this session again, because it resumes with its secret. The secret is stored only from one page to the
-// next, so that two tabs never share it.
+// After a reload, followers find this session again, because it resumes with its secret. The secret is stored only between two
+// pages, so that two tabs never share it.
 session.resume = sessionStorage.getItem('resume');
 session.anew = session.resume !== null;
 sessionStorage.removeItem('resume');

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alarm bar at the top of the page: always visible, it counts the alarms. The alarm list is loaded when the user first opens it.
+// The alarm bar at the top of the page, always visible, with the numbers of alarms. The alarm list is loaded when the user
+// first opens it.
 import { decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
@@ -8,8 +9,8 @@ export const badge = (priority, hollow = false) => make('span', {
     class: `priority p${priority}${hollow ? ' hollow' : ''}`, title: say(hollow ? 'alarms.gone' : 'alarms.priority', { priority }),
 }, String(priority));
 
-// Returns since when an alarm's tag has had no usable reading, so that the alarm keeps its state; null if the tag has a usable reading or
-// never had one.
+// Returns the time since which an alarm's tag has had no usable reading, so that the alarm keeps its state; null if the tag has
+// a usable reading or never had one.
 export function heldSince(session, { tag, kind }) {
     const { model, time } = session, bad = model.readings[tag.index]?.quality === 'bad';
     const ageMs = bad && kind !== 'BAD' ? model.ageMs(tag.index, session.now()) : null, nowUs = time.atUs ?? session.clockUs();
@@ -19,10 +20,9 @@ export function heldSince(session, { tag, kind }) {
     return then.date === clock(nowUs / 1000).date ? minute : `${then.day} ${minute}`;
 }
 
-// Returns the values of an alarm as text, in three parts: the value at which the alarm was raised; the present value, or since when there
-// is no usable one; the limit. For an alarm without a limit, the text has only the time since when there is no usable value, or is empty.
-// If `fresh` is false (no messages arrive from the server), a dash replaces the present value. While the past is shown, the second part is
-// left out.
+// Returns an alarm's values as three texts: the value that raised it; the present value, or since when there is no usable one;
+// the limit. Without a limit, there is only the time since when there is no usable value, or an empty text. fresh false (no
+// messages arrive from the server): a dash replaces the present value. While the past is shown, the second text is left out.
 export function limitText(session, alarm, fresh) {
     const { model, time } = session, { tag, value, limit } = alarm, isPast = time.atUs !== null;
     const since = fresh && !isPast ? heldSince(session, alarm) : null, held = since && say('alarms.since', { time: since });
@@ -48,7 +48,7 @@ export class AlarmBar {
         return this.session.model?.alarms ?? null;
     }
 
-    // fresh false: the server is silent, and the bar shows the alarms as of the server's last message.
+    // fresh false: the server is silent; the bar shows the alarms as of its last message.
     setFresh(fresh) {
         this.fresh = fresh;
         document.body.classList.toggle('stale', !fresh);

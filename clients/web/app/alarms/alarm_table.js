@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table element of the alarm list and of the alarm journal: sortable columns, and the cells that both tables have.
+// The table element shared by the alarm list and the alarm journal: sortable columns and common cells.
 import { nextSort, sortable, sortRows } from '../../core/alarm_table.js';
 import { isGone } from '../../core/alarms.js';
 import { ageText, decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
@@ -15,8 +15,8 @@ const ICONS = {
 };
 
 export class AlarmTable {
-    // table: an empty <table>; select: a selection list with the same sort orders, for screens without column titles; pick: node in the
-    // title of the first column, which selects rows, or null. changed(): called after the user has chosen another sort order.
+    // table: an empty <table>; select: a selection list of the sort orders, for screens without column titles; pick: node in
+    // the first column's title that selects rows, or null. changed(): called after the user changes the sort order.
     constructor(table, select, pick, changed) {
         Object.assign(this, { select, changed, sort: { by: null, down: false } });
         this.heads = COLUMNS.filter(sortable).map((name) => [name, make('th', { scope: 'col', 'data-col': name, 'aria-sort': 'none' },
@@ -43,8 +43,8 @@ export class AlarmTable {
         return sortRows(rows, this.sort);
     }
 
-    // Fills a <tbody>. said(row) is the row's text. A row whose text did not change keeps its element, so that a button does not move while
-    // the user presses it. Returns [[element, row]].
+    // Fills a <tbody>. said(row) returns the row's text. A row whose text did not change keeps its element, so that a button
+    // does not move while the user presses it. Returns [[element, row]].
     fill(body, rows, said, draw) {
         const before = new Map([...body.children].map((element) => [element.said, element]));
         const drawn = rows.map((row) => {
@@ -65,8 +65,8 @@ function textsOf(model, tag) {
     return { unit: unitText(tag.unit || group?.unit), text: (value) => (value === null ? '' : numberText(value, decimals)) };
 }
 
-// Returns the text and the title of a cell with a value from the journal. The journal row may have another unit than the tag has now, or an
-// unknown one (null).
+// Returns text and title of a cell with a value from the journal. The journal row's unit may differ from the tag's current one,
+// or be unknown (null).
 function thenTexts(model, { tag, unit: was }, value) {
     const { text, unit } = textsOf(model, tag), then = text(value);
     if (then === '' || was === undefined || (was !== null && unitText(was) === unit))
@@ -74,8 +74,8 @@ function thenTexts(model, { tag, unit: was }, value) {
     return was === null ? [`${then} ?`, say('journal.nounit')] : [`${then} ${unitText(was)}`, null];
 }
 
-// Returns the present value and its unit as texts. The value is a dash while the past is shown, or if `fresh` is false: no messages arrive
-// from the server.
+// Returns the present value and its unit as texts. A dash replaces the value while the past is shown, or, with fresh false,
+// while no messages arrive from the server.
 function nowTexts({ model, time }, tag, fresh) {
     const { text, unit } = textsOf(model, tag), reading = tag.index === null ? null : model.readings[tag.index];
     if (!reading)
@@ -83,7 +83,7 @@ function nowTexts({ model, time }, tag, fresh) {
     return !fresh || time.atUs !== null ? ['–'] : reading.quality === 'bad' ? [say('novalue')] : [text(reading.value), unit];
 }
 
-// Updates the cells that change while the alarm does not: the present value and the age.
+// Updates the cells that change although the alarm does not: the present value and the age.
 export function refreshCells(session, element, row, fresh) {
     const now = session.clockUs(), cell = element.querySelector('[data-col=now]');
     const [value, unit = ''] = nowTexts(session, row.tag, fresh), text = unit ? `${value} ${unit}` : value;
@@ -104,8 +104,9 @@ function timeText(session, us) {
 const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'alarm-go', title: say('alarms.fly', { tag: tag.name }),
     onclick: () => fly(tag) }, name);
 
-// Returns the <tr> for a row of the alarm list or of the journal. The two pass different parts: look (attributes of the <tr>), pick
-// (checkbox), state (text), note and also (texts in the description), buttons. fly(tag): called when the user presses the tag's button.
+// Returns the <tr> for a row of the alarm list or the journal, which pass different parts: look (attributes of the <tr>), pick
+// (checkbox), state (text), note and also (texts in the description), buttons. fly(tag): called when the user presses the tag's
+// button.
 export function rowOf(session, row, fresh, { look, pick, state, note, also = '', buttons, fly }) {
     const { tag, kind, priority } = row, name = make('b', {}, tag.name);
     const cell = (col, title, ...content) => make('td', { 'data-col': col, title }, ...content);

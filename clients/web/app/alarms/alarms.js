@@ -13,7 +13,7 @@ import { asOf, heldSince } from './alarm_bar.js';
 import { addEdge } from './panel_edge.js';
 import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
-const SHOWN = 200; // maximum number of rows of the alarm list in the document
+const SHOWN = 200; // maximum number of the alarm list's rows in the document
 // true on wide screens; on narrower ones the list covers the equipment list (alarms.css)
 const WIDE = window.matchMedia('(min-width: 1200px)');
 const WHICH = ['all', 'waiting', 'active', 'gone'];
@@ -79,7 +79,7 @@ export class AlarmList {
 
     setOpen(open) {
         for (const name of open ? ['engineer', 'import'] : [])
-            this.modules.there(name)?.close(); // closes other panels, which use the same space
+            this.modules.there(name)?.close(); // closes the other panels, which share this space
         this.shareRoom(open);
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
@@ -91,7 +91,7 @@ export class AlarmList {
             byId('alarm-strip').focus();
     }
 
-    // Closes the equipment list while the alarm list is open, so that the picture keeps room, and opens it again afterwards.
+    // Closes the equipment list while the alarm list is open, to leave room for the picture, and reopens it afterwards.
     shareRoom(open) {
         const assets = this.modules.there('assets');
         if (open && assets?.open && WIDE.matches) {
@@ -103,7 +103,7 @@ export class AlarmList {
         }
     }
 
-    // Switches the panel to the tab with the journal (journal true) or to the tab with the present alarms.
+    // Switches the panel to the tab with the journal (journal true) or the present alarms.
     turnTo(journal, focus = false) {
         for (const [id, on] of [['alarms-tab', !journal], ['journal-tab', journal]]) {
             byId(id).setAttribute('aria-selected', on);
@@ -127,7 +127,7 @@ export class AlarmList {
             this.modules.there('journal')?.rest();
     }
 
-    // Role of the user, which decides about the actions offered; null while no messages arrive from the server.
+    // The user's role, which decides which actions are offered; null while no messages arrive from the server.
     get role() {
         return this.overlay.fresh ? this.session.role : null;
     }
@@ -154,7 +154,7 @@ export class AlarmList {
             this.modules.there('journal')?.show();
     }
 
-    // Returns an alarm with the members that the table shows and sorts by.
+    // Returns an alarm plus the members that the table shows and sorts by.
     rowOf = (alarm) => ({ ...alarm, us: alarm.raisedUs, area: areaOf(this.session.model, alarm.tag), about: alarm.tag.description ?? '' });
 
     showList() {
@@ -177,16 +177,16 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Returns the settings of the alarm list's filter as texts (search words, state, priority, area), which a button shows. The journal is
-    // not filtered by state.
+    // Returns the alarm list's filter settings (search words, state, priority, area) as texts for a button. The journal is not
+    // filtered by state.
     get applied() {
         const { words, which, priority, area } = this.filter;
         return [words.trim() && `“${words.trim()}”`, !this.journalOpen && which !== 'all' && say(`which.${which}`),
             priority && say('alarms.priority', { priority }), area].filter(Boolean);
     }
 
-    // Shows what the filter chooses, on a button that ends the filter: on small screens the filter's fields may be out of sight. range: the
-    // journal's time range, which the button does not end; it is shown where the field of the range is hidden (common/sheet.css).
+    // Shows the filter settings on a button that clears them: on small screens the filter's fields may be out of sight. range:
+    // the journal's time range, shown where its field is hidden (common/sheet.css); the button does not clear it.
     showApplied(count, all, applied, range = '') {
         const button = byId('alarms-applied'), some = applied.length > 0;
         button.hidden = !some && !range;
@@ -197,7 +197,7 @@ export class AlarmList {
         button.setAttribute('aria-label', button.title);
     }
 
-    // Ends the filter whose choices the button `alarms-applied` shows.
+    // Clears the filter settings that the button `alarms-applied` shows.
     unfilter() {
         for (const [name, id] of Object.entries(FILTERS))
             if (name !== 'which' || !this.journalOpen)
@@ -229,7 +229,7 @@ export class AlarmList {
         setText(head.querySelector('th'), say('alarms.aside', { count }));
     }
 
-    // Returns the text of an alarm in which the filter searches.
+    // Returns the text of an alarm that the filter searches.
     textOf({ tag, kind }) {
         const asset = this.session.model.asset(tag.asset);
         return [tag.name, tag.description, kind, say(`kind.${kind}`), tag.asset, asset?.tag, asset?.description].filter(Boolean).join(' ');
@@ -242,7 +242,7 @@ export class AlarmList {
 
     // --- selecting rows of the alarm list, and actions on all selected alarms
 
-    // Returns the ids and times of a row's alarms as a text. As long as the text stays the same, the row has the alarms that the user has
+    // Returns the ids and raise times of a row's alarms as text. While it stays the same, the row has the alarms that the user
     // selected.
     signatureOf = (row) => allOf(row).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();
 
@@ -264,7 +264,7 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Selects a row; with the Shift key also the rows between it and the row that was pressed before.
+    // Selects a row; with the Shift key also the rows between it and the last pressed row.
     chooseUpTo(row, on, isRange) {
         const at = (name) => this.rows.findIndex(({ tag }) => tag.name === name), here = at(row.tag.name);
         const from = isRange && at(this.pressed) >= 0 ? at(this.pressed) : here;
@@ -323,8 +323,8 @@ export class AlarmList {
             actOnAlarm(this.session, action, some, more);
     }
 
-    // Calls f, which rebuilds rows, and then gives the keyboard focus back to the same alarm, or to the next row if that alarm is no longer
-    // listed.
+    // Calls f, which rebuilds rows, then returns the keyboard focus to the same alarm, or to the next row if that alarm is
+    // gone.
     keepFocus(f) {
         const held = document.activeElement, row = held.closest('#alarms-now tbody tr');
         const place = row && [...row.parentElement.children].indexOf(row);
@@ -347,8 +347,8 @@ export class AlarmList {
 
     // --- rows
 
-    // Returns the text of a row in addition to its columns: the end of shelving, the user who last acted on the alarm, the reason, and
-    // whether the measurement is bad.
+    // Returns the parts of a row's text that its columns do not show: the end of shelving, the user who last acted on the
+    // alarm, the reason, and whether the measurement is bad.
     noteOf(row) {
         const { state, who, reason, untilUs, held } = row;
         const clock = zoneClock(this.session.model.plant.time_zone);

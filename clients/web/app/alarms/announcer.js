@@ -6,7 +6,7 @@ import { say } from '../../core/words.js';
 import { byId } from '../common/dom.js';
 import { limitText } from './alarm_bar.js';
 
-const MOST = 3; // maximum number of alarms whose text one announcement reads out; of further alarms it says only the number
+const MOST = 3; // maximum number of alarms that one announcement reads out; the others are only counted
 const READ_MS = 3000; // shortest time between two announcements: a screen reader skips a text that is replaced too soon
 
 const isOpen = ({ state }) => calls(state) && state !== 'acknowledged';
@@ -16,7 +16,7 @@ export class Announcer {
         Object.assign(this, { session, waiting: new Set(), timer: null }); // waiting: ids of queued alarms
     }
 
-    // Queues newly raised alarms. All alarms that are queued when the next announcement is due are announced together.
+    // Queues newly raised alarms. All queued alarms are announced together, at the next announcement.
     take(raised) {
         raised.forEach(({ id }) => this.waiting.add(id));
         if (this.timer === null)
@@ -28,7 +28,7 @@ export class Announcer {
             .filter(Boolean).join(', ');
     }
 
-    // Reads out the queued alarms with their present states, without alarms that were acknowledged or ended while they were queued.
+    // Reads out the queued alarms with their present states, except those acknowledged or ended while queued.
     announce() {
         this.timer = null;
         const { rows } = this.session.model.alarms;

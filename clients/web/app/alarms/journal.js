@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The journal, second tab of the alarm list: every change of an alarm in a time span, with the columns and the filters of the list.
+// The journal, second tab of the alarm list: every alarm change in a time span, with the list's columns and filters.
 import { isIn, journalRow, tableCsv } from '../../core/alarm_table.js';
 import { journalSpan, readJournal } from '../../core/handover.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
@@ -55,7 +55,7 @@ export class Journal {
         return this.read();
     }
 
-    // Removes all rows when the journal goes out of sight. Otherwise the document would keep growing with each change of an alarm.
+    // Removes all rows when the journal goes out of sight; otherwise the document would grow with every alarm change.
     rest() {
         Object.assign(this, { rows: [], drawn: [], number: (this.number ?? 0) + 1 });
         byId('journal-list').replaceChildren();
@@ -81,7 +81,7 @@ export class Journal {
             : this.span.selectedOptions[0].text;
     }
 
-    // Shows all kinds of changes of the time range.
+    // Clears the filter for the kinds of changes.
     unfilter() {
         byId('journal-which').value = '';
     }
@@ -102,8 +102,7 @@ export class Journal {
         return this.read();
     }
 
-    // Requests the journal rows of the chosen time span and shows them. If a newer request has started meanwhile, the rows of the older one
-    // are dropped.
+    // Requests the chosen time span's journal rows and shows them, unless a newer request has started meanwhile.
     async read() {
         const [fromUs, toUs] = this.limits, number = this.number = (this.number ?? 0) + 1;
         Object.assign(this, { dirty: false, readAt: performance.now() });

@@ -26,8 +26,8 @@ export class Moment {
         setInterval(() => this.say(), 500);
     }
 
-    // alarm: { tag, kind, priority, us (time of the raise, microseconds) }. afterUs: how long after the raise the shown instant is;
-    // negative: before.
+    // alarm: { tag, kind, priority, us (time of the raise, microseconds) }. afterUs: offset of the shown instant from the
+    // raise; negative: before.
     show(alarm, afterUs = -BEFORE_US) {
         Object.assign(this, { alarm, arrived: false });
         this.mark.replaceChildren(badge(alarm.priority));
@@ -52,7 +52,7 @@ export class Moment {
         travel(this.session, this.alarm.us + afterUs);
     }
 
-    // Closes the alarm's name when the page shows the present again after it showed the moment.
+    // Hides the alarm's name when the page returns from that moment to the present.
     hear() {
         const { atUs } = this.session.time;
         if (this.alarm && atUs === null && this.arrived)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equipment list: areas, assets and their sensors with values. On narrow screens it is loaded when it is first opened. Pointer,
-// keyboard and search (rows.js) are loaded on first use.
+// The equipment list: areas, assets and their sensors with values. On narrow screens it is loaded when first opened. Pointer,
+// keyboard and search handling (rows.js) is loaded on first use.
 import { decimalsFor, numberText, qualityText, unitText } from '../../core/format.js';
 import { Tree } from '../../core/asset_tree.js';
 import { say } from '../../core/words.js';
@@ -9,7 +9,7 @@ import { narrow } from '../startup.js';
 import { LongList } from './list.js';
 
 const SEARCH_MS = 80, ASSET_PX = 53;
-// keys that the rows of the list handle; other keys are left to other handlers
+// keys handled by the list's rows; other handlers get the rest
 const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/;
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
@@ -37,7 +37,7 @@ export class Assets {
         window.matchMedia('(pointer: coarse)').addEventListener('change', () => this.filter());
     }
 
-    // Calls f with the module that handles input to the rows (rows.js), which it loads first if necessary.
+    // Calls f with the module that handles input to the rows (rows.js), loading it first if necessary.
     does(f) {
         this.modules.use('rows', f);
     }
@@ -71,11 +71,11 @@ export class Assets {
         const { model } = this.session, before = this.tree;
         this.tree = new Tree(model, say('assets.loose'));
         if (before)
-            // after a reconnect, the same areas and assets stay expanded as before
+            // after a reconnect, keeps the same areas and assets expanded
             Object.assign(this.tree, { open: before.open, folded: before.folded });
         setText(byId('assets-count'), String(model.assets.length));
         this.selected = undefined;
-        // rebuilds all rows, because after a reload of the plant the same name may belong to another item
+        // rebuilds all rows, because after a plant reload the same name may belong to another item
         this.list.renew(() => this.mark());
     }
 
@@ -158,7 +158,7 @@ export class Assets {
         setAlarm(element, model.alarms.gravest(tag.index));
     }
 
-    // Schedules one update of the rows for the next animation frame, however many messages arrive until then.
+    // Schedules one update of the rows in the next animation frame, however many messages arrive before it.
     soon() {
         this.mark();
         this.asked ??= requestAnimationFrame(() => {

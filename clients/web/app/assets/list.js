@@ -3,7 +3,7 @@
 import { rowsInSight, stack } from '../../core/list_window.js';
 import { make } from '../common/dom.js';
 
-const MORE = 8; // number of rows above and below the visible ones that are in the document, too, so that scrolling shows them at once
+const MORE = 8; // number of extra rows in the document above and below the visible ones, so that scrolling shows them at once
 
 export class LongList {
     // make(row) creates the element of a row, fill(row, element) updates its content, height(row) returns CSS pixels, keyOf(row) returns a
@@ -26,7 +26,7 @@ export class LongList {
             this.shown.get(this.active)?.focus({ preventScroll: true });
     }
 
-    // Sets the rows. A row with the key of an earlier row keeps that row's element.
+    // Sets the rows. A row with the key of an earlier row reuses that row's element.
     set(rows) {
         this.rows = rows;
         this.tops = stack(rows.map(this.height));

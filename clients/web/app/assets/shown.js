@@ -31,10 +31,10 @@ export class Shown {
         setText(this.words, [gone > 0 && say('shown.hidden', { hidden: gone, all: all.length }),
             ghosts > 0 && say('shown.ghosts', { count: ghosts })].filter(Boolean).join(', '));
         this.stand();
-        this.refresh(); // draws the sensor labels over the picture again, so that those under the notice move aside
+        this.refresh(); // redraws the sensor labels over the picture, so that those under the notice move aside
     }
 
-    // Moves the notice about hidden equipment below the legend, if the legend lies across the top of the picture.
+    // Moves the notice below the legend if the legend lies across the top of the picture.
     stand() {
         const legend = byId('legend'), lies = legend.offsetWidth > byId('viewport').clientWidth / 2;
         setVariable(this.element, '--under', `${lies ? legend.offsetTop + legend.offsetHeight + AWAY_PX : 0}px`);

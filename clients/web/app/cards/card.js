@@ -15,7 +15,7 @@ export class Card {
     constructor({ session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend }) {
         Object.assign(this, { session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend });
         this.element = byId('card');
-        // moves the card when it gets taller, because the lines on drift and neighbours arrive later
+        // repositions the card when it grows, because the lines on drift and neighbours arrive later
         new ResizeObserver(() => this.show()).observe(this.element);
         this.show();
     }

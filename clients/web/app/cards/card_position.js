@@ -9,10 +9,10 @@ const AWAY_PX = 16, RIM_PX = 8, TALLEST_PX = 280;
 // RING_PX: half the width of an alarm ring; RING_COST: a covered ring counts as this many covered markers
 const RING_PX = 14, RING_COST = 3;
 
-// Returns the card's { left, top, most (largest height) } for the point `at` ([x, y]; null: none) within the free part of the picture
-// (left, top, right, bottom). marks: other markers, [x, y, isRing]. last: the previous position, which the card leaves only for one that
-// covers less. Of positions that cover equally much, the card takes the side with more room; if neither side is wide enough, a position
-// above or below the point. Has no side effects.
+// Returns the card's { left, top, most (maximum height) } for the point `at` ([x, y]; null: none) within the free part of the
+// picture (left, top, right, bottom). marks: other markers, [x, y, isRing]. last: the previous position, which the card leaves
+// only for one that covers less. Among positions that cover equally much, the card takes the side with more room; if neither
+// side is wide enough, a position above or below the point. Has no side effects.
 export function cardPlace(card, free, at, marks = [], last = null) {
     const tall = Math.min(card.tall, TALLEST_PX, free.bottom - free.top), covers = ({ left, top }) => marks.reduce((sum, [x, y, isRing]) =>
         (x > left - RING_PX && x < left + card.wide + RING_PX && y > top - RING_PX && y < top + tall + RING_PX
@@ -22,7 +22,7 @@ export function cardPlace(card, free, at, marks = [], last = null) {
     return same && same.cost <= best.cost ? same : best;
 }
 
-// Returns all positions for a card of that size, the preferred ones first: { side, left, top, most (largest height) }.
+// Returns all positions for a card of that size, preferred ones first: { side, left, top, most (maximum height) }.
 function placesOf(wide, tall, { left, top, right, bottom }, at) {
     const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n))), full = Math.min(TALLEST_PX, bottom - top);
     const place = (side, x, y, most = full) => ({ side, left: within(left, x, right - wide), top: within(top, y, bottom - tall), most });
@@ -41,16 +41,16 @@ function placesOf(wide, tall, { left, top, right, bottom }, at) {
     }))];
 }
 
-// Returns the position in CSS pixels at which the picture on the screen shows a point of the plant; null: the point is behind the camera.
-// half: which half of a split view, 0 left, 1 right.
+// Returns the position in CSS pixels of a point of the plant in the picture on the screen; null: it is behind the camera. half:
+// half of a split view, 0 left, 1 right.
 export function placeInPicture({ picture, shown }, { width, height }, position, half = 0) {
     const part = picture && halves(shown, picture.shownWidth)[half];
     const at = part && projector(picture.camera, part.width, picture.fullHeight)(position);
     return at ? [((part.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight] : null;
 }
 
-// Positions the card next to the point `at` ([x, y] in CSS pixels), clear of the status banner, the legend and the name of the alarm whose
-// moment is shown. If `at` is null, the card is in a corner. Other visible markers of `overlay` stay uncovered where there is room.
+// Positions the card next to the point `at` ([x, y] in CSS pixels; null: in a corner), clear of the status banner, the legend
+// and the name of the alarm whose moment is shown. Leaves other visible markers of `overlay` uncovered where there is room.
 const places = new WeakMap(); // card's element -> { of (the object that the card describes), place (the card's last position) }
 export function standBeside(element, { width, height }, at, overlay, of) {
     const banner = byId('banner'), legend = byId('legend'), lies = legend.offsetWidth > width / 2;

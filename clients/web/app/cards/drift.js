@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drift of a sensor against its neighbours' prediction over a week, which the daemon computes from recorded readings (HTTP.md,
-// /api/v1/drift): a line on the sensor's card with the week as a curve, and a list of drifting sensors.
+// Drift of a sensor from its neighbours' prediction over a week, computed by the daemon from recorded readings (HTTP.md,
+// /api/v1/drift): a curve of the week on the sensor's card, and a list of drifting sensors.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 
 const WIDTH = 168, HEIGHT = 28, AGAIN_MS = 600000;
-const kept = new Map(); // cached answers: query -> { at, rows }; the daemon computes drift only once an hour
+const kept = new Map(); // cached answers: query -> { at, rows }; the daemon recomputes drift only once an hour
 
-// Returns a promise of the drift of the sensors that a query chooses, one entry for each sensor; empty if nothing is recorded or the daemon
-// does not answer.
+// Returns a promise of the drift of the sensors that a query selects, one entry per sensor; empty if nothing is recorded or the
+// daemon does not answer.
 export async function driftOf(session, query) {
     const key = JSON.stringify(query), known = kept.get(key);
     if (!session.recorded || session.time.atUs !== null)
@@ -35,11 +35,11 @@ export function driftText(row, group) {
     return say(`drift.${row.verdict}`, { by: changeText(row, group) });
 }
 
-// Returns the residual of each hour: reading minus prediction; null if reading or prediction is unknown. Has no side effects.
+// Returns the residual (reading minus prediction) of each hour; null if either is unknown. Has no side effects.
 export const residuals = (hours) => hours.map(([, value, predicted]) => (value === null || predicted === null ? null : value - predicted));
 
-// Returns polylines of the residuals, one for each stretch of hours without a gap. Their vertical scale spans at least 6 sigma, so that
-// mere noise does not fill the height. Has no side effects.
+// Returns the residuals as polylines, one per stretch of hours without a gap. The vertical scale spans at least 6 sigma, so
+// that mere noise does not fill the height. Has no side effects.
 export function stretches(values, sigma) {
     const known = values.filter((value) => value !== null), low = Math.min(...known), high = Math.max(...known), all = [[]];
     const span = Math.max(high - low, 6 * sigma || 0) || 1;
@@ -54,7 +54,7 @@ export function stretches(values, sigma) {
     return all.filter((points) => points.length > 1).map((points) => points.join(' '));
 }
 
-// Returns the drift of the week as a curve (SVG), or null if there is nothing to draw.
+// Returns the week's drift as a curve (SVG), or null if there is nothing to draw.
 export function driftCurve(row) {
     if (row.scatter === null)
         return null;

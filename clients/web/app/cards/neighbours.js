@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The prediction for a sensor by its neighbours (leave-one-out), computed by the daemon: a line on the sensor's card, and a list of the
-// largest deviations.
+// A sensor's value as predicted from its neighbours (leave-one-out) by the daemon: a line on the sensor's card, and a list of
+// the largest deviations.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
@@ -12,7 +12,7 @@ const AGAIN_MS = 3000, LISTED = 5;
 const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((answer) => answer.json()).then((rows) => rows.sensors)
     .catch(() => []); // after a failed request no prediction is shown, because an old one would mislead
 
-// Returns the prediction as text, such as 81.3 °C ± 2.0, with the deviation of the reading from it; null if there is no prediction.
+// Returns the prediction as text, such as 81.3 °C ± 2.0, with the reading's deviation from it; null if there is no prediction.
 export function neighbourText(row, group) {
     if (!row || row.predicted === null)
         return null;
@@ -23,8 +23,8 @@ export function neighbourText(row, group) {
     return say(row.residual < 0 ? 'neighbours.below' : 'neighbours.above', { predicted, by: `${number(Math.abs(row.residual))} ${unit}` });
 }
 
-// Requests what neighbours predict for sensors, at intervals while isSeen() returns true, but not while the past is shown, because the
-// daemon predicts only the present. onRows(rows) is called with each answer.
+// Requests predictions for sensors from their neighbours at intervals, while isSeen() returns true and the present is shown:
+// the daemon does not predict the past. onRows(rows) is called with each answer.
 export class Neighbours {
     constructor(session, isSeen, onRows) {
         Object.assign(this, { session, isSeen, onRows, query: null });

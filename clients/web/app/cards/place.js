@@ -17,7 +17,7 @@ export class Place {
         this.element = byId('place');
         new ResizeObserver(() => this.show()).observe(this.element);
         this.picked = null;
-        // kind of the pick request that waits for an answer: 'new' (another point) or 'again' (the same point); null: none
+        // pending pick request: 'new' (another point) or 'again' (the same point); null: none
         this.asked = null;
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
@@ -53,7 +53,7 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // the card was closed meanwhile
-        // ignores the answer to another module's pick request, which has replaced the request of this card
+        // ignores the answer to another module's pick request, which has replaced this card's
         if (picked.purpose !== 'place') {
             this.asked = null;
             return;

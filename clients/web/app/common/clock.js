@@ -10,14 +10,14 @@ export const clock = {
     clearTimeout: (id) => clearTimeout(id),
 };
 
-// Keeps the screen from switching off, if the browser allows it.
+// Keeps the screen on, if the browser allows it.
 export function keepScreenOn() {
     const ask = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {});
     document.addEventListener('visibilitychange', ask);
     ask();
 }
 
-// Calls onWake() after the device has slept, because all values that the page knows are then outdated.
+// Calls onWake() after the device has slept, because all values on the page are outdated then.
 export function watchSleep(onWake) {
     const wake = new Wake({
         now: () => performance.now(), date: () => Date.now(),

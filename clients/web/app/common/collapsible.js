@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Panels below the toolbar, each opened by a button.
 
-// Connects a panel with its button. The panel closes when the button is pressed again, on Escape, and on a press anywhere outside the panel
-// except on the plant. For keyboard users, focus moves into the panel and back to the button. Returns { set(open), toggle(event) }.
+// Connects a panel with its button. The panel closes on another press of the button, on Escape, and on a press outside the
+// panel, except on the plant. For keyboard users, focus moves into the panel and back to the button. Returns { set(open),
+// toggle(event) }.
 export function collapsiblePanel(panel, button, onChange) {
     const set = (open) => {
         panel.classList.toggle('open', open);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The instant under the pointer, which all trend charts and the time slider mark together.
+// The instant under the pointer, which all trend charts and the time slider mark.
 
 let shownUs = null;
 const listeners = new Set();

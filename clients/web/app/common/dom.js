@@ -49,13 +49,13 @@ export function sayAll(root) {
     }
 }
 
-// Writes a text only if it has changed, so that screen readers do not repeat it and the layout is not computed again.
+// Sets a text only if it has changed, so that screen readers do not repeat it and the layout is not recomputed.
 export function setText(element, text) {
     if (element.textContent !== text)
         element.textContent = text;
 }
 
-// Loads a style sheet of app/ by its name. Returns a promise, which rejects if the sheet cannot be fetched.
+// Loads a style sheet of app/ by name. Returns a promise, which rejects if the sheet cannot be fetched.
 const sheets = new Map();
 export function styled(name) {
     if (!sheets.has(name))
@@ -73,7 +73,7 @@ export function styled(name) {
 
 export const setVariable = (element, name, value) => element.style.setProperty(name, value);
 
-// The symbol of each quality, the same in lists and cards as over the picture (drawn by overlay.js).
+// The symbol of each quality, the same in lists and cards as over the picture (overlay.js).
 const GLYPHS = {
     good: ['circle', { r: 4.5 }],
     uncertain: ['path', { d: 'M0-6 6 0 0 6-6 0z' }],
@@ -86,7 +86,7 @@ export function glyph(quality) {
         makeSvg(name, { class: 'mark', ...shape }));
 }
 
-// Returns an element with the kind of an alarm in the colour of its priority; hollow if the value has returned to normal.
+// Returns an element with an alarm's kind in its priority's colour; hollow if the value has returned to normal.
 export const limitFlag = ({ kind, priority, state }) =>
     make('span', { class: `limit-flag p${priority}${isGone(state) ? ' hollow' : ''}` }, kind);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sheets: on a phone, panels and cards are below the picture, or at its side, instead of over it (common/sheet.css). A sheet has two
-// heights, which are defined in the style sheet; the class `other-sheet` on the root element chooses the second. A tap or a drag on the
+// Sheets: on a phone, panels and cards are below the picture or at its side instead of over it (common/sheet.css). The style sheet
+// defines two heights of a sheet; the class `other-sheet` on the root element selects the second. A tap or a drag on the
 // sheet's grip toggles the class. This file also expands the legend's strip on a tap.
 import { byId, phone } from './dom.js';
 
@@ -19,8 +19,8 @@ function stand() {
 const { documentElement: root } = document;
 const sheetHeight = () => parseFloat(getComputedStyle(root).getPropertyValue('--sheet'));
 
-// Switches sheets to their other height. grows: direction of a drag; true: switches only if the other height is larger, false: only if it
-// is smaller; null: a tap, which always switches.
+// Switches sheets to their other height. grows: drag direction; true: only if the other height is larger; false: only if it is
+// smaller; null: a tap, which always switches.
 function changeHeight(grows = null) {
     const before = sheetHeight();
     root.classList.toggle('other-sheet');
@@ -28,7 +28,8 @@ function changeHeight(grows = null) {
         root.classList.toggle('other-sheet');
 }
 
-// Returns true if a press is on the grip of a sheet. The event's target is no help, because browsers assign a touch to a control nearby.
+// Returns true if a press is on a sheet's grip. The event's target cannot tell, because browsers assign a touch to a nearby
+// control.
 const isGrip = ({ clientX: x, clientY: y }) => [...document.querySelectorAll(SHEETS)].some((sheet) => {
     const { left, right, top, width } = sheet.getBoundingClientRect();
     return width > 0 && x >= left && x <= right && y >= top && y < top + GRIP_PX;

@@ -6,7 +6,7 @@ import { stored } from './storage.js';
 export function wear(theme) {
     document.documentElement.dataset.theme = theme;
     if (theme === 'dark')
-        // errors are ignored: a style sheet that failed to load is requested again when the theme next changes
+        // ignores errors: a style sheet that failed to load is requested again at the next theme change
         styled('common/dark').catch(() => {});
     return theme;
 }

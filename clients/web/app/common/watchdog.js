@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Watches the page's main thread from a worker. When the thread has been silent for 10 s, the worker draws a warning over the page. In
-// Chromium, a frame that runs in a process of its own (keeper/) can then also reload the page of a wall.
+// Watches the page's main thread from a worker. When the thread has been silent for 10 s, the worker draws a warning over the
+// page. In Chromium, a frame in another process (keeper/) can then also reload a wall's page.
 import { learnWords, say } from '../../core/words.js';
 import { make } from './dom.js';
 
 const BEAT_MS = 1000, BAND_PX = 92;
 
-// scale() returns the size of the warning's letters relative to a desktop page. reloads true: the page is a wall, where no user is present
-// to reload it.
+// scale() returns the size of the warning's letters relative to a desktop page. reloads true: the page is a wall, which has no
+// user to reload it.
 export async function watchMainThread({ scale = () => 1, reloads = false } = {}) {
     if (!('transferControlToOffscreen' in HTMLCanvasElement.prototype))
         return;

@@ -22,12 +22,12 @@ onmessage = ({ data }) => {
     if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;
-    // draws without the warning, now that the page runs again; also at the start, because the first frame of a canvas, its size and its
-    // font need the main thread, which may hang later
+    // draws without the warning when the page runs again; also at the start, because the canvas's first frame, size and font
+    // need the main thread, which may hang later
     if (isSaid || data.width)
         draw();
     if (data.width)
-        // tells the page that the worker is ready, once the canvas has shown its first frame
+        // tells the page that the worker is ready, after the canvas has shown its first frame
         requestAnimationFrame(() => postMessage('watches'));
 };
 

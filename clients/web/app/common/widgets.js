@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions that panels, cards and dialogs share, for example to replace an element's children and to make a close button.
+// Helpers for panels, cards and dialogs, for example to replace an element's children and to make a close button.
 import { say } from '../../core/words.js';
 import { icon, make } from './dom.js';
 
 // Replaces the children of an element; null children are skipped.
 export const fill = (element, ...children) => element.replaceChildren(...children.filter((child) => child !== null));
 
-// Splits a text at its placeholder and inserts a node at that position. Returns the parts.
+// Splits a text at its placeholder and inserts a node there. Returns the parts.
 export function around(text, node) {
     const [before, after] = text.split('\u0000');
     return [before, node, after];

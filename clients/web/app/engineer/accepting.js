@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Accepts the assumed positions of many sensors in one step, filtered by equipment, name, distance from the surface and confidence of the
-// match. Before that, the page counts these sensors and marks them on the model. Afterwards, the user can restore the previous tag list.
+// Accepts the assumed positions of many sensors in one step, filtered by equipment, name, distance from the surface and
+// confidence of the match. First, the page counts these sensors and marks them on the model. Afterwards, the user can restore
+// the previous tag list.
 import { tellAsEngineer } from '../../core/requests.js';
 import { whyNotSaved } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -8,18 +9,18 @@ import { make, setText } from '../common/dom.js';
 import { store, stored } from '../common/storage.js';
 import { fill } from '../common/widgets.js';
 
-const ASK_MS = 300; // milliseconds between the last change of the filter and the request to the server
+const ASK_MS = 300; // milliseconds from the last change of the filter to the request
 
 export class Accepting {
     constructor({ session, refresh }) {
         Object.assign(this, { session, refresh });
         this.names = new Set(); // tags that would be accepted
-        this.found = null;      // newest message `places_accepted` (the sensors that the current filter chooses); null: none yet
-        this.sent = null;       // request whose answer `tags_saved` is pending: 'accept' or 'restore'; null: none
-        // name of the tag list's version before positions were last accepted, to which the user can return; stored, so that it survives a
-        // page reload
+        this.found = null;      // newest message `places_accepted` (the sensors that the filter selects); null: none yet
+        this.sent = null;       // pending request that `tags_saved` answers: 'accept' or 'restore'; null: none
+        // name of the tag list version from before the last acceptance, which the user can restore; stored, so that it survives
+        // a page reload
         this.kept = stored('accepted') || null;
-        this.restores = false; // true: the requested `tags_diff` (differences between two tag lists) is against an earlier version
+        this.restores = false; // true: the requested `tags_diff` (differences between two tag lists) compares with an earlier version
         this.build();
         session.on('places_accepted', (message) => this.onFound(message));
     }
@@ -67,15 +68,15 @@ export class Accepting {
     ask() {
         clearTimeout(this.timer);
         if (this.sent)
-            return; // a request is running; end() or onSaved() calls ask() again when that request ends
+            return; // a request is running; when it ends, end() or onSaved() calls ask() again
         this.onFound(null);
         if (this.element.open && [this.within, this.confidence].every((field) => field.validity.valid))
             this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);
     }
 
-    // Handles `places_accepted`, which lists the sensors that the filter chooses. The server also sends it after the user has accepted
-    // their positions. It then has the hash of the tag list that the user has seen, and the server saves the list, or another hash,
-    // because the tag list has changed since.
+    // Handles `places_accepted`, the list of sensors that the filter selects. The server also sends it after the user has
+    // accepted their positions: with the hash of the tag list that the user has seen, if the server is saving the list; with
+    // another hash, if the tag list has changed since.
     onFound(message) {
         if (message && message.seq !== this.asked)
             return;
@@ -129,7 +130,7 @@ export class Accepting {
             this.end('');
     }
 
-    // Handles `tags_saved`, the server's result of saving the tag list. Returns true if this module has asked for it.
+    // Handles `tags_saved`, the server's result of saving the tag list. Returns true if this module requested it.
     onSaved(message) {
         const { saved, kept } = message;
         const { sent } = this;

@@ -41,7 +41,7 @@ export class Engineer {
     toggle() {
         const [alarms, imports] = ['alarms', 'import'].map((name) => this.page.modules.there(name));
         if (!this.open && alarms?.open)
-            alarms.setOpen(false); // closes the alarm list, which uses the same space as this panel
+            alarms.setOpen(false); // closes the alarm list, which shares this panel's space
         if (!this.open)
             imports?.close();
         this.element.hidden = this.open;
@@ -83,7 +83,7 @@ export class Engineer {
         return this.open && this.part === 'place' && this.parts.place.accepting.names.has(tag.name);
     }
 
-    // Returns true if mark() draws rings for the tag. Such a marker is drawn even where many markers overlap.
+    // Returns true if mark() draws rings around the tag's marker. Such a marker is drawn even where many markers overlap.
     isMarked(tag) {
         return this.page.session.model.placed.has(tag.name) || this.isAccepted(tag) || this.isAt('place', 'tag', tag) ||
             this.isAt('prove', 'stirred', tag);

@@ -29,14 +29,14 @@ export class Method {
         session.on('welcome', () => this.show());
     }
 
-    // Makes a choice field, with an explanation of the chosen value below the field.
+    // Makes a choice field with an explanation of the chosen value below it.
     choice(name, words, all) {
         const fieldset = make('fieldset', { class: 'segments', id: name }, make('legend', {}, words));
         fillSegments(fieldset, name, all, (value) => this.session.setParams({ [name]: value }));
         return { name, fieldset, all, why: make('p', { class: 'quiet' }) };
     }
 
-    // Offers the distances and interpolations that were prepared for the sensor group.
+    // Offers the kinds of distance and interpolation that were prepared for the sensor group.
     offer(group) {
         this.offerOf('distance', distances(group));
         this.offerOf('interpolation', interpolations(group));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loop checks of one tag after the other, device by device: shows which reading changed when a technician forced a transmitter, and whether
+// Loop checks, tag by tag and device by device: shows which reading changed when a technician forced a transmitter, and whether
 // the reading has the expected value.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { readExpected, LoopCheckSession } from '../../core/loop_check.js';
@@ -128,7 +128,7 @@ export class LoopCheck {
     onTags() {
         const { model } = this.session;
         if (this.session.time.atUs !== null)
-            return; // ignores readings while the past is shown, because they do not come from the transmitter that is forced now
+            return; // ignores readings of the past, because they do not come from the transmitter that is forced now
         this.loopCheck.observe(model.readings.map(({ value, quality }) => (quality === 'bad' ? null : value)));
         if (this.element.offsetParent === null)
             return;
@@ -147,7 +147,7 @@ export class LoopCheck {
         }
     }
 
-    // Sends the result of a check to the server. In a number, a decimal comma counts as a decimal point.
+    // Sends the result of a check to the server. A decimal comma is accepted as a decimal point.
     send(fail) {
         const read = (input) => (input.value.trim() ? Number(input.value.replace(',', '.')) : NaN);
         const expected = read(this.wanted), tolerance = read(this.tolerance);
@@ -161,7 +161,7 @@ export class LoopCheck {
                 ? { remark: this.remark.value } : {}) });
     }
 
-    // Shows the result of a check and selects the next tag that has not passed.
+    // Shows a check's result and selects the next tag that has not passed.
     onProved({ tag, passed, value, why, refusal }) {
         const { model } = this.session, { tags } = this, at = tags.findIndex(({ name }) => name === tag);
         const text = value === null ? say('novalue') : this.text(model.tag(tag), value);

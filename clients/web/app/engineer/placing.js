@@ -19,7 +19,7 @@ export class Placing {
         Object.assign(this, { session, viewport, overlay, selection, selectTag, showTag, refresh });
         this.moves = [];   // draft positions that are not saved: { tag, asset, position }
         this.undone = [];  // undo stack of `moves`
-        this.tag = null;   // name of the tag whose sensor the user places
+        this.tag = null;   // name of the tag whose sensor the user is placing
         this.dragging = null;
         this.accepting = new Accepting({ session, refresh });
         this.build();
@@ -59,7 +59,7 @@ export class Placing {
         // the server refused a position: the sensor stays at its previous one
         session.on('error', ({ about }) => { if (about === 'place') this.step(); });
         session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
-        session.on('hello', () => this.stopSaving()); // after a reconnect, the answer to a save will not arrive any more
+        session.on('hello', () => this.stopSaving()); // after a reconnect, the answer to a save cannot arrive any more
         session.on('welcome', () => this.onWelcome());
         session.on('params', () => this.show());
         const on = (name, f) => this.viewport.element.addEventListener(name, f, { capture: true });
@@ -105,7 +105,8 @@ export class Placing {
         return true;
     }
 
-    // Sets the position of the tag to place. A whole click or drag is one undo step, however many positions a drag passes.
+    // Sets the position of the tag being placed. A click or a whole drag is one undo step, however many positions the drag
+    // passes.
     put(asset, position) {
         if (!this.tag)
             return;
@@ -168,7 +169,7 @@ export class Placing {
         this.refresh();
     }
 
-    // Returns the equipment of the tag's saved position if the tag's draft position is on other equipment; else null.
+    // Returns the equipment of the tag's saved position if its draft position is on other equipment; else null.
     left({ tag, asset }) {
         const known = this.session.model.tag(tag), own = (known?.saved ?? known)?.asset;
         return own && own !== asset ? own : null;
@@ -220,7 +221,7 @@ export class Placing {
 
     showDiff({ file, conflict, hash, lines, more }) {
         if (hash !== null && hash === this.confirmed)
-            return; // ignores this difference of tag lists, because the user has already confirmed it and the list is being saved
+            return; // ignores this difference between tag lists: the user has confirmed it, and the list is being saved
         this.stopSaving();
         const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),

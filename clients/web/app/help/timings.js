@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The performance panel, which a key opens: the id of this session, and the latency of its pictures by stage.
+// The performance panel, opened by a key: this session's id and the latency of its pictures by stage.
 import { numberText } from '../../core/format.js';
 import { kbitPerS, STAGES, timingOf } from '../../core/timings.js';
 import { say } from '../../core/words.js';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawings over the picture during an import: boxes around the assets that a tag may belong to, and a person of 1.8 m as a scale.
+// Drawings over the picture during an import: boxes around the assets that a tag may belong to, and a person 1.8 m tall, for
+// scale.
 import { basis, projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -55,8 +56,8 @@ export class Highlights {
         return this.assets.length > 1 ? `${i + 1}  ${tag || id}` : tag || id;
     }
 
-    // Draws the box of an asset. Returns its uppermost corner on the screen, where its name is written; null if the box is partly behind
-    // the camera.
+    // Draws the box of an asset. Returns its topmost corner on the screen, where the asset's name is written; null if the box
+    // is partly behind the camera.
     drawBox(asset, at, chosen) {
         const points = corners(asset.bounds).map(at), c = this.overlay.context;
         if (points.includes(null))
@@ -80,7 +81,7 @@ export class Highlights {
     write(text, x, y) {
         const c = this.overlay.context;
         if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
-            return; // writes nothing if the position of the asset's name is outside the picture
+            return; // the asset's name would be outside the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
         const left = Math.min(Math.max(4, x - width / 2), this.overlay.wide - width - 4), bottom = Math.max(24, y);
@@ -90,7 +91,7 @@ export class Highlights {
         c.fillText(text, left + 5, bottom - 4);
     }
 
-    // Draws the person standing on the ground, on the side of the plant that is nearest to the camera.
+    // Draws the person standing on the ground, on the side of the plant nearest to the camera.
     drawPerson({ min, max }, camera, at) {
         const middle = [0, 1].map((axis) => (min[axis] + max[axis]) / 2), { right } = basis(camera);
         const sides = [[min[0] - BESIDE_M, middle[1]], [max[0] + BESIDE_M, middle[1]], [middle[0], min[1] - BESIDE_M],
@@ -107,7 +108,7 @@ export class Highlights {
             c.stroke();
             c.fill();
         }
-        if (feet[1] - top[1] < LEAST_PERSON_PX) { // marks the position with a circle, because the person would be too small to see
+        if (feet[1] - top[1] < LEAST_PERSON_PX) { // draws a circle instead, because the person would be too small to see
             c.beginPath();
             c.arc(feet[0], feet[1], LEAST_PERSON_PX, 0, 2 * Math.PI);
             Object.assign(c, { strokeStyle: LIT, lineWidth: 2 });

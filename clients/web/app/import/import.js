@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The import panel: model and tag files, the size of the plant compared with a person, and the matches of the tags.
+// The import panel: model and tag files, the plant's size next to a person's, and the matches of the tags.
 import { numberText } from '../../core/format.js';
 import { sizeOf, timesOf } from '../../core/matches.js';
 import { say } from '../../core/words.js';
@@ -24,11 +24,11 @@ const choice = (key, values, onchange) => {
 };
 const button = (key, onclick, attributes = {}) => make('button', { type: 'button', onclick, ...attributes }, say(key));
 const megabytes = (bytes) => say('import.bytes', { mb: numberText(bytes / 1e6, bytes < 1e7 ? 2 : 0) });
-// Removes the path of the exports folder from texts that the server's programs print.
+// Removes the exports folder's path from output of the server's programs.
 const plain = (text) => text.replace(/\S*\/exports\//g, '');
 
-// Returns in words the encoding of each file, from program output such as "tags.csv: read as Windows-1251", and the second most likely
-// encoding if the output names one.
+// Returns as text each file's encoding, parsed from program output such as "tags.csv: read as Windows-1251", and the second
+// most likely encoding if the output names one.
 const readAs = (said) => [...new Set([...plain(said).matchAll(/^(.*): read as ([^,\n]+)(?:, but it may be ([^:\n]+))?/gm)]
     .map(([, file, name, other]) => say(other ? 'import.encoding.unsure' : 'import.encoding.read', { file, name, other })))].join(' · ');
 
@@ -103,7 +103,7 @@ export class Import {
     }
 
     toggle() {
-        for (const name of ['alarms', 'engineer']) { // closes alarm list and engineering panel, which use the same space as this panel
+        for (const name of ['alarms', 'engineer']) { // closes alarm list and engineering panel, which share this panel's space
             const other = this.page.modules.there(name);
             if (!this.open && other?.open)
                 other.toggle();
@@ -230,8 +230,8 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    // Shows the settings with which the server has read the present models. Choices that the user has not applied yet stay until these
-    // settings change.
+    // Shows the settings with which the server read the present models. Choices that the user has not applied yet stay until
+    // these settings change.
     takeUnits({ units, up, encoding, mesh_units }) {
         if (this.known?.encoding !== encoding) {
             if (encoding && ![...this.encoding.options].some(({ value }) => value === encoding))

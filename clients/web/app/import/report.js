@@ -19,7 +19,7 @@ function fold(key, count, lines) {
 }
 
 export class Report {
-    // answer(unit) is called with the unit that the user chose for model files that state none.
+    // answer(unit) is called with the unit that the user chooses for model files that state none.
     constructor({ answer }) {
         this.answer = answer;
         this.element = make('section', { class: 'report', hidden: true });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The data source of an imported plant: the user enters the address of one device, and the panel shows which values arrive.
+// The data source of an imported plant: the user enters a device's address, and the panel shows which values arrive.
 import { statusText } from '../../core/quality.js';
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
@@ -11,7 +11,7 @@ const REASONS = 4, LOOK_MS = 500;
 const labelled = (key, element) => make('label', { class: 'choice' }, make('span', {}, say(`import.source.${key}`)), element);
 
 export class Source {
-    // connect(source) sends the data source { host, port, unit, order, base } to the server; all are texts.
+    // connect(source) sends the data source { host, port, unit, order, base }, all texts, to the server.
     constructor({ session, connect }) {
         Object.assign(this, { session, known: '' });
         this.host = make('input', { type: 'text', required: true, maxLength: 253, pattern: '[A-Za-z0-9._][A-Za-z0-9._\\-]*',
@@ -40,8 +40,8 @@ export class Source {
         return { host: host.value.trim(), port: port.value, unit: unit.value, order: order.value, base: base.value };
     }
 
-    // source: data source of the plant that is shown; null: it has none, or one that this panel cannot show. Text that the user typed stays
-    // until the source changes.
+    // source: data source of the shown plant; null: none, or one that this panel cannot show. Text that the user has typed
+    // stays until the source changes.
     set(source, busy) {
         const known = JSON.stringify(source);
         this.button.disabled = busy;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of tags with their matches (tag to asset): the user filters it, decides by pointer or keyboard, and saves the decisions.
+// The table of tags with their matches (tag to asset): the user filters it, makes decisions by pointer or keyboard, and saves
+// them.
 import { FILTERS, Matches, patternOf, readMatches } from '../../core/matches.js';
 import { rowAt } from '../../core/list_window.js';
 import { scrollTo } from '../../core/scroll.js';
@@ -56,7 +57,7 @@ export class TagTable {
         this.matches.set(readMatches(text));
         this.element.hidden = this.matches.all.length === 0;
         this.chosen = this.matches.all.find(({ tag }) => tag === this.chosen?.tag) ?? null;
-        this.light(); // draws the boxes of the assets that the tag may belong to again, because a reload of the plant may have changed them
+        this.light(); // redraws the boxes of the assets that the tag may belong to, because a plant reload may have changed them
         this.list.renew(() => this.refresh());
     }
 
@@ -70,7 +71,7 @@ export class TagTable {
         this.refresh();
     }
 
-    // Marks decisions about tags (which asset a tag belongs to) as saved. decided: the decisions that the server has saved.
+    // Marks decisions about tags' assets as saved. decided: the decisions that the server has saved.
     settle(decided) {
         this.matches.settle(decided);
         this.refresh();
@@ -120,7 +121,7 @@ export class TagTable {
         return this.matches.decisions.has(row.tag) || row.reason === 'by hand' ? say('import.byhand') : row.reason;
     }
 
-    // Selects a row and highlights the assets that its tag may belong to, first the matched or most likely one.
+    // Selects a row and highlights the assets that its tag may belong to, the matched or most likely one first.
     choose(row) {
         this.chosen = row;
         this.goTo(this.list.places.get(row.tag));
@@ -187,7 +188,7 @@ export class TagTable {
 
     // --- deciding
 
-    // Accepts the asset for the selected row, and selects the next row, because the filter may hide the decided one.
+    // Accepts the asset for the selected row, and selects the next row, because the filter may hide this one.
     accept(asset) {
         if (asset === undefined)
             return;
@@ -220,7 +221,7 @@ export class TagTable {
         session.setParams({ isolate: [id], ghost: around.slice(0, MOST_AROUND).map((other) => other.id) });
     }
 
-    // Shows again what was shown before showAlone(), unless the user has changed it since.
+    // Restores what was shown before showAlone(), unless the user has changed it since.
     showAgain() {
         const { session } = this.page, { isolate = [], ghost, alone } = this.shown ?? {};
         this.shown = null;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds a camera with a free view of a tag. If there is none from outside, moves the eye to the tag's side of the walls, or makes the
-// assets in front transparent while the user looks at the tag.
+// Finds a camera with a free view of a tag. If no camera outside has one, moves the eye past the walls in front of the tag, or
+// makes the assets in front transparent while the user looks at the tag.
 import { approaches, atDistance, isRoom } from '../../core/approach.js';
 import { halfAt } from '../../core/nearest.js';
 import { askPick } from '../../core/requests.js';
@@ -13,8 +13,9 @@ const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2
 // A surface nearer to a sensor than this is the one on which the sensor is mounted: NEAR_M metres, but at most the fraction NEAR_PART of
 // the asset's size.
 const NEAR_M = 0.05, NEAR_PART = 0.02;
-const MOST_COVERED = 9; // number of cameras that are compared if the tag's own asset hides the tag from all sides
-// MOST_WALLS: maximum number of walls that the eye passes; CLEAR: fraction of the way to the last wall at which the eye stops
+const MOST_COVERED = 9; // number of cameras to compare if the tag's own asset hides it from all sides
+// MOST_WALLS: maximum number of walls the eye passes through; CLEAR: how far the eye moves towards the last wall, as a fraction
+// of the distance to it
 const MOST_WALLS = 6, CLEAR = 0.95;
 const ROOMY = 0.4; // a room is large enough to look at a tag from inside if the eye can be at this fraction of its distance outside
 
@@ -26,7 +27,8 @@ export class Approach {
         Object.assign(this, { session, viewport });
         // ids of assets that this module made transparent because they hide the tag (not those that the user made transparent)
         this.ghosts = [];
-        // counts the searches for a free view of a tag: a search that is still running stops when it finds another number here
+        // number of the newest search for a free view of a tag: an older search that is still running stops when it sees
+        // another number
         this.number = 0;
         this.heard = null;
         session.on('picked', (picked) => picked.purpose === 'sight' && this.heard?.(picked));
@@ -49,7 +51,8 @@ export class Approach {
             this.session.setParams(change);
     }
 
-    // Replaces the assets that this module made transparent because they hide the tag; those that the user made transparent stay so.
+    // Sets the assets that this module makes transparent because they hide the tag; those that the user made transparent stay
+    // so.
     setGhosts(ids) {
         const now = this.session.params.ghost ?? [], own = now.filter((id) => !has(this.ghosts, id));
         this.ghosts = ids.filter((id) => !has(own, id));
@@ -69,7 +72,7 @@ export class Approach {
         const cameras = approaches({ camera: now, point: tag.position, box: asset.bounds, aspect: width / this.viewport.height,
             whole: model.plant.bounds, solid: solid !== null });
         fly(cameras[0]);
-        const behind = [], own = []; // cameras whose view of the tag is blocked by another asset, or by the tag's own asset
+        const behind = [], own = []; // cameras whose view of the tag is blocked: by another asset; by the tag's own asset
         // deadline, after which the best view found so far is used, for example on a slow network
         const latest = performance.now() + SEARCH_MS;
         let best = null, least = Infinity;
@@ -101,7 +104,7 @@ export class Approach {
         return null;
     }
 
-    // Returns the camera that has the fewest other assets in front of the centre of its picture; null: the list of cameras is empty.
+    // Returns the camera with the fewest other assets in front of its picture's centre; null: there are no cameras.
     async leastCovered(cameras, asset) {
         let best = null, least = Infinity;
         for (const camera of cameras.slice(0, MOST_COVERED)) {
@@ -114,8 +117,8 @@ export class Approach {
         return best;
     }
 
-    // Returns a camera in the same room as the tag: the one with the longest free way to the tag, or else to the equipment that the tag is
-    // in. Returns null if no camera has at least the fraction ROOMY of its distance free.
+    // Returns a camera in the same room as the tag: the one with the longest free way to the tag, or else to the tag's
+    // equipment. Returns null if no camera has at least the fraction ROOMY of its distance free.
     async findInside(cameras, tag, solid, isOvertaken) {
         const latest = performance.now() + SEARCH_MS;
         let best = null, most = -Infinity;
@@ -131,8 +134,9 @@ export class Approach {
         return best;
     }
 
-    // Moves the eye towards the tag, past one wall after the other, but not into the asset `solid`. Returns { camera, seen: true if the tag
-    // is visible, free: metres from the eye to the tag or to the asset }; null: the eye finds no position behind the walls.
+    // Moves the eye towards the tag, past one wall after another, but not into the asset `solid`. Returns { camera, seen: true
+    // if the tag is visible, free: metres from the eye to the tag or to the asset }; null: the eye finds no position behind the
+    // walls.
     async passWalls(camera, tag, solid) {
         for (let walls = 0, eye = camera; walls < MOST_WALLS; walls++) {
             const found = await this.look(eye, tag), metres = found?.position ? length(subtract(found.position, tag.position)) : 0;
@@ -172,8 +176,8 @@ export class Approach {
         return { seen: isThere || (sensor === tag.name && !occluded), asset, position };
     }
 
-    // Asks the server what is at the points AROUND, near the centre of the camera's picture, where the tag is. Returns the number of points
-    // at which an asset other than `id` is clearly in front of the tag; stops counting at `most`.
+    // Asks the server what is at the points AROUND, near the centre of the camera's picture, where the tag is. Returns at how
+    // many of these points an asset other than `id` is clearly in front of the tag; stops counting at `most`.
     async coverAround(camera, { id }, most) {
         const far = length(subtract(camera.target, camera.eye));
         let count = 0;

@@ -14,7 +14,7 @@ import { clock } from '../common/clock.js';
 import { probeCodecs } from '../startup.js';
 import { isOnPicture } from './input.js';
 
-const DEGREES_PER_HEIGHT = 180; // angle in degrees by which a drag over the whole height of the picture orbits the camera
+const DEGREES_PER_HEIGHT = 180; // degrees by which a drag over the picture's whole height orbits the camera
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
 // A wheel event within this time and distance of the previous one belongs to the same turn of the wheel, and zooms about the same point.
 const ANCHOR_MS = 600, ANCHOR_PX = 10;
@@ -27,8 +27,8 @@ const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), s
 const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[name], b[name])) < 0.02 * length(subtract(b.eye, b.target)));
 
 export class CameraController {
-    // handlers: functions for input that does not move the camera: { click(x, y, kind), point({ x, y } or null: the pointer has left),
-    // command(name), group(index) }.
+    // handlers: functions for input other than camera moves: { click(x, y, kind), point({ x, y } or null: the pointer has
+    // left), command(name), group(index) }.
     constructor({ viewport, session, handlers, modules }) {
         Object.assign(this, { viewport, session, handlers });
         this.gestures = new Gestures();
@@ -38,8 +38,8 @@ export class CameraController {
         this.approach = new Approach({ session, viewport });
         this.lastTick = null;
         this.lastClick = null;
-        // point of the surface that the pointer grabbed: { x, y, time, point }; `point` is estimated from bounding boxes until the server
-        // answers
+        // surface point that the pointer grabbed: { x, y, time, point }; `point` is estimated from bounding boxes until the
+        // server answers
         this.anchor = null;
         session.on('picked', ({ purpose, position }) => {
             if (purpose === 'anchor' && this.anchor)
@@ -47,8 +47,7 @@ export class CameraController {
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
-        // splitting a view, or ending the split, changes the shape of pictures: a camera that shows the whole plant is fitted to the new
-        // shape
+        // splitting a view, or ending the split, changes the pictures' shape: refits a camera that shows the whole plant
         session.on('params', () => this.stayHome());
         probeCodecs(); // tests now whether the browser decodes H.264, which the pictures of a moving camera will need
         session.greeted(() => session.reprojects && modules.prepare('warp'));
@@ -147,7 +146,7 @@ export class CameraController {
 
     keydown(event) {
         if (event.defaultPrevented || document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
-            return; // ignores a key whose event has defaultPrevented, because a control, such as the time slider, has already handled it
+            return; // a control, such as the time slider, has already handled this key
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset, [type="range"]')))
             return; // leaves arrow keys to the browser within radio buttons and sliders
@@ -230,7 +229,8 @@ export class CameraController {
         this.viewport.invalidate();
     }
 
-    // Stores where a flight starts, for the command "back". If a second flight begins during the first, the first one's start is kept.
+    // Stores the start of a flight for the command "back". If a second flight begins during the first, the first one's start is
+    // kept.
     remember() {
         if (!this.fly)
             this.before = [...this.before.slice(1 - MOST_BACK), { camera: this.session.camera, ghosts: this.approach.ghosts }];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands that clicks, keys and buttons cause: selecting, flying to the selection, and opening parts of the page. Loaded on first use.
+// Commands triggered by clicks, keys and buttons: selecting, flying to the selection, and opening parts of the page. Loaded on
+// first use.
 import { nearestMarker } from '../../core/nearest.js';
 import { travel } from '../../core/requests.js';
 import { byId, phone } from '../common/dom.js';
@@ -37,7 +38,7 @@ function changeTheme() {
     return wear(theme);
 }
 
-// Returns all commands by name: those that the page calls, and those that keys trigger (core/keys.js).
+// Returns all commands by name: those called by the page, and those triggered by keys (core/keys.js).
 function commandsOf({ session, modules, selection, overlay, saveAddress, refresh }) {
     function selectTag(tag) {
         selection.tag = tag?.name ?? null;
@@ -100,7 +101,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         selectTag(null);
     }
 
-    // Opens or closes a list. On a phone, another panel may cover an open list; then the list is shown instead of closed.
+    // Opens or closes a list. On a phone, an open list that another panel covers is shown instead of closed.
     const opensList = (name) => () => modules.use(name, (list) => {
         const opens = !list.open || !byId(name).checkVisibility();
         if (opens && phone.matches)
@@ -128,7 +129,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
             openPlace(x, y, session.camera);
     }
 
-    // Opens the card of a clicked point. If the camera has moved since the click, another point is under the pointer now, so no card opens.
+    // Opens the card of a clicked point, unless the camera has moved since the click: another point is under the pointer then.
     const openPlace = (x, y, camera) => modules.use('place', (place) => camera === session.camera && place.open(x, y));
 
     function point(place) {
@@ -142,7 +143,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         }
     }
 
-    // Returns the parameters that show the value kind `show` (value, distance, difference, ...). A distance also needs a sensor: the
+    // Returns the parameters for the value kind `show` (value, distance, difference, ...). A distance also needs a sensor: the
     // selected one, else the first of the group. A difference without a baseline is taken from the present readings.
     function showParams(show) {
         const { model, params } = session;

@@ -9,11 +9,11 @@ const STALE_MS = 2000; // input queued for longer than this is dropped
 // Returns true if an event is meant for the picture, not for a control over it.
 export const isOnPicture = (event) => !event.target.closest('button, .card, .banner, .legend');
 
-// Returns true if the event asks for a reaction, unlike a mere motion of the pointer.
+// Returns true if the event calls for a reaction, unlike mere motion of the pointer.
 const isMeant = ({ type, key, target }) => type === 'pointerdown' || type === 'wheel' ||
     (type === 'keydown' && /^(.|Arrow.*)$/.test(key) && !target.closest('input, select, textarea'));
 
-// Does at once what cannot wait until the camera controller is loaded, such as preventDefault().
+// Does at once what cannot wait for the camera controller to load, such as preventDefault().
 function takeAtOnce(event, element) {
     if (event.type === 'wheel' || event.button === 1)
         event.preventDefault(); // prevents the browser from scrolling

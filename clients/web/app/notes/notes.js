@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shift notes: pins in the picture, also on walls, and a list and a form in the panel of views. On a wall, also shows the position at which
-// a user at another computer (a desk) points.
+// Shift notes: pins in the picture, also on walls, and a list and a form in the panel of views. On a wall, also shows where a
+// user at another computer (a desk) points.
 import { projector } from '../../core/camera.js';
 import { ask } from '../../core/history.js';
 import { meets } from '../../core/labels.js';
@@ -16,7 +16,8 @@ const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, wee
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
 const RING = 13, MARK = 6; // radius of an alarm ring with its rims, and of other markers, in CSS pixels (larger on a wall)
 
-// Makes the stem of a pin, a line from the pin to its point, below everything else over the picture: labels and other pins cover it.
+// Makes a pin's stem, the line from the pin to its point, below everything else over the picture: labels and other pins cover
+// it.
 function makeStem(kind = '') {
     const stem = make('i', { class: `note-stem ${kind}`, hidden: true });
     byId('picture').after(stem);
@@ -34,13 +35,12 @@ export class Notes {
     constructor({ session, selection, viewport, overlay, modules, hangs, tell, flyToTag, selectAsset }) {
         Object.assign(this, { session, selection, viewport, overlay, modules, hangs, flyToTag, selectAsset });
         this.pins = new Map(); // pins of notes: id -> { element, stem, position }
-        // on a wall: mark at the position at which a user at another computer points: { element, stem, position, until }; null: nobody
-        // points
+        // on a wall: mark where a user at another computer points: { element, stem, position, until }; null: nobody points
         this.pointer = null;
         this.list = make('ul', { id: 'notes-list' });
         this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // list over the picture with the notes about the whole plant
         viewport.element.append(this.ofPlant);
-        this.edited = null; // the note that the user changes in the form; null: the form adds a note
+        this.edited = null; // the note being edited in the form; null: the form adds a note
         this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });
         this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
         this.until = make('select', { id: 'note-until', 'aria-label': say('notes.until') });
@@ -65,7 +65,7 @@ export class Notes {
         this.point();
     }
 
-    // Returns true if the user may add and remove notes, which no user may while the past is shown.
+    // Returns true if the user may add and remove notes; nobody may while the past is shown.
     get may() {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
@@ -102,7 +102,7 @@ export class Notes {
         this.at.disabled = Boolean(this.edited);
     }
 
-    // Fills the selection list of times at which the note ends. If the user edits a note, its present end comes first.
+    // Fills the selection list of end times for a note. While a note is edited, its present end comes first.
     offerEnds() {
         const { edited } = this, kept = edited && endText(this.session.model, edited);
         fillSelect(this.until, [...(kept ? [['kept', kept]] : []), ...UNTIL.map((name) => [name, say(`until.${name}`)])],
@@ -117,7 +117,7 @@ export class Notes {
         return hours ? Math.round(this.session.clockUs() + hours * 3600e6) : null;
     }
 
-    // Fills the form with the note that the user wants to change; null: empties the form.
+    // Fills the form with the note to edit; null: empties the form.
     edit(note) {
         this.edited = note;
         this.text.value = note?.text ?? '';
@@ -154,7 +154,7 @@ export class Notes {
         return inForce(this.session.notes, this.session.clockUs(), this.session.time.atUs);
     }
 
-    // Removes notes that have ended, and offers the current selection as something to attach a note to.
+    // Removes notes that have ended, and offers the current selection as the place of a new note.
     tick() {
         this.offer();
         if (this.notes.length !== this.list.children.length)
@@ -181,7 +181,7 @@ export class Notes {
                 this.pins.set(note.id, { position, element: this.pinOf(note), stem: makeStem() });
         }
         this.show();
-        // places the labels of sensors again, so that none covers a new pin
+        // repositions the sensor labels, so that none covers a new pin
         this.overlay.dirty = true;
         this.viewport.invalidate();
     }
@@ -190,11 +190,11 @@ export class Notes {
         const title = aboutText(this.session.model, note);
         const pin = make('button', { type: 'button', class: 'note-pin', title, onclick: () => this.lookAt(note) },
             make('span', {}, note.text));
-        byId('overlay').before(pin); // placed before the overlay, so that alarm rings and their labels are drawn over the pin
+        byId('overlay').before(pin); // inserted before the overlay, so that alarm rings and their labels are drawn over the pin
         return pin;
     }
 
-    // Returns who wrote a note, and until when it is shown.
+    // Returns a note's author, and until when the note is shown.
     authorOf(note) {
         return [note.by, endText(this.session.model, note)].filter(Boolean).join(' · ');
     }
@@ -206,7 +206,7 @@ export class Notes {
             this.isOwn(note) || (this.may && this.session.role === 'engineer') ? button('end', () => this.remove(note.id)) : null);
     }
 
-    // Returns true if the note is by the user's account, and the user may still change it.
+    // Returns true if the note was written from the user's account and the user may still change it.
     isOwn(note) {
         return this.may && note.by === this.name;
     }

@@ -17,7 +17,7 @@ export class Snapshot {
         Object.assign(this, { session, tell, pending: null });
         session.on('frame', (frame) => frame.flags & FLAG_SIGNED && this.pending?.frames.set(frame.seq, frame));
         session.on('hello', () => this.pending?.fail(new Error(say('reason.unreachable'))));
-        // only ends the pending request, because the page's error handler tells the user the reason
+        // only ends the pending request: the page's error handler tells the user the reason
         session.on('error', ({ about, code }) => (about === 'sign' || code === 'not_signed') && this.pending?.fail(null));
     }
 
@@ -67,7 +67,7 @@ export class Snapshot {
         const { session } = this, { camera, size, time } = session;
         if (session.params.show === 'difference' && !session.params.baseline?.name)
             throw new Error(say('snapshot.unnamed'));
-        // reads all values before the server answers, because the user may change the view or the instant meanwhile
+        // reads all values before waiting for the server, because the user may change the view or the instant meanwhile
         const query = { ...snapshotQuery({ carried: session.carried(), camera, size, time }), language }, now = session.clockUs();
         // no notes are added to a signed file, because they would invalidate its signature
         const us = time.atUs ?? now, notes = session.signs ? [] : inForce(session.notes, now, time.atUs);
@@ -76,7 +76,7 @@ export class Snapshot {
         return { blob: notes.length === 0 ? blob : await (await import('./snapshot_notes.js')).addNotes(blob, notes, place), us };
     }
 
-    // Requests that the server sign the next refined frame; once that frame is on the screen, returns its PNG file.
+    // Asks the server to sign the next refined frame. Returns its PNG file once that frame is on the screen.
     async onScreen() {
         const { session } = this, frames = new Map();
         let timer;

@@ -4,8 +4,8 @@ import { projector } from '../../core/camera.js';
 import { aboutText, placeOf } from '../../core/notes.js';
 
 const FONT_PX = 13, LINE = 1.45, DISC_PX = 9; // at 1280x720
-// distances of a note's disc (AWAY_PX) and of the disc's line (RING_PX) from the note's position, so that a marker with its alarm ring
-// there stays visible
+// distances from a note's position to its disc (AWAY_PX) and to the start of the disc's line (RING_PX), so that a marker with
+// its alarm ring there stays visible
 const AWAY_PX = 20, RING_PX = 9;
 
 // Splits a text into lines that fit the width. Lines end at blanks, or within a word that is longer than a line.
@@ -50,8 +50,8 @@ function drawDisc(pen, number, [x, y], unit) {
     pen.fillText(number, to, down);
 }
 
-// Returns a promise of a PNG file: the picture with its notes. half: { left, width } of a split view's left half, to which `camera` and the
-// positions of notes belong; for a view that is not split, of the whole picture.
+// Returns a promise of a PNG file: the picture with its notes. half: { left, width } of the part of the picture to which
+// `camera` and the notes' positions belong: the left half of a split view, else the whole picture.
 export async function addNotes(blob, notes, { model, camera, half }) {
     const picture = await createImageBitmap(blob), { width, height } = picture;
     const unit = Math.min(Math.max(Math.min(width / 1280, height / 720), 0.7), 8), size = FONT_PX * unit, indent = 2 * size;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows the newest picture from the present camera until the server's picture of that camera arrives. It draws the picture on a mesh over
-// the picture's depth grid, once per animation frame in which the camera has moved. Places that the picture does not show become grey, as
-// light as their surroundings, never coloured; a lattice is drawn over wide grey places. Loaded together with the camera controller.
+// Shows the newest picture from the present camera until the server's picture of that camera arrives. Draws it on a mesh over
+// its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show become grey, as
+// light as their surroundings, never coloured; wide ones get a lattice. Loaded together with the camera controller.
 import { same } from '../../core/camera.js';
 import { hasGpu } from '../../core/gpu.js';
 import { depthAt, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
@@ -10,18 +10,19 @@ import { make } from '../common/dom.js';
 import { CpuPainter } from './painters/cpu_painter.js';
 import { GlPainter } from './painters/gl_painter.js';
 
-const KEPT = 8; // maximum number of depth grids that are kept, because a grid may be decoded before its picture
+const KEPT = 8; // maximum number of stored depth grids: a grid may be decoded before its picture
 // distance from the eye to the near clipping plane, as a fraction of the nearest depth that the picture's depth grid can express
 const NEAREST = 0.05;
-// If frames are drawn later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
+// If frames are drawn more than SLOW_MS apart, as without a GPU, the warped picture is drawn with fewer pixels.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
 const FADE_MS = 80; // time in which the warped picture fades to the server's picture
-const LATE_MS = 1000; // if the worker that decodes depth grids does not answer for this time, pictures are shown without waiting for it
+const LATE_MS = 1000; // if the worker that decodes depth grids is silent for this long, pictures are shown without waiting for it
 
 const LATTICE_PX = 14;
 
-// Returns true if picture and viewport have the same shape. The width and height of a reduced picture are rounded to even numbers.
+// Returns true if picture and viewport have the same aspect ratio, but for the rounding of a reduced picture's sides to even
+// numbers.
 export const hasViewportShape = ({ shownWidth, fullWidth, fullHeight }) =>
     Math.abs(shownWidth - fullWidth) <= 2 + 2 * fullWidth / fullHeight;
 
@@ -30,13 +31,12 @@ const GL = { antialias: false, powerPreference: 'high-performance' };
 export class Warp {
     constructor({ session, viewport, modules }) {
         Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
-        // time since when decoded pictures wait for the worker that decodes their depth grids; null: they do not wait
+        // time since which decoded pictures have waited for the worker that decodes their depth grids; null: they do not wait
         this.waitsFrom = null;
         this.grids = [];    // newest depth grids, the newest last: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }
         this.held = null;   // newest frame, decoded but not drawn on the viewport's canvas: { frame, picture }
         this.source = null; // picture that is drawn warped: { picture, camera, parts }
-        // loaded: the value of `source` that the painter (which draws with WebGL or on the processor) has got; painted: the one that it has
-        // drawn
+        // loaded: the `source` that the painter (WebGL or processor) has loaded; painted: the one that it has drawn
         this.loaded = this.painted = null;
         this.canvas = make('canvas', { id: 'warp', 'aria-hidden': 'true' });
         this.canvas.style.display = 'none';
@@ -65,7 +65,7 @@ export class Warp {
             console.warn(`pictures are not warped: ${error.message}`);
             return false;
         }
-        canvas.width = canvas.height = 1; // a valid size until fit() sets the size of the drawing
+        canvas.width = canvas.height = 1; // a valid size until fit() sets the final one
         return true;
     }
 
@@ -233,7 +233,8 @@ export class Warp {
         return false;
     }
 
-    // Gives the newest picture and its mesh to the GlPainter or CpuPainter. Returns false if the canvas no longer has the picture.
+    // Loads the newest picture and its mesh into the GlPainter or CpuPainter. Returns false if the canvas no longer has the
+    // picture.
     load() {
         const { source, session, viewport, held } = this;
         if (source === this.loaded)
@@ -265,7 +266,8 @@ export class Warp {
             this.painter.resize(width, height);
     }
 
-    // Draws the picture as the present camera sees it. gone: fraction of the pixels that are left out, where the canvas below shows.
+    // Draws the picture as the present camera sees it. gone: fraction of the pixels left out, where the canvas below shows
+    // through.
     paint(camera, source, gone) {
         const { canvas, painter, session } = this, { picture, parts } = source, { fullWidth, fullHeight } = picture;
         this.fit(picture);
@@ -283,7 +285,7 @@ export class Warp {
         canvas.style.display = '';
     }
 
-    // Returns where a pixel of the picture appears on the warped picture, [x, y]; null: nowhere.
+    // Returns where a pixel of the picture appears in the warped picture, [x, y]; null: nowhere.
     moved(x, y) {
         const part = this.source?.parts.find(({ grid }) => x >= grid.x && x < grid.x + grid.width);
         const depth = part && depthAt(part.grid, x - part.grid.x, y - part.grid.y);

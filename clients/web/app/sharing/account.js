@@ -6,12 +6,13 @@ import { make } from '../common/dom.js';
 import { store } from '../common/storage.js';
 import { closeButton } from '../common/widgets.js';
 
-// Asks the server about the user. Returns a promise of { name, role, signed_in, until, sign_in (label of the button to sign in) }.
+// Asks the server who the user is. Returns a promise of { name, role, signed_in, until, sign_in (label of the button to sign
+// in) }.
 export async function whoAmI(session) {
     return (await ask('api/v1/me', {}, session.token)).json();
 }
 
-// Makes a button that signs in at the identity provider and returns to the current view. It also drops any access token.
+// Makes a button that signs in at the identity provider and returns to the current view. It also discards any access token.
 export function signInButton(label) {
     const go = () => {
         store('token', '');

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Handles the link that opened the page: goes to the tag or equipment that it names, and reports what does not exist in this plant.
+// Handles the link that opened the page: goes to the tag or equipment that it names, and reports the parts that this plant does
+// not have.
 import { SHARERS } from '../../core/links.js';
 import { put, refusalText } from '../../core/refusals.js';
 import { expand } from './short_link.js';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The share dialog: links to the current view, with a QR code. It also lists the sessions that follow this session's view, with buttons
-// that make another session the session whose view all others follow.
+// The share dialog: links to the current view, with a QR code. It also lists the sessions that follow this one, with buttons
+// that hand the lead to one of the listed sessions.
 import { shareLinks, SHARERS, shortLink } from '../../core/links.js';
 import { followerNames, leaderName } from '../../core/people.js';
 import { giveLead } from '../../core/requests.js';
@@ -57,8 +57,8 @@ export class Share {
         this.showView(view);
     }
 
-    // Asks the server for a short link to the view, once each time the user opens the dialog. Until the answer arrives, or without one, the
-    // long link is shown.
+    // Requests a short link to the view each time the user opens the dialog. Until the answer arrives, or without one, the long
+    // link is shown.
     shorten() {
         if (this.asked !== null || !SHARERS.includes(this.session.role))
             return;
@@ -66,7 +66,7 @@ export class Share {
         this.session.post({ type: 'share_view', seq: this.asked, view: new URL(this.view).hash.slice(1) });
     }
 
-    // Shows a link to the view that was shown when the dialog was opened.
+    // Shows a link to the view that was on the screen when the dialog was opened.
     showView(link) {
         this.view = link;
         this.show();

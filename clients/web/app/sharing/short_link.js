@@ -3,9 +3,9 @@
 import { ask } from '../../core/history.js';
 import { stored } from '../common/storage.js';
 
-const ANSWER_MS = 3000; // timeout in milliseconds: if the server does not answer, the page starts without the linked view
+const ANSWER_MS = 3000; // milliseconds to wait for the server; without an answer, the page starts without the linked view
 
-// Asks the server for the view of a short link. Replaces the link in the page's address by that view, and returns a promise of the view.
+// Asks the server for a short link's view, replaces the link in the page's URL with the view, and returns a promise of the view.
 export async function expand(id, token, fetcher) {
     const { view } = await (await ask('api/v1/link', { id }, token, fetcher)).json();
     history.replaceState(null, '', `${location.pathname}${location.search}#${view}`);

@@ -13,7 +13,7 @@ export class TokenDialog {
         const command = make('code', {}, 'plantcast token add');
         byId('token-note').replaceChildren(...around(say('token.note', { command: '\u0000' }), command));
         session.on('welcome', () => dialog.close());
-        // when closed by Escape, the dialog opens again, because nothing can be shown without a token
+        // reopens the dialog when Escape closes it, because nothing can be shown without a token
         dialog.addEventListener('close', () => {
             if (session.connection.state === 'barred')
                 dialog.showModal();
@@ -27,7 +27,7 @@ export class TokenDialog {
         });
     }
 
-    // code: of the server's refusal.
+    // code: the server's refusal code.
     async ask(code) {
         const dialog = byId('token'), field = byId('token-text');
         if (code === 'locked') {
@@ -38,8 +38,7 @@ export class TokenDialog {
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
         const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
-        // asks the server how a user can sign in, without the stored token, because the server would reject the request if that token is
-        // wrong
+        // asks the server how users can sign in; without the stored token, because the server would reject a wrong one
         const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
         if (!document.body.classList.contains('denied')) // does not ask for a token if another tab has obtained access in the meantime
             return;
@@ -57,7 +56,7 @@ export class TokenDialog {
             byId('token-title').after(make('p', { class: 'notice' }, text));
     }
 
-    // If the server has an identity provider, offers signing in there as the main way; entering a token is then the exception.
+    // If the server has an identity provider, offers to sign in there first; entering a token is then the exception.
     offerSignIn(label) {
         byId('token').querySelector('.sign-in')?.remove();
         if (!label)

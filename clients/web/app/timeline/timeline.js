@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time bar: a slider over the recorded history, which marks gaps, lost sources and raised alarms (marks can be clicked); playback,
-// speed, a date field, and the way back to the present.
+// The time bar: a slider over the recorded history, with marks for gaps, lost sources and raised alarms (which can be clicked);
+// playback, speed, a date field, and a button for the present.
 import { ageText, zoneClock } from '../../core/format.js';
 import { arrowS, ask, clustered, density, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
@@ -14,8 +14,8 @@ const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 2
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 // NOW_US: an instant less than this many microseconds ago counts as now
 const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_US = 3.5e6;
-// LOST_POINTS: number of history points per tag from which the periods of lost sources are found. BARS: position of the bars that show how
-// many alarms were raised; `full`: number of alarms for a bar of full height.
+// LOST_POINTS: history points per tag, from which the periods of lost sources are found. BARS: position of the bars that show
+// how many alarms were raised; `full`: number of alarms at full height.
 const TRACK = { top: 15, height: 10 }, BARS = { bottom: 58, height: 14, full: 10 }, BAR_PX = 5, LOST_POINTS = 300;
 // MARK_PX: smallest distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests when
 // searching for the next alarm
@@ -73,7 +73,7 @@ export class Timeline {
         if (open)
             this.turnTo(this.atUs);
         else
-            // removes the alarm marks, which would accumulate while the bar is closed; they are drawn again when it opens
+            // removes the alarm marks, which would accumulate while the bar is closed; they are redrawn when it opens
             byId('time-track').replaceChildren();
         if (!open && this.atUs !== null)
             travel(this.session, null);
@@ -88,7 +88,7 @@ export class Timeline {
         this.show();
     }
 
-    // Sets the time span that the slider covers: the time up to now, or around atUs if that is earlier.
+    // Sets the slider's time span: up to now, or around atUs if that is before the span up to now.
     turnTo(atUs) {
         const now = this.session.clockUs() ?? Date.now() * 1000;
         const ends = atUs !== null && atUs < now - this.spanUs ? Math.min(now, atUs + this.spanUs / 2) : now;
@@ -166,8 +166,8 @@ export class Timeline {
         this.modules.use('moment', (moment) => moment.show({ us, tag, kind, priority }, 0), 'moment');
     }
 
-    // Returns the alarm raised next after an instant, or with `backwards` the one before; null: none. The alarm journal returns its newest
-    // rows first.
+    // Returns the next alarm raised after an instant, or with `backwards` the previous one; null: none. The alarm journal
+    // returns its newest rows first.
     async alarmFrom(us, backwards) {
         let before = null;
         for (let i = 0; backwards && i < PAGES; i++) {
@@ -211,13 +211,13 @@ export class Timeline {
             this.askRaised(span),
             ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
             this.askLost(span),
-        ].map((one) => one.catch(() => []))); // if the request for a kind of marks fails, these marks are not drawn
+        ].map((one) => one.catch(() => []))); // if the request for one kind of marks fails, only these marks are missing
         Object.assign(this, { marks, gaps, lost: all });
         this.draw();
     }
 
-    // Returns a promise of the alarms raised in a time span. If there are too many, `marks.sinceUs` is the instant from which the list is
-    // complete.
+    // Returns a promise of the alarms raised in a time span. If there are too many, the list is complete only from the instant
+    // `marks.sinceUs` on.
     async askRaised(span) {
         const all = [];
         let before = null, page = null;
@@ -284,7 +284,7 @@ export class Timeline {
         return this.toUs - this.spanUs + ((left - THUMB_PX) * this.spanUs) / (width - 2 * THUMB_PX);
     }
 
-    // Draws a line at the instant at which the pointer points, on the slider or in a trend; null: no line.
+    // Draws a line at the instant under the pointer, on the slider or in a trend; null: no line.
     cross(us) {
         const track = byId('time-track'), width = track.clientWidth, from = this.toUs - this.spanUs;
         track.querySelector('.cross')?.remove();
@@ -325,7 +325,7 @@ export class Timeline {
                 makeSvg('title', {}, say('time.uncounted')));
         for (const [begins, ends] of this.gaps)
             hatch(begins, ends);
-        const thumb = x(from + Number(this.slider.value) * 1e6); // draws the slider's thumb again, which the hatching would cover
+        const thumb = x(from + Number(this.slider.value) * 1e6); // redraws the slider's thumb, which the hatching has covered
         if (nodes.some((node) => node.classList.contains('lost') || node.classList.contains('unrecorded')))
             nodes.push(makeSvg('circle', { class: 'thumb', cx: thumb, cy: 20, r: 8 }));
         for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Status bar, connection state and banner: always visible as text. Between messages from the server, ages of values grow by the page's own
+// Status bar, connection state and banner, always visible as text. Between the server's messages, values age by the page's own
 // clock.
 import { ageText, zoneClock } from '../../core/format.js';
 import { health, simulatedText } from '../../core/health.js';
@@ -7,7 +7,7 @@ import { say } from '../../core/words.js';
 import { clock } from '../common/clock.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
 
-export const BEHIND_MS = 500; // if the picture is older than the camera by more than this, the status bar says so
+export const BEHIND_MS = 500; // milliseconds; if the picture lags the camera by more, the status bar says so
 
 export class Status {
     // onFreshness(isFresh) is called when the server falls silent (isFresh false: shown values may be outdated), and when its messages

@@ -12,7 +12,7 @@ export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 
-// Returns the sets of colour bands that the sensor group defines: boundaries of the bands by the set's name.
+// Returns the colour band sets that the sensor group defines: boundaries of the bands by the set's name.
 export function bandsOf({ group }) {
     const limits = Object.values(group?.limits ?? {}).filter((limit) => limit !== null).sort((a, b) => a - b);
     return { group: group?.breaks ?? [], limits };
@@ -54,7 +54,7 @@ export class Toolbar {
         fillSelect(byId('show'), SHOWS, params.show ?? 'value');
     }
 
-    // Returns the name of the set of colour bands in use; 'chosen' if the user has chosen other boundaries.
+    // Returns the name of the colour band set in use; 'chosen' if the user has chosen other boundaries.
     breaksName() {
         const { params } = this.session;
         const same = ([, breaks]) => JSON.stringify(params.breaks) === JSON.stringify(breaks);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collapses parts of the toolbar for which there is no room: the display settings, and the tools behind a button.
+// Collapses parts of the toolbar that do not fit: the display settings, and the tools behind a button.
 import { byId } from '../common/dom.js';
 import { collapsiblePanel } from '../common/collapsible.js';
 

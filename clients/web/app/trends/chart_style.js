@@ -10,7 +10,8 @@ export const LOOKS = {
         lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0', '#7fd8e8', '#d9b793'] },
 };
 
-// unitPx: CSS pixels of a unit of the charts: 1 on a desk, more on a wall, which is seen from afar; leastText: smallest font size in units
+// unitPx: CSS pixels per unit of the charts: 1 on a desk, more on a wall, which is seen from afar; leastText: smallest font
+// size in units
 let unitPx = 1, leastText = 0;
 export function setChartUnit(px, least) {
     [unitPx, leastText] = [px, least];
@@ -18,7 +19,7 @@ export function setChartUnit(px, least) {
 // Convert a length in units of the charts to CSS pixels and to device pixels.
 export const toCss = (units) => units * unitPx;
 export const toPixels = (units) => units * unitPx * devicePixelRatio;
-// Returns a font size in units: the given one, or the smallest of the charts if that is larger.
+// Returns a font size in units: the given one, or the charts' smallest if that is larger.
 export const textSize = (units) => Math.max(units, leastText);
 
 // Draws a hatched rectangle for a period without values. The rectangle is clipped to the canvas, because a gap of days in a chart of

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drags a tag from the equipment list, or a marker from the picture, into the open trend.
+// Drags a tag from the equipment list, or a marker in the picture, into the open trend.
 import { nearestMarker } from '../../core/nearest.js';
 import { byId, make, setVariable } from '../common/dom.js';
 
 const REACH_PX = 8, STARTED_PX = 5;
 
-// trends: gets the dragged tag by add(tag). handlers.click(x, y, kind): called after a press on a marker without a drag.
+// trends: gets the dragged tag through add(tag). handlers.click(x, y, kind): called after a press on a marker without a drag.
 export function listenToDrags({ trends, session, overlay, handlers }) {
-    // the drag of a tag that is going on: { tag, x, y (of the press), ghost (label at the pointer), marker (position in the picture, or
+    // the current drag of a tag: { tag, x, y (of the press), ghost (label at the pointer), marker (position in the picture, or
     // null) }; null: none
     let drag = null;
 
@@ -30,7 +30,7 @@ export function listenToDrags({ trends, session, overlay, handlers }) {
             return;
         drag = { ...found, x: event.clientX, y: event.clientY, ghost: null };
         if (found.marker)
-            event.stopPropagation(); // or the camera would turn
+            event.stopPropagation(); // otherwise the camera would turn
     }, { capture: true });
 
     document.addEventListener('pointermove', ({ clientX, clientY }) => {
@@ -60,7 +60,7 @@ export function listenToDrags({ trends, session, overlay, handlers }) {
         if (ghost)
             swallowClick();
     };
-    // Stops the click event after a drag, which would select what is under the pointer.
+    // Suppresses the click event after a drag, which would select what is under the pointer.
     function swallowClick() {
         const stop = (click) => click.stopPropagation();
         document.addEventListener('click', stop, { capture: true, once: true });

@@ -16,7 +16,7 @@ const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // dash pattern of an uncertain a
 const DASH = [5, 11], FASTEST_PX = 60;
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;
 
-// Returns the path of an arrow along x, centred at 0.
+// Returns an arrow's path along x, centred at 0.
 function shape(length) {
     const head = Math.min(HEAD, length / 2), tip = length / 2;
     return new Path2D(`M${-tip} 0H${tip}M${tip - 0.85 * head} ${-head / 2}L${tip} 0L${tip - 0.85 * head} ${head / 2}`);
@@ -144,7 +144,7 @@ export class Arrows {
         c.setLineDash([]);
     }
 
-    // Adds to each legend the longest arrow at its true length, and what dashes and crosses mean if the picture has any.
+    // Adds to each legend the longest arrow at its true length, and the meaning of dashes and crosses if the picture has any.
     explain() {
         const { shown, picture } = this.session;
         const rows = this.session.markersOf(picture.seq)?.arrows ?? [];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes values along isolines, at positions without another label, and draws arrows. Loaded when there are isolines or arrows.
+// Writes values along isolines where no other label is, and draws arrows. Loaded when there are isolines or arrows.
 import { decimalsFor, shortNumberText } from '../../core/format.js';
 import { Arrows } from './arrows.js';
 import { INK } from './overlay.js';

@@ -42,15 +42,15 @@ export class Overlay {
         this.font = getComputedStyle(document.body).fontFamily;
         // size in CSS pixels of the unit in which markers and labels are measured: 1 on an ordinary page, more on a wall display
         this.unit = 1;
-        this.calm = document.body.classList.contains('pane'); // true in a pane of a wall: only abnormal readings have labels
+        this.calm = document.body.classList.contains('pane'); // true in a pane of a wall, where only abnormal readings have labels
         // markers { tag, x, y, depth, occluded, reading } of the tags of the shown group and of tags with alarms; x and y in units (see
         // `unit`)
         this.all = [];
         this.markers = []; // the drawn subset of `all`
         this.places = new Map();
         this.widths = new Map();
-        // called when call-outs (labels shared by several alarm rings) must be loaded: there are several rings, or a ring has no room for
-        // its label
+        // called when the module for call-outs (labels shared by several alarm rings) must be loaded: there are several rings,
+        // or a ring's label has no room
         this.onRings = () => {};
         this.dirty = true;
         this.fresh = true; // true: values are current; false: values are from before the connection was lost
@@ -76,7 +76,7 @@ export class Overlay {
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
         const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
-        // margin in pixels beyond the picture's edge within which markers are still drawn; 0 in a split view, where such markers would
+        // margin in pixels beyond the picture's edge within which markers are still drawn; 0 in a split view, where they would
         // appear in the other half
         const rim = params.split ? 0 : 20;
         const project = projector(picture.camera, width, picture.fullHeight);
@@ -114,7 +114,7 @@ export class Overlay {
     // Thins out the markers of each half of the view where they are dense. Returns those to draw, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        // tags whose markers passed the thinning in the previous picture, without those that are always drawn
+        // tags whose markers passed the thinning in the previous picture, except those that are always drawn
         const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
@@ -158,8 +158,8 @@ export class Overlay {
         this.isolines?.draw([...blocked, ...boxes, ...marks]);
     }
 
-    // Returns the boxes, in units of this.unit CSS pixels, of the HTML elements over the picture that do not move with it (legend, banner,
-    // open panels, ...), and of those that the selector `more` adds.
+    // Returns the boxes, in units of this.unit CSS pixels, of the HTML elements over the picture that do not move with it
+    // (legend, banner, open panels, ...), and of those that match the selector `more`.
     boxesOver(more) {
         const { unit, viewport: { element } } = this, origin = element.getBoundingClientRect();
         const within = element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`);
@@ -170,7 +170,7 @@ export class Overlay {
             }));
     }
 
-    // Returns the boxes of everything that labels must not cover.
+    // Returns the boxes that labels must not cover.
     blocked() {
         const own = this.boxesOver(', .card, .note-pin');
         const middle = this.wide / 2; // also blocks the line between the halves of a split view, so that no label crosses it
@@ -181,8 +181,8 @@ export class Overlay {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
-    // Places the labels of each half of a split view. Requests the module for call-outs (labels shared by several alarm rings) when rings
-    // may need it.
+    // Places the labels of each half of a split view. Requests the module for call-outs (labels shared by several alarm rings)
+    // if rings may need it.
     place(labels, blocked) {
         const { shown } = this.session, { wide: width, high: height, callouts } = this;
         const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
@@ -195,7 +195,7 @@ export class Overlay {
         return all;
     }
 
-    // Returns labels for all visible markers and all alarm rings, in the order of tags. The selected tag has a card instead of a label.
+    // Returns labels for all visible markers and all alarm rings, in the order of tags. The selected tag has a card instead.
     labels() {
         const marks = this.markers.filter((marker) => !marker.occluded || marker.alarm);
         const inSight = marks.filter(({ occluded }) => !occluded);

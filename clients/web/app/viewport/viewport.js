@@ -5,8 +5,8 @@ import { DecodeQueue } from '../../core/decode_queue.js';
 import { isWhole, pictureSize } from '../../core/wire.js';
 
 const RESIZE_WAIT_MS = 100;
-// Converts a length in CSS pixels to device pixels. `exact`: the browser's own measurement. It is used unless it differs by more than 2
-// pixels, as on emulated screens, where it ignores page zoom.
+// Converts a length in CSS pixels to device pixels. `exact`: the browser's own measurement, used unless it differs by more than
+// 2 pixels: on emulated screens it ignores page zoom.
 function devicePixels(cssPx, exact) {
     const px = Math.round(cssPx * window.devicePixelRatio);
     return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
@@ -22,7 +22,7 @@ export class Viewport {
         this.context = canvas.getContext('2d', { alpha: false });
         this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete picture
         this.scheduled = false;
-        this.warp = null; // draws the newest picture from the present camera: a Warp (../picture/warp.js); null: not loaded yet
+        this.warp = null; // draws the newest picture from the present camera (a Warp, ../picture/warp.js); null: not loaded yet
         this.onTick = this.onDrawn = () => {};
         this.slot = new DecodeQueue({
             decode: (frame) => decoding.decode(frame),
@@ -69,7 +69,7 @@ export class Viewport {
         try {
             observer.observe(this.element, { box: 'device-pixel-content-box' });
         } catch {
-            observer.observe(this.element); // Safari does not know device-pixel-content-box
+            observer.observe(this.element); // Safari does not support device-pixel-content-box
         }
     }
 
@@ -84,7 +84,7 @@ export class Viewport {
             this.invalidate();
     }
 
-    // Drops queued frames when the connection is lost, because a new connection numbers frames from the start again.
+    // Drops queued frames when the connection is lost, because a new connection restarts the frame numbers.
     forget() {
         this.slot.clear();
         for (const { picture } of this.decoded)
@@ -110,14 +110,14 @@ export class Viewport {
             this.canvas.width = frame.fullWidth;
             this.canvas.height = frame.fullHeight;
         }
-        // leaves out the right and lower edge of the decoded picture, which may be one pixel wider and higher than the frame
+        // leaves out the right and lower edge of the decoded picture, which may exceed the frame by one pixel
         const { x, y, width, height } = frame;
         this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
         picture.close();
     }
 
-    // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another aspect ratio is scaled to
-    // the viewport's height, undistorted. picture.shownWidth: the viewport's width in pixels of the picture.
+    // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another aspect ratio is
+    // scaled, undistorted, to the viewport's height. picture.shownWidth: the viewport's width in pixels of the picture.
     draw() {
         const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1;
         const drawn = this.warp?.waits(this.decoded) ? [] : this.decoded.splice(0, complete);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The clip gizmo: handles with arrows on the clip plane, or on the sides and at the centre of the clip box, for mouse, touch, pen and keys.
-// The handles move with the picture in each half of the view. Loaded when the user first clips the plant.
+// The clip gizmo: handles with arrows on the clip plane, or on the sides and at the centre of the clip box, for mouse, touch,
+// pen and keys. The handles move with the picture in each half of the view. Loaded on the first use of clipping.
 import { projector } from '../../core/camera.js';
 import { numberText } from '../../core/format.js';
 import { alongSight, beforeEye, facing, gripsOf, moveBox, moveGrip, spotsOf, wholeOf } from '../../core/clip_gizmo.js';
@@ -29,8 +29,8 @@ export class ClipGizmo {
         viewport.element.append(this.label);
     }
 
-    // Handles within the plant's bounds; an empty list while this page follows another session. The centre handle of a box comes first, so
-    // that no other handle takes its position.
+    // Handles within the plant's bounds; an empty list while this page follows another session. A box's centre handle comes
+    // first, so that no other handle takes its position.
     get grips() {
         const { model, params, following } = this.session;
         return model && !following ? [wholeOf(params.clip), ...gripsOf(params.clip, model.plant.bounds)].filter(Boolean) : [];
@@ -53,7 +53,7 @@ export class ClipGizmo {
         const grips = this.session.picture ? this.grips : [], views = grips.length > 0 ? this.views : [];
         for (const [key, button] of this.buttons)
             if (button.half >= views.length || !grips.some(({ id }) => id === button.dataset.id)) {
-                this.buttons.delete(key); // removes the handle from the map first, because removing a focused button calls show() again
+                this.buttons.delete(key); // removes the handle from the map first: removing a focused button calls show() again
                 button.remove();
             }
         this.lines.replaceChildren();
@@ -71,7 +71,7 @@ export class ClipGizmo {
             const button = this.buttons.get(`${grip.id}/${half}`) ?? this.make(grip.id, half);
             const held = this.dragging?.button === button ? this.dragging.spot : null;
             const stays = button.matches(':focus') ? { number: 0 } : null;
-            // the focused handle is not hidden even if it has no free position
+            // the focused handle stays visible even if it has no free position
             const spot = held ?? this.spotOf(grip, view, taken, covers) ?? stays;
             button.hidden = spot === null;
             if (!spot)
@@ -184,15 +184,15 @@ export class ClipGizmo {
         });
     }
 
-    // Returns the point of the handle's line that is under the pointer, in metres along the line; for a whole box a position. Returns null
-    // if the point is undefined.
+    // Returns the point of the handle's line under the pointer, in metres along the line; for a whole box a position; null if
+    // undefined.
     under({ grip, point, button }, [x, y]) {
         const { camera, left, width, height } = this.views[button.half] ?? this.views[0], line = sight(camera, x - left, y, width, height);
         return grip.id === 'whole' ? facing(camera, point, line) : alongSight(point, grip.direction, line);
     }
 
-    // Returns by how many metres the user has dragged the handle along its line. If the line points at the camera, the pointer's vertical
-    // movement counts instead.
+    // Returns how many metres the user has dragged the handle along its line. If the line points at the camera, the pointer's
+    // vertical movement counts instead.
     taken(dragging) {
         const { at, from, grip, y: began } = dragging;
         if (from === null)

@@ -81,8 +81,8 @@ export class Compare {
         inner.head.append(inner.importNode(make('link', { rel: 'stylesheet', href: new URL('compared.css', import.meta.url).href })));
     }
 
-    // Connects the embedded page once it shows a picture. Camera moves in the embedded page also move this page's camera; this page carries
-    // out keyboard commands of the embedded page.
+    // Connects the embedded page once it shows a picture. Its camera moves also move this page's camera; its keyboard commands
+    // are carried out by this page.
     connect(page) {
         this.connected = page;
         page.session.on('camera', () => this.frame && this.session.setCamera(page.session.camera));

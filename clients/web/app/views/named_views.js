@@ -22,7 +22,8 @@ export class NamedViews {
         session.on('views', () => {
             this.show();
             if (this.isNew && session.named && this.own && this.own !== engineersOf(session))
-                // the server has forgotten this session: takes the parameters that only engineers may send from the saved view again
+                // the server has forgotten this session: requests the parameters that only engineers may send from the saved
+                // view again
                 this.regain(session.named);
             this.isNew = false;
         });
@@ -55,8 +56,8 @@ export class NamedViews {
         this.mark();
     }
 
-    // Sets the parameters that only engineers may send from a saved view, after a reload or a reconnect: this session may not send them
-    // itself.
+    // Takes the parameters that only engineers may send from a saved view, after a reload or a reconnect: this session may not
+    // send them itself.
     regain(id) {
         const { session } = this;
         if (!session.views.some((view) => view.id === id)) {
@@ -68,13 +69,14 @@ export class NamedViews {
         session.setParams(regained(session, id));
     }
 
-    // id: saved view whose parameters for engineers the session shows; null: none.
+    // id: saved view whose engineers' parameters the session shows; null: none.
     remember(id) {
         this.session.named = id;
-        this.own = null; // the parameters for engineers as text, once the server has taken them from the saved view
+        this.own = null; // the engineers' parameters as text, once the server has taken them from the saved view
     }
 
-    // Forgets which saved view is shown when its parameters for engineers change, for example because the user shows another sensor group.
+    // Forgets which saved view is shown when its engineers' parameters change, for example because the user shows another
+    // sensor group.
     watch() {
         const { session } = this;
         if (!session.named || this.isNew || session.params !== session.confirmed)
@@ -98,8 +100,8 @@ export class NamedViews {
             if (fly)
                 modules.use('cameraController', (controller) => controller.flyTo(camera));
             else if (modules.awaited.has('cameraController'))
-                // an earlier flight may still wait for these modules; land() ends it. No camera is set here, because the user may have
-                // moved the camera since
+                // an earlier flight may still wait for these modules; land() ends it. Sets no camera, because the user may have
+                // moved it since
                 modules.use('cameraController', (controller) => controller.land());
         });
     }
@@ -206,7 +208,7 @@ export class NamedViews {
                 if (image)
                     image.src = url;
             } catch {
-                break; // stops requesting thumbnails after a failure; a view without a thumbnail is still listed by its title
+                break; // stops requesting thumbnails after a failure; views without a thumbnail are still listed by title
             }
         }
         this.drawing = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Controls a control room's wall from a desk: sends the current view to a pane of the wall, keeps the pane on a view, and points at a
-// position of the plant.
+// Controls a control room's wall from a desk: sends the current view to a pane of the wall, holds the pane on a view, and
+// points at a position in the plant.
 import { quantityText, zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { textOf, viewOf } from '../../core/named_views.js';
@@ -66,7 +66,7 @@ export class Remote {
         return { view, title };
     }
 
-    // Title of the current view for the pane: that of the saved view that is open, else the name of the selection, else that of the
+    // Title of the current view for the pane: that of the open saved view, else the name of the selection, else that of the
     // quantity.
     get title() {
         const { session } = this, { params, model, group } = session, opened = this.page.modules.there('namedViews')?.opened;
@@ -120,7 +120,7 @@ export class Remote {
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
     }
 
-    // Returns true while the answer to the previous pick request is pending. The next request must wait, because the server answers only
+    // Returns true while the previous pick request is unanswered. The next request must wait, because the server answers only
     // the latest, and a pick by the user's click takes precedence.
     waitsFor(now) {
         const { pickSeq } = this.session;

@@ -33,8 +33,8 @@ export class Split {
         this.session.setParams({ split: params.split ? null : this.first() });
     }
 
-    // Returns what the right half shows first: the sensor group that the view showed before, else the next group. If that is the left
-    // half's group, the right half shows its alarm limits, or its values if the left half shows the limits.
+    // Returns what the right half shows first: the sensor group shown before, else the next group. If that is the left half's
+    // group, the right half shows its alarm limits, or its values if the left half shows the limits.
     first() {
         const { model, params } = this.session, { groups } = model, now = groups.findIndex(({ id }) => id === params.group);
         const last = model.group(this.last)?.id ?? groups[(now + 1) % groups.length].id;
@@ -67,8 +67,8 @@ export class Split {
             fillSelect(select, choices[name], right[name]);
             if (!ENGINEERS.includes(name))
                 continue;
-            // A control that the user may not change is visible only if its value differs from the left half, or from the defaults of
-            // another group.
+            // A control that the user may not change is visible only if its value differs from the left half's, or from the
+            // default of another group.
             const differs = right[name] !== (right.group === params.group ? params : group)[name];
             select.disabled = role !== 'engineer';
             select.parentElement.hidden = select.disabled && !differs;

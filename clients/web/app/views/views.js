@@ -49,7 +49,7 @@ export class Views {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
-    // Takes from a saved view the parameters that only engineers may send: this session may not send them itself.
+    // Takes the parameters that only engineers may send from a saved view: this session may not send them itself.
     regain(id) {
         this.modules.use('namedViews', (named) => named.regain(id), 'open');
     }

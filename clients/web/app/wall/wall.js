@@ -6,14 +6,14 @@ import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
 import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
-const FAR_MS = 60000; // time in milliseconds for which the page tells the installer from which distance its text is readable
+const FAR_MS = 60000; // milliseconds for which the page tells the installer from which distance its text is readable
 // smallest height of the picture as a fraction of the window's height; the whole page shrinks rather than the picture
 const LEAST_PICTURE = 0.3;
 const TIGHT = 620; // width of the display, in units of page.unit, below which the date has no room next to the time
 
-// Sets page.unit (size of a unit of the page) and calls page.onUnit() when it changes. Sets page.lying, which has a media query's
-// interface: whether legends lie horizontally. Legends and the note on simulated values have space of their own, so that they cover no
-// reading.
+// Sets page.unit (size of the page's unit) and calls page.onUnit() when it changes. Sets page.lying, with a media query's
+// interface: whether legends lie horizontally. Legends and the note on simulated values have space of their own, so that they
+// cover no reading.
 export async function hangOnWall(search, page) {
     const pane = new URLSearchParams(search).get('pane'), wall = readWall(search);
     const hear = [], legends = make('div', { class: 'legends' }), { classList } = byId('viewport');
@@ -29,7 +29,7 @@ export async function hangOnWall(search, page) {
         if (turned)
             hear.forEach((f) => f());
     };
-    // Scales the page to the window. Returns the largest distance from which the text is readable.
+    // Scales the page to the window. Returns the greatest distance from which the text is readable.
     const fit = () => {
         const { innerWidth: width, innerHeight: height } = window, { scale, metres } = wallFit(wall, window.screen, { width, height });
         hang(scale);

@@ -6,7 +6,7 @@ import { Layers, Raster } from '../../../core/warp_raster.js';
 export class CpuPainter {
     constructor(canvas) {
         this.canvas = canvas;
-        // an opaque canvas, because browsers without a GPU then need not draw what the canvas covers
+        // an opaque canvas, because browsers without a GPU need not draw what such a canvas covers
         this.context = canvas.getContext('2d', { alpha: false });
         this.scratch = make('canvas');
         this.copy = this.scratch.getContext('2d', { willReadFrequently: true });
@@ -19,7 +19,7 @@ export class CpuPainter {
         this.image = new ImageData(new Uint8ClampedArray(this.raster.pixels.buffer), width, height);
     }
 
-    // Returns the 2D context of a hidden canvas, through which pixels are read and mixed, after setting the canvas to this size.
+    // Sets the size of a hidden canvas, through which pixels are read and mixed, and returns its 2D context.
     copyOf(width, height) {
         if (this.scratch.width !== width || this.scratch.height !== height)
             Object.assign(this.scratch, { width, height });
@@ -35,8 +35,8 @@ export class CpuPainter {
         this.parts = parts;
     }
 
-    // Draws the loaded picture from another camera. gone: fraction of the pixels that are left out, in a dither pattern, while the picture
-    // fades out; there the picture on the canvas `below` shows.
+    // Draws the loaded picture from another camera. gone: fraction of the pixels left out, in a dither pattern, while the
+    // picture fades out; there the canvas `below` shows through.
     paint(matrices, boxes, period, gone, below) {
         const { raster, layers, context, image, canvas: { width, height } } = this;
         raster.clear();

@@ -36,8 +36,8 @@ const BEHIND = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }`;
-// Places that the picture does not show become grey. From a reduced picture, which is fast also without a GPU, this shader computes the
-// grey of their surroundings and how wide these places are.
+// Places that the picture does not show become grey. This shader computes, from a reduced picture (fast even without a GPU),
+// the grey around such places and how wide they are.
 const AROUND = `#version 300 es
 precision highp float;
 uniform sampler2D drawn;
@@ -100,7 +100,7 @@ export class GlPainter {
     // Throws if a shader program does not compile.
     constructor(gl) {
         this.gl = gl;
-        this.loaded = null; // halves of the picture whose meshes and masks WebGL has
+        this.loaded = null; // halves of the picture whose meshes and masks are loaded into WebGL
         // for each half in `loaded`: { buffers (its mesh), masks (texture: which pixels belong to the nearer of two surfaces) }
         this.uploaded = [];
         this.mesh = programOf(gl, MESH, PICTURE);
@@ -146,7 +146,7 @@ export class GlPainter {
         gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     }
 
-    // Gives a picture and the meshes of its halves to WebGL.
+    // Uploads a picture and the meshes of its halves.
     load(pixels, parts) {
         const { gl } = this;
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
@@ -154,7 +154,7 @@ export class GlPainter {
         // uses the visible size, because a video frame's coded size may be a pixel wider and higher
         this.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
         if (parts === this.loaded)
-            return; // an earlier picture with the same depth grids has already uploaded their meshes
+            return; // the meshes are uploaded already, for an earlier picture with the same depth grids
         for (const { buffers, masks } of this.uploaded) {
             buffers.forEach((buffer) => gl.deleteBuffer(buffer));
             gl.deleteTexture(masks);
@@ -175,9 +175,10 @@ export class GlPainter {
         return { buffers, masks: texture };
     }
 
-    // Draws the loaded picture from another camera. matrices, boxes: for each half, the result of warpMatrix(), and { left, top, width,
-    // height } in drawn pixels. period: distance in drawn pixels between the lines of the lattice that marks places that the picture does
-    // not show. gone: fraction of the pixels that are left out while the picture fades; there the canvas below shows.
+    // Draws the loaded picture from another camera. matrices, boxes: for each half, the result of warpMatrix(), and { left,
+    // top, width, height } in drawn pixels. period: distance in drawn pixels between the lines of the lattice that marks places
+    // that the picture does not show. gone: fraction of the pixels left out while the picture fades; there the canvas below
+    // shows through.
     paint(matrices, boxes, period, gone) {
         const { gl, mesh } = this;
         gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
