@@ -25,8 +25,8 @@ const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null };
 const PARAMS = { radius: 'radius_m', reach: 'reach_m' };
 const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 
-// Returns the fragment for a view. own: default values of parameters, such as those of the sensor group; parameters with these values are
-// left out. named: id of the saved view from which the server takes the parameters that only engineers may send.
+// Returns the fragment for a view. own: default values of parameters, such as those of the sensor group; parameters with these
+// values are left out. named: id of the saved view that supplies the engineer-only parameters.
 export function writeAddress({ camera, params: all = {}, tag = null, time = null, own = {}, named = null }) {
     const params = named ? withoutEngineers(all) : all;
     const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);

@@ -10,7 +10,7 @@ const ACTIONS = { // actions by alarm state, for alarms that Plantcast manages i
 };
 const ROLES = { in_service: ['engineer'] };
 
-// Returns the actions that a role may do to an alarm in this state. mode: the plant's alarm mode.
+// Returns the actions that a role may take on an alarm in this state. mode: the plant's alarm mode.
 export function actionsFor({ state }, mode, role) {
     const may = (action) => (ROLES[action] ?? ['operator', 'engineer']).includes(role);
     return mode === 'local' ? (ACTIONS[state] ?? []).filter(may) : [];

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selects the alarm whose position a wall's pane shows instead of its view: the unacknowledged alarms in turn, active before returned, then
-// by urgency and age. Selects none during a flood of alarms, because a picture that keeps changing would help nobody.
+// Selects the alarm whose position a wall's pane shows instead of its view. The unacknowledged alarms take turns: active before
+// returned, then by urgency and age. During a flood of alarms none is selected, because a constantly changing picture would
+// help nobody.
 import { isGone } from './alarms.js';
 
-export const TURN_MS = 10000;  // smallest time in milliseconds between two changes of the picture
+export const TURN_MS = 10000;  // minimum time in milliseconds between two changes of the picture
 export const FLOOD = 10; // more alarms than this within FLOOD_US are a flood, during which the pane shows its own view
 const FLOOD_US = 600e6;
 

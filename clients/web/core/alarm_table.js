@@ -16,17 +16,19 @@ const ORDERS = {
 
 export const sortable = (name) => name in ORDERS;
 
-// Returns the rows sorted by a column. by null: the rows keep their order. Rows with equal values in the column keep their order.
+// Returns the rows sorted by a column; by null: in their present order. Rows with equal values in the column keep their order.
 export function sortRows(rows, { by, down }) {
     const order = ORDERS[by], sign = down ? -1 : 1;
     return order ? [...rows].sort((a, b) => sign * order(a, b)) : rows;
 }
 
-// Returns the sort order after a click on a column's title. Clicks switch from this column, to this column reversed, to the server's order.
+// Returns the sort order after a click on a column's title. Clicks cycle through this column, this column reversed, and the
+// server's order.
 export const nextSort = ({ by, down }, name) =>
     (by !== name ? { by: name, down: false } : down ? { by: null, down: false } : { by: name, down: true });
 
-// Returns the area of a tag's equipment; if the equipment has no area, its tag name (such as P-101) or id; empty for a field device.
+// Returns the area of a tag's equipment, or the equipment's tag name (such as P-101) or id if it has no area; empty for a field
+// device.
 export function areaOf(model, { asset: id }) {
     const asset = id ? model.asset(id) : null;
     return asset ? asset.area || asset.tag || asset.id : '';
@@ -36,7 +38,7 @@ export function areaOf(model, { asset: id }) {
 export const areasOf = (rows) => [...new Set(rows.map(({ area }) => area).filter(Boolean))]
     .sort((a, b) => a.localeCompare(b, undefined, { numeric: true }));
 
-// Returns true if a row is in the chosen area and has the chosen priority; '' chooses all.
+// Returns true if a row is in the chosen area and has the chosen priority; '' matches any.
 export const isIn = (row, { area = '', priority = '' }) =>
     (area === '' || row.area === area) && (priority === '' || row.priority === Number(priority));
 
@@ -47,13 +49,13 @@ export function journalRow(model, { id, time_us: us, tag: name, kind, event, sta
         area: areaOf(model, tag), about: tag.description ?? '' };
 }
 
-// A cell that a spreadsheet would run as a formula gets an apostrophe in front, as in the server's own CSV files.
+// Puts an apostrophe before a cell that a spreadsheet would run as a formula, as the server's own CSV files do.
 function csvCell(value) {
     const text = String(value), safe = typeof value === 'string' && /^[=+\-@\t\r]/.test(text) ? `'${text}` : text;
     return /[,"\n\r]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }
 
-// Names of the columns of the export; the same for alarms and for the journal.
+// Column names of the export, the same for alarms and for the journal.
 const EXPORTED = ['time', 'state', 'event', 'priority', 'tag', 'kind', 'area', 'description', 'value', 'limit', 'unit', 'who', 'reason'];
 
 // Returns rows as CSV, with times in UTC.

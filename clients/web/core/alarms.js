@@ -10,7 +10,7 @@ const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged'
 export const calls = (state) => CALLS.includes(state);
 export const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
 export const isGone = (state) => state === 'returned' || state === 'latched'; // returned to normal: drawn hollow
-// Makes an object for the alarm of a device, which has no tag, with the members that a tag has.
+// Makes a tag-like object for the alarm of a device, which has no tag.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
 
 const isOuter = ({ kind }) => kind === 'HH' || kind === 'LL';
@@ -26,7 +26,7 @@ export class Alarms {
         // list of alarms
         this.times = null;
         this.rows = new Map(); // "tag index/kind" -> alarm
-        this.then = null; // readings of the past instant that is shown, which then determine each tag's alarm; null: the present is shown
+        this.then = null; // readings of the past instant shown, which then determine each tag's alarm; null: the present is shown
         // tag index or device name -> its most urgent annunciated alarm. Its member `waiting` is true if any alarm of the tag is
         // unacknowledged,
         this.byTag = new Map();

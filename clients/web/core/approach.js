@@ -7,16 +7,15 @@ import { along, dot, length, subtract, unit } from './vector.js';
 // The camera's distance from a sensor is the larger of PART times the middle side and LONG_PART times the longest side of the bounding box
 // of the sensor's equipment.
 const PART = 1.1, LONG_PART = 0.7;
-const LEAST_M = 0.2, MOST_M = 16; // least and largest distance of the camera in plants of usual size, in metres
+const LEAST_M = 0.2, MOST_M = 16; // minimum and maximum distance of the camera in plants of usual size, in metres
 // bounds of the camera's distance from a sensor in very small and very large plants, as fractions of the plant's diagonal
 const LEAST_PART = 1 / 200, MOST_PART = 1 / 20;
 const FILL = 0.42; // fraction of the picture that the equipment's box fills, unless the bounds of the distance prevent it
-// A side of the equipment looks narrow if the camera must go nearer than NARROW times the largest distance that the first FRONT cameras
-// have, until the equipment fills FILL of the picture. Narrow sides are tried last, because they show little: of a pump, only the motor's
-// fan cover.
+// A side of the equipment is narrow if it fills FILL of the picture only from less than NARROW times the largest distance of
+// the first FRONT cameras. Narrow sides are tried last because they show little: of a pump, only the motor's fan cover.
 const NARROW = 0.75, FRONT = 9;
-// A plate seen along its faces is a line, although its bounding rectangle may be large. A side from which the equipment's box covers less
-// than EDGE times its largest silhouette is also tried last.
+// A plate seen edge-on is a line, although its bounding rectangle may be large. Sides from which the equipment's box covers
+// less than EDGE times its largest silhouette are therefore also tried last.
 const EDGE = 0.4;
 const STEPS = 16;  // bisections of the distance
 const TURNS = [ // degrees: about the vertical, up
@@ -30,8 +29,8 @@ export function distanceBounds({ min, max }) {
     return { least: Math.min(LEAST_M, size * LEAST_PART), most: Math.max(MOST_M, size * MOST_PART) };
 }
 
-// Returns the largest distance from which equipment with these bounds can be recognised. It depends on the middle side, since pipes and
-// columns are long.
+// Returns the largest distance from which equipment with these bounds can be recognised. It depends on the box's middle side,
+// because pipes and columns are long.
 export function approachDistance({ min, max }, { least, most }) {
     const [, medium, longest] = subtract(max, min).sort((a, b) => a - b);
     const wanted = Math.max(PART * medium, LONG_PART * longest);
@@ -58,7 +57,7 @@ export function silhouetteOf({ eye, target }, { min, max }) {
     return dot(unit(subtract(eye, target)).map(Math.abs), faces) / largest || 0; // a box of size 0 gives NaN: returns 0
 }
 
-// Returns the camera at another distance from its target, in the same direction.
+// Returns the camera moved along its viewing direction to another distance from its target.
 export function atDistance(camera, metres) {
     const back = unit(subtract(camera.eye, camera.target));
     const lens = isParallel(camera) ? { height_m: camera.height_m * (metres / distance(camera)) } : {};

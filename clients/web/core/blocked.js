@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds out why no WebSocket opens although the same server delivered the page. Usually a proxy in between does not forward WebSockets: the
-// message names the proxy and the settings that it needs.
+// Finds out why no WebSocket opens although the same server delivered the page. Usually a proxy in between does not forward
+// WebSockets; the message then names the proxy and the settings that it needs.
 import { put } from './refusals.js';
 import { say } from './words.js';
 
@@ -13,7 +13,7 @@ const proxyOf = (headers) => headers.get('server')?.split(/[/ ]/)[0] || /^\S+ ([
 // Returns the reason why the WebSocket at `url` does not open; '' if the server does not answer over HTTP either.
 async function whyBlocked(url) {
     const address = new URL(url.replace(/^ws/, 'http'));
-    address.search = '?why'; // with ?why the server does not log this HTTP request as a failed WebSocket
+    address.search = '?why'; // ?why tells the server not to log this HTTP request as a failed WebSocket
     const answer = await fetch(address, { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) });
     if (answer.status >= 500)
         return '';

@@ -6,17 +6,17 @@ import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 // Distances in CSS pixels (larger on a wall). Alarm rings closer than CLOSE get one label together. Rings that already share a label keep
 // it up to the distance STILL_CLOSE, so that labels do not flicker.
 const CLOSE = 26, STILL_CLOSE = 34;
-// MOST_GROUPS: maximum number of labels. As long as there are more, CLOSE and STILL_CLOSE are multiplied by FARTHER, so that more alarm
-// rings share a label.
+// MOST_GROUPS: maximum number of labels. While there are more, CLOSE and STILL_CLOSE are multiplied by FARTHER, so that more
+// alarm rings share a label.
 const MOST_GROUPS = 24, FARTHER = 1.25; // more rings than MOST_GROUPS count as a flood of alarms
 const MOST_LEADS = 4; // maximum number of leader lines of a call-out; if more rings are within FARTHEST, only the nearest has one
-// steps, in CSS pixels (larger on a wall), of the grid of positions that are tried for a label around the centre of its alarm rings; STEPS:
-// on each side
+// grid of candidate positions for a label around the centre of its alarm rings: steps in CSS pixels (larger on a wall); STEPS:
+// number of steps to each side
 const STEP_X = 24, STEP_Y = 15, STEPS = 60;
-// largest distance, in CSS pixels (larger on a wall), of a label from the bounding box of its alarm rings, unless it is the only label that
-// remains; also the longest leader line from a label to the centre of a ring
+// maximum distance, in CSS pixels (larger on a wall), of a label from the bounding box of its alarm rings, unless no other
+// label remains; also the maximum length of a leader line, from a label to the centre of a ring
 const FARTHEST = 60;
-// maximum number of times that CLOSE is multiplied by FARTHER; after that it exceeds any picture
+// maximum number of times that CLOSE is multiplied by FARTHER; the result exceeds any picture
 const MOST_GROWTHS = 100;
 
 const OFFSETS = []; // candidate positions for a label relative to the centre of its rings: [x, y, squared distance], nearest first
@@ -68,7 +68,7 @@ function anchorsOf(items) {
 function group(members, measure) {
     const [left, right, top, bottom] = boundsOf(members);
     const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
-    // the ring whose previous label position is reused: its previous label was of the same kind (own label or call-out)
+    // the ring whose previous label position is reused; that label must have been of the same kind (own label or call-out)
     const before = members.find(({ callout }) => (callout === undefined) === alone);
     return {
         members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,

@@ -5,7 +5,7 @@
 import { along, cross, dot, finite, length, middle, subtract, unit } from './vector.js';
 
 export const RADIANS = Math.PI / 180;
-// smallest distance from eye to target, and smallest height_m, that the server accepts, in metres
+// minimum distance from eye to target, and minimum height_m, that the server accepts, in metres
 export const LEAST_M = 1e-5;
 export const MAX_COORDINATE_M = 1e7;
 export const USUAL_FOV = 45;
@@ -94,8 +94,8 @@ function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, 
     return { ...camera, eye: along(target, axes.forward, -back), target };
 }
 
-// Returns the camera of the home view, which shows the whole plant. The plant file's home camera is used unchanged if everything that it
-// shows at 16:9 is visible in this window, otherwise it is moved back.
+// Returns the camera of the home view, which shows the whole plant. The plant file's home camera is used unchanged if
+// everything that it shows at 16:9 fits into this window; otherwise it is moved back.
 export function home({ home: { given, ...view }, outline }, width, height, window = {}) {
     const aspect = width / height, sees = (shape, { right = 1, top = 1 }) => {
         const project = projector(view, 2 * shape, 2);

@@ -23,7 +23,7 @@ export const wholeOf = ({ assets, plant }) => ({
     max: plant.bounds.max.map((m, i) => Math.max(m, ...assets.map(({ bounds }) => bounds.max[i]))),
 });
 
-// Returns the limits of zoom for a plant: wider than usual for very small or large plants.
+// Returns a plant's zoom limits, which are wider than usual for very small or large plants.
 export function zoomLimits(model) {
     const size = ({ min, max }) => length(subtract(max, min));
     return { near_m: Math.max(LEAST_M, Math.min(USUAL_LIMITS.near_m, size(model.plant.bounds) / 100)),
@@ -76,7 +76,7 @@ export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
     return validOr({ ...camera, eye: move(camera.eye), target: move(camera.target) }, camera);
 }
 
-// Turns the view about the eye, as far as the pointer drags it. An orthographic camera, whose eye has no meaning, orbits instead.
+// Turns the view about the eye by the pointer's movement. An orthographic camera, whose eye has no meaning, orbits instead.
 export function lookAround(camera, dxPx, dyPx, heightPx) {
     const degrees = (isParallel(camera) ? -USUAL_FOV : camera.fov) / heightPx;
     return orbit(camera, dxPx * degrees, -dyPx * degrees, isParallel(camera) ? camera.target : camera.eye);
@@ -85,7 +85,8 @@ export function lookAround(camera, dxPx, dyPx, heightPx) {
 // Returns the depth of a point: its distance along the viewing direction.
 export const depthOf = (camera, point) => dot(subtract(point, camera.eye), basis(camera).forward);
 
-// toParallel() returns an orthographic camera, its inverse a perspective one; both show the same at the depth of the target.
+// toParallel() returns an orthographic camera, its inverse a perspective one; both pictures are equal at the depth of the
+// target.
 export function toParallel(camera) {
     return validOr({ ...camera, height_m: heightAt(camera, distance(camera)) }, camera);
 }
@@ -105,8 +106,7 @@ export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     return validOr({ ...camera, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
-// Returns the viewing ray through a pixel: { origin, direction }. `direction` is scaled so that one step along it advances by one metre of
-// depth.
+// Returns the viewing ray through a pixel: { origin, direction }. `direction` is scaled to a depth of one metre.
 export function sight(camera, xPx, yPx, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, 1);
@@ -133,7 +133,7 @@ export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distan
     return validOr({ ...camera, eye, target: along(eye, basis(camera).forward, wanted) }, camera);
 }
 
-// Returns where a ray enters a box, as a multiple of `direction`; null if it misses the box or starts inside.
+// Returns where a ray enters a box, as a factor of `direction`; null if it misses the box or starts inside.
 export function enterBox(origin, direction, box) {
     let near = -Infinity, far = Infinity;
     for (let i = 0; i < 3; i++) {

@@ -7,8 +7,8 @@ import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, u
 
 // LEAST_BOX_M: smallest side of a box; MARGIN: a plane stays inside the plant's bounds by at least this fraction of their size
 const LEAST_BOX_M = 0.05, MARGIN = 1e-3;
-const NEAR_M = 0.02; // metres: parts of a handle's line that are nearer to the camera are cut off
-// a drag is undefined if the squared sine of the angle between viewing ray and handle direction is smaller
+const NEAR_M = 0.02; // metres: the part of a handle's line that is nearer to the camera is cut off
+// minimum squared sine of the angle between viewing ray and handle direction; below this, a drag is undefined
 const STEEP = 0.03;
 
 const isSound = ({ direction, at, low, high, corners }) => [at, low, high].every(Number.isFinite) && [direction, ...corners].every(finite);
@@ -115,7 +115,8 @@ export function spotsOf({ corners }) {
     return [middle, ...[0.3, 0.6, 0.9].flatMap((part) => around.map((p) => mix(middle, p, part)))].filter(finite);
 }
 
-// Returns at how many metres along `direction` from `point` a viewing ray passes nearest to that line; null if both are almost parallel.
+// Returns the point of a line that is nearest to a viewing ray, in metres along `direction` from `point`; null if line and ray
+// are almost parallel.
 export function alongSight(point, direction, { origin, direction: towards }) {
     const w = subtract(point, origin), c = dot(towards, towards), b = dot(direction, towards), sine2 = 1 - (b * b) / c;
     if (sine2 < STEEP)

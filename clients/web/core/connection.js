@@ -4,13 +4,14 @@ import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-// longest wait between attempts during the first EAGER_MS after the loss of a good connection, because another core takes over within 5 s
+// longest wait between attempts during the first EAGER_MS after the loss of a good connection: another core takes over within 5
+// s
 export const EAGER_WAIT_MS = 1500, EAGER_MS = 15000;
-// interval of pings, which a server without other messages answers, too
+// interval of pings, which the server answers even if it sends nothing else
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
-// If the server is silent for so many milliseconds, the page reconnects. deploy/pages/CAPACITY.md explains how this adds to the duration of
-// a failover.
+// The page reconnects if the server is silent for DEAD_MS. deploy/pages/CAPACITY.md explains how this adds to the duration of a
+// failover.
 export const DEAD_MS = 7000, CHECK_MS = 500;
 // timeout for opening the WebSocket, and for the server's first message, which may contain long lists of tags
 export const OPENING_MS = 10000;
@@ -30,9 +31,9 @@ export class Connection {
     // Number of failed attempts since the last connection that worked.
     tries = 0;
     retryAt = null;
-    // Least wait before the next attempt in milliseconds, as the server asked.
+    // Minimum wait before the next attempt in milliseconds, set by the server.
     leastWait = 0;
-    // Time when the last connection that worked ended; undefined: there was none, or a new connection works.
+    // When the last working connection ended; undefined: there was none, or a new connection works.
     lostAt;
     // Time of the last user activity, by Date.now(), which continues while a machine sleeps.
     activeAt = Date.now();
@@ -41,9 +42,9 @@ export class Connection {
     unopened = 0;
     blocked = '';
 
-    // open(url, protocol) creates a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer), onUnopened(): a second WebSocket in a row did not open, so its handler should set
-    // `blocked` to the reason to show.
+    // open(url, protocol) creates a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers:
+    // onState(connection), onOpen(), onText(string), onBytes(ArrayBuffer), onUnopened(): two WebSockets in a row did not open,
+    // so the handler should set `blocked` to the reason to show.
     constructor({ url, open, clock, random = Math.random }) {
         Object.assign(this, { url, openSocket: open, clock, random });
         this.onState = this.onOpen = this.onText = this.onBytes = this.onUnopened = () => {};
@@ -65,19 +66,19 @@ export class Connection {
             this.connect();
     }
 
-    // Sets the least wait before the next attempt in milliseconds. A server without room for more sessions asks for it.
+    // Sets the minimum wait before the next attempt in milliseconds. A server without room for more sessions asks for it.
     hold(ms) {
         this.leastWait = ms;
     }
 
-    // Stops trying after a refusal that only a user can resolve, with another token for example.
+    // Stops reconnecting after a refusal that only the user can resolve, for example with another token.
     bar(reason) {
         this.drop();
         this.reason = reason;
         this.become('barred');
     }
 
-    // Resets the increasing waits to the first one, once the server has proved that it works.
+    // Resets the wait to its initial length, once the server has proved that it works.
     settle() {
         this.tries = 0;
         this.lostAt = undefined;
@@ -121,7 +122,7 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            // onUnopened() is called only from the second failure in a row on: after the first one, the server may just be restarting
+            // onUnopened() is called only from the second failure in a row on: the first may just be a restart of the server
             const again = this.state === 'connecting' && !known && this.unopened++;
             this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
             if (again)
@@ -174,8 +175,8 @@ export class Connection {
         }, wait);
     }
 
-    // Sends a ping if one is due. Returns for how many milliseconds the server has not answered a ping. The time since the server's last
-    // message would be wrong, because timers of a hidden page may pause for a minute.
+    // Sends a ping if one is due. Returns how long, in milliseconds, a ping has been unanswered. The time since the server's
+    // last message would mislead, because timers of a hidden page may pause for a minute.
     ask() {
         const now = this.clock.now();
         if (now >= this.nextPing) {

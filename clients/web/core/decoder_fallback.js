@@ -26,8 +26,8 @@ function remember({ store, agent }, way) {
     }
 }
 
-// Returns a decoder. Without a GPU, Chromium keeps up to 512 MB of pixels of VideoFrames that a canvas has drawn, also if the page draws
-// them as ImageBitmaps. Chromium keeps none if the page copies the pixels.
+// Returns a decoder. Without a GPU, Chromium keeps up to 512 MB of pixels of the VideoFrames drawn on a canvas, even if the
+// page draws them as ImageBitmaps. It keeps none if the page copies the pixels.
 function decoderOf({ api }, acceleration) {
     const copies = Boolean(api.OffscreenCanvas) && !hasGpu(new api.OffscreenCanvas(1, 1));
     return new H264Decoder({ acceleration, copies, api });

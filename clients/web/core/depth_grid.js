@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parses depth grids (protocol/PROTOCOL.md). A depth grid has the depth of each small square cell of a picture, as an integer code.
-// warp_mesh.js builds a mesh from the grid.
+// Parses depth grids (protocol/PROTOCOL.md). A depth grid holds the depth of each small square cell of a picture as an integer
+// code. warp_mesh.js builds a mesh from the grid.
 
 const HEADER_BYTES = 44, ENCODING = 2, FLAG_PARALLEL = 1, FLAG_MORE = 2, MAX_LEVELS = 4095, LONG = 255;
 const MAX_CELLS = 1 << 20, MAX_MASK_PX = 1 << 24;
@@ -35,8 +35,8 @@ export function readHeader(data) {
     return grid;
 }
 
-// Reads the depth codes of cells from bytes. A symbol has the difference from a predicted code, or announces that the code itself follows
-// in two bytes.
+// Reads the cells' depth codes from bytes. A symbol is the difference from a predicted code, or announces an explicit code in
+// the next two bytes.
 class Symbols {
     constructor(bytes, at, levels) {
         Object.assign(this, { bytes, at, levels });
@@ -49,7 +49,7 @@ class Symbols {
             code = this.bytes[this.at] | (this.bytes[this.at + 1] << 8);
             this.at += 2;
         }
-        // this comparison also refuses NaN, which reading beyond the end of the bytes gives
+        // also rejects NaN, the result of reading beyond the end of the bytes
         need(code >= 0 && code <= this.levels, `code ${code}`);
         return code;
     }
@@ -92,8 +92,8 @@ class Masks {
         this.row = new Uint8Array(maskSide); // mask bits of the row above the one being read, from which its bits are predicted
     }
 
-    // Returns null if the neighbour of cell `i` has a mask. Otherwise returns to which side of the step in cell `i` the neighbour's only
-    // surface belongs: 1: near, 0: far.
+    // Returns null if the neighbour of cell `i` has a mask. Otherwise returns the side of the step in cell `i` to which the
+    // neighbour's only surface belongs: 1: near, 0: far.
     sideOf(neighbour, i) {
         const { near, far, back } = this;
         if (far[neighbour] >= 0)

@@ -54,15 +54,16 @@ export function ageText(ms) {
 const two = (n) => String(n).padStart(2, '0');
 const clocks = new Map(); // formatters by time zone, because creating one is slow
 
-// Returns a function from an instant to { date, day (date without the year), time, offset } in the time zone with that IANA name, in the
-// reader's date format; hours are 0 to 23. If the browser does not know the zone, the times are UTC and say so.
+// Returns a function from an instant to { date, day (date without the year), time, offset } in the time zone with this IANA
+// name, in the reader's date format; hours are 0 to 23. If the browser does not know the zone, the times are in UTC and
+// labelled as UTC.
 export function zoneClock(timeZone) {
     if (!clocks.has(timeZone))
         clocks.set(timeZone, makeClock(zoneOf(timeZone)));
     return clocks.get(timeZone);
 }
 
-// Returns the time zone with that IANA name, or UTC if the browser does not know it.
+// Returns the time zone with this IANA name, or UTC if the browser does not know it.
 export function zoneOf(name) {
     try {
         return new Intl.DateTimeFormat('en', { timeZone: name }).resolvedOptions().timeZone;

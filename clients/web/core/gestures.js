@@ -11,7 +11,7 @@ const WHEEL_PER_PX = 0.0016, PINCH_PER_PX = 0.01, MOST_PER_EVENT = 0.5;
 const centre = (all) => ['x', 'y'].map((axis) => all.reduce((sum, p) => sum + p[axis], 0) / all.length);
 const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
 const angle = ([a, b]) => Math.atan2(b.y - a.y, b.x - a.x) * (180 / Math.PI);
-const TWIST_DEG = 8; // a smaller twist of two fingers, in degrees, is taken for a tremble and ignored
+const TWIST_DEG = 8; // twists of two fingers by fewer degrees count as tremor and are ignored
 
 export class Gestures {
     constructor() {

@@ -34,7 +34,7 @@ export class H264Decoder {
     // VideoDecoder, EncodedVideoChunk, ImageData, createImageBitmap }.
     constructor({ acceleration = 'no-preference', copies = false, api = globalThis, clock = globalThis }) {
         Object.assign(this, { acceleration, copies, api, clock });
-        this.pixels = new Uint8ClampedArray(0); // of the last copied picture
+        this.pixels = new Uint8ClampedArray(0); // pixels of the last copied picture
         this.waiting = null; // { resolve, reject } of the promise for the picture being decoded
         this.sps = '';
         this.count = 0;

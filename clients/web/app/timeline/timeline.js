@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time bar: a slider over the recorded history, with marks for gaps, lost sources and raised alarms (which can be clicked);
-// playback, speed, a date field, and a button for the present.
+// The time bar: a slider over the recorded history that marks gaps, lost sources and alarms (clickable), with playback, its
+// speed, a date field and a button that returns to the present.
 import { ageText, zoneClock } from '../../core/format.js';
 import { arrowS, ask, clustered, density, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
@@ -17,8 +17,8 @@ const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_U
 // LOST_POINTS: history points per tag, from which the periods of lost sources are found. BARS: position of the bars that show
 // how many alarms were raised; `full`: number of alarms at full height.
 const TRACK = { top: 15, height: 10 }, BARS = { bottom: 58, height: 14, full: 10 }, BAR_PX = 5, LOST_POINTS = 300;
-// MARK_PX: smallest distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests when
-// searching for the next alarm
+// MARK_PX: minimum distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests
+// when searching for the next alarm
 const THUMB_PX = 9; // half the width of the slider's thumb: the slider's values end this far inside its track
 const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8;
 
@@ -88,7 +88,7 @@ export class Timeline {
         this.show();
     }
 
-    // Sets the slider's time span: up to now, or around atUs if that is before the span up to now.
+    // Sets the slider's time span: up to now, or around atUs if atUs is earlier than that span.
     turnTo(atUs) {
         const now = this.session.clockUs() ?? Date.now() * 1000;
         const ends = atUs !== null && atUs < now - this.spanUs ? Math.min(now, atUs + this.spanUs / 2) : now;
@@ -108,7 +108,7 @@ export class Timeline {
         this.show();
     }
 
-    // Shows the slider's instant, at most once per animation frame, however often the pointer moves.
+    // Shows the plant at the slider's instant, at most once per animation frame: pointer events are more frequent.
     drag() {
         const at = this.toUs - this.spanUs + Number(this.slider.value) * 1e6;
         if (this.wanted === null)
@@ -160,7 +160,7 @@ export class Timeline {
             this.tell(say(backwards ? 'time.first' : 'time.last'));
     }
 
-    // Shows the plant at the instant at which an alarm was raised, flies to its tag, and names the alarm over the picture.
+    // Shows the plant at the instant when an alarm was raised, flies to its tag, and names the alarm over the picture.
     showAlarm({ us, tag: name, kind, priority }) {
         const tag = this.session.model.tag(name) ?? { name, index: null };
         this.modules.use('moment', (moment) => moment.show({ us, tag, kind, priority }, 0), 'moment');
@@ -184,7 +184,7 @@ export class Timeline {
             const found = next === null || length < 2e6 ? nextTo(raised(rows), us, false) : null;
             if (found)
                 return found;
-            // with too many journal rows in the span, searches a shorter span; otherwise searches the next, longer span
+            // with too many journal rows in the span, searches a shorter span; otherwise the next, longer one
             [from, length] = next === null ? [from + length, length * 4] : [from, length / 8];
         }
         return null;
@@ -216,8 +216,8 @@ export class Timeline {
         this.draw();
     }
 
-    // Returns a promise of the alarms raised in a time span. If there are too many, the list is complete only from the instant
-    // `marks.sinceUs` on.
+    // Requests the alarms raised in a time span and returns a promise. If there are too many, the list is complete only from
+    // the instant `marks.sinceUs` on.
     async askRaised(span) {
         const all = [];
         let before = null, page = null;
@@ -284,7 +284,7 @@ export class Timeline {
         return this.toUs - this.spanUs + ((left - THUMB_PX) * this.spanUs) / (width - 2 * THUMB_PX);
     }
 
-    // Draws a line at the instant under the pointer, on the slider or in a trend; null: no line.
+    // Draws a line on the slider at the instant `us`, where the pointer is on the slider or in a trend; null: no line.
     cross(us) {
         const track = byId('time-track'), width = track.clientWidth, from = this.toUs - this.spanUs;
         track.querySelector('.cross')?.remove();
@@ -336,7 +336,7 @@ export class Timeline {
         }
         const groups = clustered(this.marks, MARK_PX * this.spanUs / (width - 2 * THUMB_PX)), words = ({ us, tag, kind }) =>
             `${tag} ${kind}, ${this.clock(us / 1000).time}`;
-        for (const { us, priority, of } of groups.sort((a, b) => b.priority - a.priority)) { // the most urgent on top
+        for (const { us, priority, of } of groups.sort((a, b) => b.priority - a.priority)) { // most urgent alarms on top
             const all = of.slice(0, NAMED).map(words).concat(of.length > NAMED ? [say('alarms.more', { count: of.length - NAMED })] : []);
             const look = { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.5-11h11z` };
             const gravest = of.find((mark) => mark.priority === priority);

@@ -10,16 +10,16 @@ export const LOOKS = {
         lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0', '#7fd8e8', '#d9b793'] },
 };
 
-// unitPx: CSS pixels per unit of the charts: 1 on a desk, more on a wall, which is seen from afar; leastText: smallest font
-// size in units
+// unitPx: CSS pixels per chart unit: 1 on a desktop page, more on a wall display, which is viewed from afar; leastText: minimum
+// font size in chart units
 let unitPx = 1, leastText = 0;
 export function setChartUnit(px, least) {
     [unitPx, leastText] = [px, least];
 }
-// Convert a length in units of the charts to CSS pixels and to device pixels.
+// Convert a length in chart units to CSS pixels and to device pixels.
 export const toCss = (units) => units * unitPx;
 export const toPixels = (units) => units * unitPx * devicePixelRatio;
-// Returns a font size in units: the given one, or the charts' smallest if that is larger.
+// Returns the given font size, but at least the charts' minimum, in chart units.
 export const textSize = (units) => Math.max(units, leastText);
 
 // Draws a hatched rectangle for a period without values. The rectangle is clipped to the canvas, because a gap of days in a chart of
@@ -58,7 +58,7 @@ export function hatchAlong(ctx, [left, begin], [right, end], colour) {
     ctx.restore();
 }
 
-// Draws along the curve of a chart's series between two positions, where the series has values.
+// Strokes a series' curve between two positions, leaving out stretches without values.
 export function strokeAlong(chart, index, left, right, { colour, width, dash = [], alpha = 1 }) {
     const { ctx, bbox } = chart, { stroke, clip } = chart.series[index]._paths ?? {};
     if (!stroke)

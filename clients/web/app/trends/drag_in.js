@@ -5,7 +5,8 @@ import { byId, make, setVariable } from '../common/dom.js';
 
 const REACH_PX = 8, STARTED_PX = 5;
 
-// trends: gets the dragged tag through add(tag). handlers.click(x, y, kind): called after a press on a marker without a drag.
+// trends: its add(tag) receives the dragged tag. handlers.click(x, y, kind): called when a marker is pressed and released
+// without a drag.
 export function listenToDrags({ trends, session, overlay, handlers }) {
     // the current drag of a tag: { tag, x, y (of the press), ghost (label at the pointer), marker (position in the picture, or
     // null) }; null: none
@@ -30,7 +31,7 @@ export function listenToDrags({ trends, session, overlay, handlers }) {
             return;
         drag = { ...found, x: event.clientX, y: event.clientY, ghost: null };
         if (found.marker)
-            event.stopPropagation(); // otherwise the camera would turn
+            event.stopPropagation(); // stops the event, which would otherwise rotate the camera
     }, { capture: true });
 
     document.addEventListener('pointermove', ({ clientX, clientY }) => {
@@ -60,7 +61,7 @@ export function listenToDrags({ trends, session, overlay, handlers }) {
         if (ghost)
             swallowClick();
     };
-    // Suppresses the click event after a drag, which would select what is under the pointer.
+    // Suppresses the click event after a drag; it would select the object under the pointer.
     function swallowClick() {
         const stop = (click) => click.stopPropagation();
         document.addEventListener('click', stop, { capture: true, once: true });

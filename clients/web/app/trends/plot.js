@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One chart of a trend: the curves of tags with at most two units over one time axis, with bands between lowest and highest value, gaps,
-// uncertain stretches, limits and alarms.
+// One chart of a trend: curves of tags with at most two different units over one time axis, with min-max bands, gaps, uncertain
+// periods, limits and alarms.
 import { shortNumberText } from '../../core/format.js';
 import { BAD, gaps, limitLines, line, UNCERTAIN } from '../../core/history.js';
 import { extentOf, placeNames } from '../../core/limit_names.js';
@@ -8,18 +8,18 @@ import { bands, valueAt } from '../../core/trend_values.js';
 import { pointAtInstant } from '../common/crosshair.js';
 import { hatch, hatchAlong, strokeAlong, textSize, toCss, toPixels, triangle } from './chart_style.js';
 
-const EXPAND = 2; // argument of uPlot.join(): a null of a series also breaks its line at neighbouring instants of other series
-// sizes in units of the charts (chart_style.js), except DRAGGED_PX
+const EXPAND = 2; // argument of uPlot.join(): a null in one series also breaks its line at instants that only other series have
+// sizes in chart units (see chart_style.js), except DRAGGED_PX
 const AXIS = 58, UNIT = 16, TIME = 28, LINE = 1.75, BOLD = 3, LABEL = 15, BADGE = 13, TICK = 10, DRAGGED_PX = 4;
-const PAD = 17, LOW_PAD = 8, LOW = 130; // space above the curves; charts lower than LOW have less
-const DAYS_S = 2 * 86400; // the time axis has ticks for days if the range is longer than this
+const PAD = 17, LOW_PAD = 8, LOW = 130; // PAD: space above the curves; LOW_PAD: the same in charts lower than LOW
+const DAYS_S = 2 * 86400; // time ranges longer than this have day ticks on the time axis
 const FONT = 'system-ui, sans-serif';
 
 export class Plot {
-    // view: the trends (trends.js), with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), decimalsOf(tag), focus,
-    // travel(us), zoomTo([from, to]) and priorities (colours). units: units of this chart, at most two. isWide true: some chart of the
-    // trend has two value axes, so this chart leaves room for a second one, too. isLast true: this chart, the lowest one, has the labels of
-    // the time axis.
+    // view: the trends (trends.js), with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), decimalsOf(tag),
+    // focus, travel(us), zoomTo([from, to]) and priorities (colours). units: units of this chart, at most two. isWide true:
+    // some chart of the trend has two value axes, so this chart leaves room for a second one, too. isLast true: this chart is
+    // the lowest and has the time axis labels.
     constructor({ view, units, isWide, isLast, element, width, height }) {
         Object.assign(this, { view, units, isWide, isLast, rows: [], marks: [] });
         this.shape = { width, height };
@@ -57,7 +57,7 @@ export class Plot {
 
     // --- pointer
 
-    // Marks the instant at which another chart or the time slider points; null: none.
+    // Marks the instant at the pointer of another chart or of the time slider; null: none.
     follow(us) {
         if (!this.chart)
             return;
@@ -130,8 +130,8 @@ export class Plot {
         return spanS < 300 ? time : time.slice(0, 5);
     }
 
-    // Returns the range of a value axis. It includes the bands between lowest and highest values of the curves, and those alarm limits that
-    // are near the values; distant limits would only flatten the curve.
+    // Returns the range of a value axis. It covers the curves' min-max bands and the alarm limits near the values; including
+    // distant limits would flatten the curve.
     range(unit, low, high) {
         let [min, max] = [low ?? Infinity, high ?? -Infinity];
         this.rows.forEach(({ tag }, i) => (this.view.unitOf(tag) || '–') === unit && this.bands[i].flat().forEach(([, , least, most]) => {
@@ -147,7 +147,8 @@ export class Plot {
         return [min - margin, max + margin];
     }
 
-    // Hatches periods without a value, as in the plant's picture: for one tag over the whole height, for several where the curve would be.
+    // Hatches periods without a value as the plant's picture does: for one tag over the whole height, for several tags where
+    // the curves would be.
     drawGaps({ ctx, bbox, valToPos }) {
         ctx.save();
         ctx.beginPath();
@@ -207,7 +208,7 @@ export class Plot {
         const { ctx, bbox, valToPos, posToVal } = chart, found = [];
         this.rows.forEach(({ tag, alarms = [] }, i) => {
             const scale = this.view.unitOf(tag) || '–', x = (us) => valToPos(us / 1e6, 'x', true);
-            for (const alarm of [...alarms].sort((a, b) => b.priority - a.priority)) { // the most urgent on top
+            for (const alarm of [...alarms].sort((a, b) => b.priority - a.priority)) { // most urgent alarms on top
                 const colour = this.view.priorities[alarm.priority - 1], left = x(Math.max(alarm.us, this.span[0]));
                 const right = x(alarm.endUs ?? this.span[1]), edge = { colour: this.view.look.edge, width: 7.5, alpha: 0.5 };
                 for (const pen of [edge, { colour, width: 6 }, { colour: this.view.colourOf(tag), width: LINE }])
@@ -223,13 +224,13 @@ export class Plot {
         this.marks = found;
     }
 
-    // Returns the alarms that were raised within some units of the chart of an instant.
+    // Returns the alarms raised within `units` chart units of an instant.
     alarmsNear(us, units = 6) {
         const near = (toCss(units) * this.view.spanUs) / Math.max(1, this.chart?.over.clientWidth ?? 1);
         return this.marks.filter((mark) => Math.abs(mark.us - us) <= near).map(({ alarm }) => alarm);
     }
 
-    // Returns the alarm limits to draw: those of the tag with the focus, and those that all tags of an axis share.
+    // Returns the alarm limits to draw: those of the focused tag, and those shared by all tags of an axis.
     limits() {
         const { view } = this, scaleOf = (tag) => view.unitOf(tag) || '–', tags = this.rows.map(({ tag }) => tag);
         const isShared = ({ scale, name, value }) => {
@@ -284,13 +285,13 @@ export class Plot {
         ctx.restore();
     }
 
-    // Draws the number of each curve at its end. The table has the same numbers, so that curves are told apart without their colours.
+    // Draws each curve's number at its end. The table shows the same numbers, so that curves can be told apart without colour.
     drawBadges(chart) {
         const { ctx, bbox, valToPos, data, scales: { x: { min, max } } } = chart, px = toPixels(1), size = (textSize(10) + BADGE - 10) * px;
         if (this.view.tags.length < 2)
             return;
         const ends = this.rows.map(({ tag }, i) => {
-            // a chart that is about to be replaced may have fewer columns than there are tags: then the tag's number is not drawn
+            // a chart that is about to be replaced may have fewer columns than tags: then the number is not drawn
             const k = data[i + 1]?.findLastIndex((value, n) => Number.isFinite(value) && data[0][n] <= max && data[0][n] >= min) ?? -1;
             return k < 0 ? null : { tag, x: Math.min(valToPos(data[0][k], 'x', true), bbox.left + bbox.width - size / 2),
                 y: valToPos(data[i + 1][k], this.view.unitOf(tag) || '–', true) };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wheel, touch and keys over the trend charts: zoom, pan, and moving the crosshair. (plot.js handles the mouse drag that zooms.)
+// Handles wheel, touch and keys on the trend charts: zooms, pans and moves the crosshair. (plot.js handles the mouse drag that
+// zooms.)
 import { pointAtInstant } from '../common/crosshair.js';
 
 const WHEEL = 0.0016, LINE_PX = 16, PAN_PX = 0.0025, KEY_ZOOM = 1.5, KEY_PAN = 0.25, STEPS = 120, BIG = 10;
@@ -9,7 +10,7 @@ const WHEEL = 0.0016, LINE_PX = 16, PAN_PX = 0.0025, KEY_ZOOM = 1.5, KEY_PAN = 0
 // the crosshair. element: holds the charts.
 export function listenToGestures(view, element) {
     const fingers = new Map(); // pointer id -> x
-    let dragged = null; // pointer's x at the last event of a mouse drag that pans; null: no such drag
+    let dragged = null; // pointer's x at the last event of a panning mouse drag; null: no such drag
     const over = () => element.querySelector('.u-over')?.getBoundingClientRect() ?? element.getBoundingClientRect();
     const instantAt = (x) => {
         const { left, width } = over(), [from, to] = view.range;

@@ -18,7 +18,7 @@ export class TrendTable {
         this.body = byId('trend-tags').querySelector('tbody');
     }
 
-    // Makes the table's rows, one for each tag of the trend.
+    // Builds the table's rows, one for each tag of the trend.
     build() {
         const { view } = this, head = (name) => make('th', { class: name, scope: 'col' });
         const heads = Object.fromEntries([...COLUMNS, 'known'].map((name) => [name, head(name)]));
@@ -58,7 +58,7 @@ export class TrendTable {
         byId('trend-tags').classList.toggle('lacks', lacks);
         for (const [tag, cells] of this.rows) {
             const decimals = view.decimalsOf(tag), { value, quality } = session.model.readings[tag.index];
-            // includes the present reading, because the recorded series ends some seconds before it
+            // counts the present reading, too, because the recorded series ends some seconds before it
             if (!isPast && view.isLive && quality !== 'bad' && value !== null)
                 this.stats.set(tag, withNewest(this.stats.get(tag), value));
             const stats = this.stats.get(tag), text = (number) => numberText(number ?? null, decimals);

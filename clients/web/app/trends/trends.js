@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trends of up to eight tags: recorded values over a relative or absolute time range, which users zoom and pan. Plot draws the curves, two
-// units to a chart; TrendTable shows numbers.
+// Trends of up to eight tags: recorded values over a relative or absolute time range, with zoom and pan. Plot draws the curves,
+// two units to a chart; TrendTable shows numbers.
 import { decimalsFor, unitText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, BAD, gaps } from '../../core/history.js';
 import { fieldText } from '../../core/instant.js';
@@ -22,9 +22,9 @@ const EXAMPLES = ['minutes', 'hours', 'today', 'yesterday', 'night'];
 const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
-const WALL_TEXT = 13; // smallest font size of a chart on a wall, in units of the page: 16 minutes of arc (wall.js)
+const WALL_TEXT = 13; // minimum font size of a wall's charts in units of the page: 16 minutes of arc (wall.js)
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
-// true: charts fill the room that the table leaves in a wall's pane or in a phone's sheet
+// true: charts fill the space that the table leaves in a wall's pane or in a phone's sheet
 const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
 
 // Returns the height in pixels of each of `count` charts next to a table of `rows` rows.
@@ -32,11 +32,11 @@ function heightOf(count, rows) {
     if (fills())
         return Math.max(80, byId('trend-chart').clientHeight / count);
     const least = Math.max(120, Math.min(210, 0.2 * innerHeight)); // the same value as the height of #trend-chart in trends.css
-    const one = Math.max(least, Math.min(0.26 * innerHeight, HEAD_PX + ROW_PX * rows)); // as high as the table
+    const one = Math.max(least, Math.min(0.26 * innerHeight, HEAD_PX + ROW_PX * rows)); // a single chart is as high as the table
     return Math.round(count === 1 ? one : Math.max(96, one * 0.7));
 }
 
-// Loads the chart library with the first trend. If that fails, the next refresh tries again.
+// Loads the chart library when the first trend opens. If loading fails, the next refresh retries.
 let library;
 function load() {
     library ??= new Promise((done, fail) => {
@@ -62,8 +62,8 @@ export class Trends {
         Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
         this.unread = null; // the text in the range field, if it was not understood
         this.isChosen = false; // whether a user or a wall has chosen the time range
-        this.unknown = []; // names that the plant has no tag for
-        this.undrawn = []; // names beyond the largest number of tags
+        this.unknown = []; // names without a tag in the plant
+        this.undrawn = []; // names beyond the maximum number of tags
         this.series = new Map(); // tag name -> its series, once the server has answered
         this.alarms = new Map(); // tag name -> its alarms in the time range
         this.element = byId('trends');
@@ -117,7 +117,8 @@ export class Trends {
         return LOOKS[this.theme] ?? LOOKS.light;
     }
 
-    // Size of a unit of the charts in CSS pixels. On a wall, the style sheet enlarges only the table, so that the charts are sharp.
+    // Size of a chart unit in CSS pixels. On a wall, the style sheet magnifies only the table; charts use larger units instead,
+    // which keeps them sharp.
     get unit() {
         return document.body.classList.contains('pane-trend') ? this.page.unit : 1;
     }
@@ -169,8 +170,8 @@ export class Trends {
         this.draw(globalThis.uPlot);
     }
 
-    // Sets the tags by their names. Names that the plant has no tag for, and names beyond the largest number of tags, are listed below the
-    // charts.
+    // Sets the tags by name. Names without a tag in the plant, and names beyond the maximum number of tags, are listed below
+    // the charts.
     setNames(names) {
         const { model } = this.session, tags = names.map((name) => model.tag(name)).filter(Boolean);
         this.unknown = names.filter((name) => !model.tag(name));
@@ -178,7 +179,8 @@ export class Trends {
         this.setTags(tags.slice(0, MOST));
     }
 
-    // Makes the table's rows for the tags and requests their values; closes the trend if there are neither tags nor unknown names.
+    // Builds the table's rows for the tags and requests their values; closes the trend if there are neither tags nor unknown
+    // names.
     showTags() {
         if (this.tags.length === 0 && this.unknown.length === 0)
             return this.close();
@@ -247,7 +249,7 @@ export class Trends {
         return this.session.clockUs() ?? Date.now() * 1000;
     }
 
-    // Time range of the charts: a fixed one; otherwise the span up to now, or around the past instant that is shown.
+    // Time range of the charts: the fixed one if set; otherwise a span up to now, or around the past instant shown.
     get range() {
         if (this.fixed)
             return this.fixed;
@@ -265,7 +267,7 @@ export class Trends {
         return !this.fixed || this.fixed[1] > this.nowUs - FRESH_MS * 1000;
     }
 
-    // Chooses the span of a trend that is opened, unless it has been chosen.
+    // Sets the time span of a trend that is being opened, unless a user or a wall has chosen one.
     chooseSpan() {
         const { fromUs } = this.session.time;
         if (!this.isChosen && !this.isOpen)
@@ -296,8 +298,8 @@ export class Trends {
         this.adjust(panned(this.range, part, this.nowUs));
     }
 
-    // Shows a time range that a gesture (wheel, pinch, drag, key) reaches in many small steps. Steps that follow each other quickly become
-    // a single undo step.
+    // Shows a time range set by a gesture (wheel, pinch, drag, key), which takes many small steps. Steps in quick succession
+    // become a single undo step.
     adjust([fromUs, toUs]) {
         if (!Number.isFinite(fromUs + toUs))
             return;
@@ -446,7 +448,7 @@ export class Trends {
         return [...unread, ...unshown].join(' · ');
     }
 
-    // Requests the alarms of the tags in the time range, and earlier ones, which may last into the range.
+    // Requests the alarms of the tags in the time range, and earlier alarms that may last into the range.
     async askAlarms() {
         const { tags, span } = this, { token } = this.session;
         const all = await Promise.all(tags.map(async ({ name, unit }) => {

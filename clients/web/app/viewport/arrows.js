@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrows for a sensor group with directions: the length of an arrow is the field's value, a cross marks an unknown direction. Alternatively
-// streaks along which dashes move, on a canvas of their own.
+// Arrows for a sensor group with directions: an arrow's length is the field's value, a cross marks an unknown direction.
+// Alternatively streaks with moving dashes, on a separate canvas.
 import { decimalsFor, shortNumberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { INK } from './overlay.js';
 
-// length in pixels of the longest arrow in a picture of that width: slightly less than the server's minimum distance between arrows
+// length in pixels of the longest arrow in a picture `width` pixels wide: slightly less than the server's minimum distance
+// between arrows
 const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24);
 const HEAD = 7, CROSS = 'M-3 -3L3 3M-3 3L3 -3', DOT = 'M-.6 0A.6 .6 0 1 0 .6 0A.6 .6 0 1 0 -.6 0';
 const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // dash pattern of an uncertain arrow, and length of such an arrow in a legend
-// DASH: dash pattern of streaks; FASTEST_PX: speed of the dashes in pixels per second where the field has the largest value of the colour
-// scale
+// DASH: dash pattern of streaks; FASTEST_PX: speed of the dashes in pixels per second at the largest value of the colour scale
 const DASH = [5, 11], FASTEST_PX = 60;
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;
 

@@ -4,7 +4,7 @@ import { decimalsFor, shortNumberText } from '../../core/format.js';
 import { Arrows } from './arrows.js';
 import { INK } from './overlay.js';
 
-const SPACING_PX = 160; // smallest distance in pixels between two labels of the same isoline value
+const SPACING_PX = 160; // minimum distance in pixels between two labels of the same isoline value
 
 export class Isolines {
     constructor({ session, overlay, refresh }) {

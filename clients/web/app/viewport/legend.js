@@ -61,11 +61,11 @@ function at(element, place) {
     return element;
 }
 
-// Functions that return the texts [title, suffix, note] of the legend, by the value of the parameter `show`. Arguments: the quantity's name
-// and the view's parameters. coverage.js has those for rarely used values of `show`.
+// Legend texts by the value of the parameter `show`: functions of the quantity's name and the view's parameters that return
+// [title, suffix, note]. coverage.js has those for rarely used values.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// For the values of `show` that do not depend on readings, and thus are never uncertain: lowest value as a fraction of the range (blind: 5
-// %, plus rounding).
+// Values of `show` that do not depend on readings, and thus are never uncertain: lowest value as a fraction of the range
+// (blind: 5 %, plus rounding).
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
@@ -77,8 +77,8 @@ export function titleOf({ model }, params) {
 }
 
 export class Legend {
-    // paramsOf returns, from the picture's parameters, those of the half of the view that this legend explains, or null if the legend stays
-    // empty.
+    // paramsOf: picks from the picture's parameters those of the half of the view that this legend explains; returns null if
+    // the legend stays empty.
     constructor({ session, element, paramsOf, lying = phone }) {
         Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));
@@ -90,7 +90,7 @@ export class Legend {
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
     }
 
-    // Draws the legend again if its bar has another length, because the labels keep their distance in pixels.
+    // Redraws the legend if its bar's length has changed, because the labels keep their distance in pixels.
     fit() {
         const bar = this.element.querySelector('.bar'), long = this.lying.matches ? bar?.clientWidth : bar?.clientHeight;
         if (!long || long === this.long)
@@ -104,7 +104,7 @@ export class Legend {
         return spread(places, Math.min(gap, 1 / Math.max(1, places.length - 1)));
     }
 
-    // Returns a key of everything on which the legend's look depends. The legend is redrawn only if the key changes.
+    // Returns a key made of everything that affects the legend's look. The legend is redrawn only if the key changes.
     contents(params) {
         const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
@@ -141,7 +141,7 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // largest possible error of the field at places that the picture marks as uncertain, in the unit of the legend's title
+            // largest possible error of the field where the picture marks it as uncertain, in the unit of the legend's title
             off && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
@@ -157,7 +157,7 @@ export class Legend {
             since && make('span', { class: 'since' }, ` ${since}`));
     }
 
-    // Makes the scale of values. below true: values below the range are possible.
+    // Makes the scale of values. below: true if values below the range are possible.
     scale(rule, lines, limits, below) {
         const { map, min, max } = rule;
         const decimals = (value) => decimalsFor(rule.log ? value : max - min);
@@ -172,7 +172,7 @@ export class Legend {
             ...(below ? end('below', map.below, `< ${text(min)}`) : []));
     }
 
-    // Makes the scale of the operator's view, which has no values but positions between alarm limits, -3 to 3.
+    // Makes the scale of the operator's view, which shows positions between alarm limits (-3 to 3) instead of values.
     limitScale() {
         const place = (value) => (value + 3) / 6, band = (p) => LIMIT_BANDS.find(({ to }) => p * 6 - 3 < to) ?? LIMIT_BANDS[4];
         const names = Object.keys(LIMIT_PLACES), places = Object.values(LIMIT_PLACES).map(place);
@@ -180,7 +180,7 @@ export class Legend {
             this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), this.ticksAt(places, places, names));
     }
 
-    // Draws the legend's bar with more pixels than the screen has, and a line at the value of each isoline.
+    // Draws the legend's bar at a higher resolution than the screen's, with a line at the value of each isoline.
     bar(rule, lines, colourAt) {
         const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': say('legend.colours', { min: rule.min, max: rule.max }) });
         const lying = this.lying.matches;

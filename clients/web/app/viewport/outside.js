@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A notice that some equipment is so far from the rest that the first view leaves it out.
+// A notice that the first view leaves out some equipment because it is far from the rest.
 import { wholeOf } from '../../core/camera_moves.js';
 import { farText } from '../../core/measure.js';
 import { say } from '../../core/words.js';
@@ -16,7 +16,7 @@ export class Outside {
         this.show();
     }
 
-    // Returns the names of the assets that extend beyond the plant's bounds, on which the first view is based.
+    // Returns the names of the assets that extend beyond the plant's bounds, which determine the first view.
     names() {
         const { assets, plant: { bounds: { min, max } } } = this.session.model;
         const rim = Math.max(...max.map((m, i) => m - min[i])) / 100;

@@ -31,7 +31,7 @@ function markerRadius(markers) {
     return markers.length < 2 ? 4.5 : Math.max(2.75, Math.min(4.5, 0.12 * Math.sqrt(area / markers.length)));
 }
 
-// Returns true if the user has hidden the asset, or has isolated others.
+// Returns whether the user has hidden the asset or isolated others.
 export const isHidden = ({ hidden = [], isolate = [], ghost = [] }, id) =>
     hidden.includes(id) || (isolate.length > 0 && !isolate.includes(id) && !ghost.includes(id));
 
@@ -49,8 +49,8 @@ export class Overlay {
         this.markers = []; // the drawn subset of `all`
         this.places = new Map();
         this.widths = new Map();
-        // called when the module for call-outs (labels shared by several alarm rings) must be loaded: there are several rings,
-        // or a ring's label has no room
+        // called to load the module for call-outs (labels shared by several alarm rings): there are several rings, or no room
+        // for a ring's label
         this.onRings = () => {};
         this.dirty = true;
         this.fresh = true; // true: values are current; false: values are from before the connection was lost
@@ -90,7 +90,7 @@ export class Overlay {
             if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
             const newest = model.readings[tag.index];
-            // uses the value and quality with which the picture was drawn, if the server sent them, instead of a newer reading
+            // prefers the value and quality used for the picture, if the server sent them, to a newer reading
             const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest;
             const difference = params.show === 'difference' && shown, away = params.show === 'distance' && shown;
             markers.push({
@@ -114,7 +114,7 @@ export class Overlay {
     // Thins out the markers of each half of the view where they are dense. Returns those to draw, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        // tags whose markers passed the thinning in the previous picture, except those that are always drawn
+        // tags that the previous picture's thinning kept, except those that are always drawn
         const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
@@ -217,7 +217,7 @@ export class Overlay {
         });
     }
 
-    // Returns a label as a list of [text, font weight, colour].
+    // Returns a label's pieces as a list of [text, font weight, colour].
     parts({ tag, reading, change, distance_m, alarm }, withName) {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
         const held = alarm && reading.quality === 'bad' && this.callouts?.held(tag, alarm);
@@ -383,7 +383,7 @@ export class Overlay {
         }
     }
 
-    // Returns the width of a label with these pieces of text, in units of this.unit CSS pixels.
+    // Returns the width of a label made of these pieces of text, in units of this.unit CSS pixels.
     lineWidth(parts) {
         return Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
     }

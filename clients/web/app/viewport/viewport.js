@@ -5,8 +5,8 @@ import { DecodeQueue } from '../../core/decode_queue.js';
 import { isWhole, pictureSize } from '../../core/wire.js';
 
 const RESIZE_WAIT_MS = 100;
-// Converts a length in CSS pixels to device pixels. `exact`: the browser's own measurement, used unless it differs by more than
-// 2 pixels: on emulated screens it ignores page zoom.
+// Converts a length in CSS pixels to device pixels. `exact`: the browser's own measurement. It is ignored if it is more than 2
+// pixels off, because on emulated screens it leaves out page zoom.
 function devicePixels(cssPx, exact) {
     const px = Math.round(cssPx * window.devicePixelRatio);
     return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
@@ -20,7 +20,7 @@ export class Viewport {
     constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
-        this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete picture
+        this.decoded = []; // decoded frames not drawn yet: whole pictures, and rectangles of an incomplete picture
         this.scheduled = false;
         this.warp = null; // draws the newest picture from the present camera (a Warp, ../picture/warp.js); null: not loaded yet
         this.onTick = this.onDrawn = () => {};
@@ -110,14 +110,15 @@ export class Viewport {
             this.canvas.width = frame.fullWidth;
             this.canvas.height = frame.fullHeight;
         }
-        // leaves out the right and lower edge of the decoded picture, which may exceed the frame by one pixel
+        // crops the decoded picture, which may exceed the frame by one pixel on the right and below
         const { x, y, width, height } = frame;
         this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
         picture.close();
     }
 
-    // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another aspect ratio is
-    // scaled, undistorted, to the viewport's height. picture.shownWidth: the viewport's width in pixels of the picture.
+    // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture whose aspect ratio differs
+    // from the viewport's is scaled to its height without distortion. picture.shownWidth: the viewport's width in pixels of the
+    // picture.
     draw() {
         const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1;
         const drawn = this.warp?.waits(this.decoded) ? [] : this.decoded.splice(0, complete);

@@ -10,7 +10,7 @@ import { along, subtract } from '../../core/vector.js';
 import { say } from '../../core/words.js';
 import { byId, make, makeSvg, setText } from '../common/dom.js';
 
-const RIM_PX = 34; // smallest distance in pixels of a handle from the picture's edge
+const RIM_PX = 34; // minimum distance in pixels of a handle from the picture's edge
 const APART_PX = 46; // minimum distance between handles
 const STEPS = { ArrowRight: 0.01, ArrowUp: 0.01, ArrowLeft: -0.01, ArrowDown: -0.01, PageUp: 0.1, PageDown: -0.1, Home: -2, End: 2 };
 // Axis of the plant (0: x, 1: y, 2: z) and direction in which each key moves a clip box.

@@ -47,7 +47,7 @@ export class Compare {
             this.open();
     }
 
-    // Opens the right half a day before the left one, or at the present if the left half shows the past.
+    // Opens the right half at one day before the left half, or at the present if the left half shows the past.
     open() {
         const { session } = this, { atUs, fromUs } = session.time, now = session.clockUs();
         session.setParams({ split: null });

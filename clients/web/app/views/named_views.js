@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of saved views: opening a view, and for users with the right role saving, reordering, and restoring earlier versions.
+// The list of saved views: opening a view and, for users with the right role, saving, reordering and restoring earlier
+// versions.
 import { ask } from '../../core/history.js';
 import { engineersOf, idFor, isEngineers, regained, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
@@ -22,8 +23,7 @@ export class NamedViews {
         session.on('views', () => {
             this.show();
             if (this.isNew && session.named && this.own && this.own !== engineersOf(session))
-                // the server has forgotten this session: requests the parameters that only engineers may send from the saved
-                // view again
+                // the server has lost this session: requests the saved view's engineer-only parameters again
                 this.regain(session.named);
             this.isNew = false;
         });
@@ -56,8 +56,8 @@ export class NamedViews {
         this.mark();
     }
 
-    // Takes the parameters that only engineers may send from a saved view, after a reload or a reconnect: this session may not
-    // send them itself.
+    // Requests the engineer-only parameters of a saved view, after a reload or a reconnect: this session may not send them
+    // itself.
     regain(id) {
         const { session } = this;
         if (!session.views.some((view) => view.id === id)) {
@@ -69,14 +69,13 @@ export class NamedViews {
         session.setParams(regained(session, id));
     }
 
-    // id: saved view whose engineers' parameters the session shows; null: none.
+    // id: the saved view that supplies the session's engineer-only parameters; null: none.
     remember(id) {
         this.session.named = id;
-        this.own = null; // the engineers' parameters as text, once the server has taken them from the saved view
+        this.own = null; // the engineer-only parameters as text, once the server has taken them from the saved view
     }
 
-    // Forgets which saved view is shown when its engineers' parameters change, for example because the user shows another
-    // sensor group.
+    // Forgets the saved view when its engineer-only parameters change, for example because the user shows another sensor group.
     watch() {
         const { session } = this;
         if (!session.named || this.isNew || session.params !== session.confirmed)
@@ -100,8 +99,8 @@ export class NamedViews {
             if (fly)
                 modules.use('cameraController', (controller) => controller.flyTo(camera));
             else if (modules.awaited.has('cameraController'))
-                // an earlier flight may still wait for these modules; land() ends it. Sets no camera, because the user may have
-                // moved it since
+                // an earlier flight may still wait for these modules; land() ends it. The camera stays, because the user may
+                // have moved it since
                 modules.use('cameraController', (controller) => controller.land());
         });
     }

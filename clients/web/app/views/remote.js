@@ -66,8 +66,7 @@ export class Remote {
         return { view, title };
     }
 
-    // Title of the current view for the pane: that of the open saved view, else the name of the selection, else that of the
-    // quantity.
+    // Title for the pane: that of the open saved view, else the selection's name, else the quantity's.
     get title() {
         const { session } = this, { params, model, group } = session, opened = this.page.modules.there('namedViews')?.opened;
         const named = session.views.find(({ id, view }) => id === opened && isFrom(viewOf(session, view).camera, session.camera))?.title;
@@ -120,8 +119,8 @@ export class Remote {
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
     }
 
-    // Returns true while the previous pick request is unanswered. The next request must wait, because the server answers only
-    // the latest, and a pick by the user's click takes precedence.
+    // Returns true if the next pick request must wait for the answer to the previous one: the server answers only the latest
+    // request, and a pick by the user's click takes precedence.
     waitsFor(now) {
         const { pickSeq } = this.session;
         if (pickSeq !== this.seenSeq)

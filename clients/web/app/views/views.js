@@ -49,12 +49,12 @@ export class Views {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
-    // Takes the parameters that only engineers may send from a saved view: this session may not send them itself.
+    // Requests the engineer-only parameters of a saved view: this session may not send them itself.
     regain(id) {
         this.modules.use('namedViews', (named) => named.regain(id), 'open');
     }
 
-    // Opens a view that is given as the text of a URL fragment.
+    // Opens the view that the text of a URL fragment describes.
     lookAt(text) {
         this.modules.use('namedViews', (named) => named.look(text, false), 'open');
     }
@@ -105,7 +105,7 @@ export class Views {
         return [min[index], max[index]];
     }
 
-    // Bounds around which a new clip box is made: those of the selected equipment, else of the plant.
+    // Bounds for a new clip box: those of the selected equipment, else those of the plant.
     get boxed() {
         const { model, params } = this.session;
         return (model.asset(params.selected) ?? model.plant).bounds;

@@ -14,7 +14,7 @@ import { make } from '../common/dom.js';
 import { BEHIND_MS } from '../toolbar/status.js';
 import { titleOf } from '../viewport/legend.js';
 
-const PX_PER_DEGREE = 24; // resolution, in pixels per degree of view, of those canvases in the headset's view whose apparent size is fixed
+const PX_PER_DEGREE = 24; // resolution, in pixels per degree of view, of canvases whose apparent size in the headset is fixed
 const LETTER_PX = 52; // font size; a capital letter is 0.72 of this, which is 1.56 degrees at PX_PER_DEGREE
 const PATTERN_PX = 18, LINE = 1.24, FAMILY = 'system-ui, sans-serif', INK = '#1d252d', PAPER = 'rgb(250 250 250 / 94%)', ALERT = '#7a0019';
 const WRIST_PX = 4600; // pixels per metre of the panel at the wrist
@@ -42,8 +42,8 @@ export class Board {
         return this;
     }
 
-    // Returns the canvas as a texture, with the width and height in metres that its rectangle must have at this distance from the eye to
-    // appear at its fixed size (PX_PER_DEGREE).
+    // Returns the canvas as a texture, with its rectangle's width and height in metres. With this size the canvas has its fixed
+    // apparent size (PX_PER_DEGREE) at this distance from the eye.
     seenFrom(metres) {
         const perPx = 2 * metres * Math.tan(0.5 * RADIANS) / PX_PER_DEGREE;
         return { texture: this.texture, width: this.canvas.width * perPx, height: this.canvas.height * perPx };
@@ -69,7 +69,7 @@ function write(c, text, x, y, most, { size = LETTER_PX, weight = 400, align = 'l
     c.fillText(text, x, y, most);
 }
 
-// Breaks a text into lines of at most `most` pixels in the context's font.
+// Breaks a text into lines at most `most` pixels wide in the context's font.
 function linesOf(c, text, most) {
     const lines = [''];
     for (const word of text.split(' ')) {
@@ -166,7 +166,7 @@ export function showBanner(board, words, detail, grave) {
     });
 }
 
-// Returns the buttons of the panel at the wrist in rows: [[{ text, isOn, act }, ...], ...].
+// Returns the wrist panel's buttons in rows: [[{ text, isOn, act }, ...], ...].
 function wristRows(session, leave) {
     const { model, params, time, recorded } = session, groups = model.groups.slice(0, 8);
     const now = time.atUs ?? session.clockUs(), live = time.atUs === null;
@@ -270,7 +270,7 @@ export function showMarker(board, quality, alarm) {
     });
 }
 
-// Fills a canvas in the headset's view with one colour: it is then a pointing ray, or a veil over the whole view.
+// Fills a canvas with one colour, for a pointing ray or for a veil over the whole view.
 export const showColour = (board, colour) => board.show(colour, (c, width, height) => {
     c.fillStyle = colour;
     c.fillRect(0, 0, width, height);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hand controllers of a headset. The trigger acts on the thing at which a controller points: the panel at the wrist, a sensor,
-// equipment or the floor. Grabbing moves the room.
+// The hand controllers of a headset. The trigger acts on the controller's target: the panel at the wrist, a sensor, equipment
+// or the floor. Grabbing moves the room.
 import { RADIANS } from '../../core/camera.js';
 import { directionOf, floorHit, hitOf, panelHit, pointOf, poseOf, standAt } from '../../core/headset_views.js';
 import { askPick } from '../../core/requests.js';
@@ -73,7 +73,7 @@ export class Hands {
         return along(along(at, x, (u - 0.5) * width), y, (0.5 - v) * height);
     }
 
-    // Returns the thing at which a ray points: { kind: wrist, sensor, surface or floor, point, ... }; null: none.
+    // Returns what a ray hits: { kind: wrist, sensor, surface or floor, point, ... }; null: nothing.
     targetOf(source, { at, along: direction }) {
         const { headset } = this, panel = this.panel();
         const place = panel && source !== this.wristAt.source ? panelHit(panel, at, direction) : null;
@@ -92,7 +92,7 @@ export class Hands {
         return floor ? { kind: 'floor', point: floor } : null;
     }
 
-    // Acts on the thing at which a hand points, when the user pulls the hand's trigger.
+    // Acts on what a hand points at, when the user pulls the hand's trigger.
     pull(source) {
         const target = this.rays.get(source)?.target;
         this.card = null;

@@ -29,7 +29,7 @@ function listenTo(session) {
     session.on('picked', (picked) => current?.hands.hear(picked));
     session.on('tags', () => current?.hands.ask());
     session.on('welcome', () => current?.onWelcome());
-    session.on('denied', () => current?.xr.end().catch(() => {})); // a locked page shows nothing
+    session.on('denied', () => current?.xr.end().catch(() => {})); // ends the session: without access, the headset must show nothing
 }
 
 export class Headset {
@@ -56,7 +56,7 @@ export class Headset {
         this.banner = new Board(this.painter, 1150, 440);
         this.veil = new Board(this.painter, 4, 4);
         showColour(this.veil, 'rgb(110 110 110 / 94%)');
-        this.marks = new Map(); // canvases with a sensor marker, by the quality of the reading and the alarm that they show
+        this.marks = new Map(); // canvases with a sensor marker, by the reading's quality and the alarm
         this.hands = new Hands(this);
         xr.addEventListener('select', ({ inputSource }) => this.hands.pull(inputSource));
         xr.addEventListener('squeezestart', ({ inputSource }) => this.hands.grab(inputSource));
@@ -169,13 +169,13 @@ export class Headset {
         }
     }
 
-    // Returns the decoded depth grids of a picture, as ../picture/warp.js stores them; undefined: not known.
+    // Returns a picture's decoded depth grids in the form that ../picture/warp.js stores; undefined: unknown.
     gridsOf({ depth }) {
         return depth ? this.before.warp?.grids.find((one) => one.depth === depth) : undefined;
     }
 
-    // Returns true if the new pictures may be drawn, because their meshes are built, or have been missing for LATE_MS. While it returns
-    // false, the pictures are neither drawn nor acknowledged, so the server waits.
+    // Returns true if the new pictures may be drawn: their meshes are built, or LATE_MS has passed without them. Until then the
+    // pictures are neither drawn nor acknowledged, so the server waits.
     isDecoded(now) {
         const isBuilt = this.viewport.decoded.every(({ frame }) => {
             const grids = this.gridsOf(frame);

@@ -53,7 +53,7 @@ export class Painter {
         this.board = programOf(gl, BOARD, CANVAS);
         this.undrawn = programOf(gl, RAYS, LATTICE);
         this.grey = UNDRAWN[backdrop] ?? UNDRAWN.light;
-        // NEAREST filter, because users would read a mixture of two colours as the value between them
+        // NEAREST filter: users would read a blend of two colours as a value between them
         this.picture = this.newTexture(gl.NEAREST);
         this.masks = this.newTexture(gl.NEAREST);
         gl.depthFunc(gl.LEQUAL);
@@ -108,7 +108,7 @@ export class Painter {
         gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
 
-    // Draws the picture as an eye at another position sees it.
+    // Draws the picture as an eye at another position would see it.
     drawPicture(eye) {
         const { gl, mesh, source: { part: { grid, mesh: { indices } }, camera, size } } = this;
         gl.enable(gl.DEPTH_TEST);
@@ -149,7 +149,7 @@ export class Painter {
         }
     }
 
-    // Copies a canvas into a texture, which it makes at the first call.
+    // Copies a canvas into a texture, creating the texture at the first call.
     upload(texture, canvas) {
         const { gl } = this, own = texture ?? this.newTexture(gl.LINEAR);
         gl.bindTexture(gl.TEXTURE_2D, own);
