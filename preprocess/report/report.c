@@ -12,14 +12,10 @@
 #define ROWS_MAX 40 /* maximum number of rows per table, unless the caller requests all rows */
 #define CONCERNS_MAX 20
 
-struct order { /* an asset's place in the order of the tables: assets with problems first, then the slowest to build */
-    const struct prepare_asset *asset;
-    double weight;
-};
-
 struct text_report {
     const struct prepare *prepare;
-    struct order *order; /* the assets that the report lists */
+    /* the assets that the report lists: those with problems first, then the slowest to build; without texts */
+    struct report_concern *order;
     size_t count, rows;
     FILE *out;
 };
@@ -31,7 +27,7 @@ static const char *number(size_t value, struct text_table_number *room)
 }
 #define NUMBER(value) number(value, &(struct text_table_number){ 0 })
 
-static const char *mark(const struct order *order)
+static const char *mark(const struct report_concern *order)
 {
     return order->weight > 0 ? "!" : " ";
 }
@@ -273,14 +269,6 @@ static void print_models(const struct text_report *report)
     }
 }
 
-static int by_weight(const void *a, const void *b)
-{
-    const struct order *p = a, *q = b;
-    if (p->weight != q->weight)
-        return p->weight > q->weight ? -1 : 1;
-    return p->asset < q->asset ? -1 : p->asset > q->asset;
-}
-
 static void find_order(struct text_report *report, bool all, const struct report_concern *concerns, size_t concern_count)
 {
     const struct prepare *prepare = report->prepare;
@@ -288,13 +276,13 @@ static void find_order(struct text_report *report, bool all, const struct report
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         if (asset->wanted && asset->state != PREPARE_LEFT && (all || asset->state == PREPARE_BUILT || asset->state == PREPARE_FAILED))
-            report->order[report->count++] = (struct order){ .asset = asset };
+            report->order[report->count++] = (struct report_concern){ .asset = asset };
     }
     for (size_t c = concern_count; c-- > 0;)
         for (size_t i = 0; i < report->count; i++)
             if (report->order[i].asset == concerns[c].asset)
                 report->order[i].weight = concerns[c].weight;
-    qsort(report->order, report->count, sizeof(*report->order), by_weight);
+    qsort(report->order, report->count, sizeof(*report->order), report_concern_compare);
 }
 
 static void print_summary(const struct text_report *report)

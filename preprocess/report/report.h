@@ -13,6 +13,7 @@ struct report_concern {
 };
 /* Lists possible problems, most serious first; *count receives their number. The caller frees the list with report_concerns_free(). */
 struct report_concern *report_concerns(const struct prepare *prepare, size_t *count);
+int report_concern_compare(const void *a, const void *b); /* orders struct report_concern for qsort(), the most serious first */
 /* Frees a list of report_concerns(). */
 void report_concerns_free(struct report_concern *concerns, size_t count);
 

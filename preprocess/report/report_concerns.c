@@ -136,7 +136,7 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     mem_free(longest_m);
 }
 
-static int worst_first(const void *a, const void *b)
+int report_concern_compare(const void *a, const void *b)
 {
     const struct report_concern *p = a, *q = b;
     if (p->weight != q->weight)
@@ -159,7 +159,7 @@ struct report_concern *report_concerns(const struct prepare *prepare, size_t *co
     }
     add_sizes(&concerns, prepare);
     if (concerns.count)
-        qsort(concerns.at, concerns.count, sizeof(*concerns.at), worst_first);
+        qsort(concerns.at, concerns.count, sizeof(*concerns.at), report_concern_compare);
     *count = concerns.count;
     return concerns.at;
 }

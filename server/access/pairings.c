@@ -34,26 +34,16 @@ struct pairings {
 
 /* --- the file --------------------------------------------------------------------------------------------------------------- */
 
-static bool good_list(const json_t *list)
+static bool good_device(const json_t *device)
 {
-    static const char *const texts[] = { "id", "hash", "wall", "from", "by" };
-    if (!json_is_array(list) || json_array_size(list) > PAIRED_DEVICES)
-        return false;
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const json_t *device = json_array_get(list, i);
-        for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
-            if (!json_is_string(json_object_get(device, texts[k])))
-                return false;
-        const char *id = json_string_value(json_object_get(device, "id"));
-        if (json_string_length(json_object_get(device, "hash")) != HASH_CHARS || !tokens_name_valid(id) ||
-            !json_is_integer(json_object_get(device, "display")) || !json_is_integer(json_object_get(device, "time_us")) ||
-            kept_list_find(list, id) != i)
-            return false;
-    }
-    return true;
+    return json_string_length(json_object_get(device, "hash")) == HASH_CHARS &&
+           tokens_name_valid(json_string_value(json_object_get(device, "id")));
 }
 
-static const struct kept_list_kind KIND = { PAIRINGS_FILE, "devices", "the keys id, hash, wall, display, from, by and time_us", good_list };
+static const struct kept_list_kind KIND = {
+    PAIRINGS_FILE, "devices", "the keys id, hash, wall, display, from, by and time_us",
+    PAIRED_DEVICES, { "id", "hash", "wall", "from", "by" }, { "display", "time_us" }, good_device
+};
 
 struct pairings *pairings_open(struct log *log, const char *folder, struct file_writer *writer)
 {

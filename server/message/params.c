@@ -18,14 +18,16 @@ static bool refuse_name(const char *field, const json_t *value, enum refusal_cod
     return false;
 }
 
-static bool parse_group(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
+/* Reads the name of a thing of the plant; `bit` marks the field as given. */
+static bool parse_found(const struct plant *plant, const json_t *o, const char *field, int (*find)(const struct plant *, const char *),
+                        enum refusal_code code, unsigned bit, int *index, struct params_change *out, struct message_error *error)
 {
-    const json_t *value = json_object_get(o, "group");
+    const json_t *value = json_object_get(o, field);
     if (!value)
         return true;
-    if (!json_is_string(value) || (out->field.group = plant_find_group(plant, json_string_value(value))) < 0)
-        return refuse_name("group", value, REFUSAL_NO_GROUP, error);
-    out->given |= GIVEN_GROUP;
+    if (!json_is_string(value) || (*index = find(plant, json_string_value(value))) < 0)
+        return refuse_name(field, value, code, error);
+    out->given |= bit;
     return true;
 }
 
@@ -121,17 +123,6 @@ static bool parse_range(const json_t *o, struct params_change *out, struct messa
     return false;
 }
 
-static bool parse_colormap(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
-{
-    const json_t *value = json_object_get(o, "colormap");
-    if (!value)
-        return true;
-    if (!json_is_string(value) || (out->colormap = colormap_find(plant, json_string_value(value))) < 0)
-        return refuse_name("colormap", value, REFUSAL_UNKNOWN, error);
-    out->given |= GIVEN_COLORMAP;
-    return true;
-}
-
 static bool parse_selected(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "selected");
@@ -165,24 +156,16 @@ static bool parse_light(const json_t *o, struct params_change *out, struct messa
     return true;
 }
 
-static bool parse_environment(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
-{
-    const json_t *value = json_object_get(o, "environment");
-    if (!value)
-        return true;
-    if (!json_is_string(value) || (out->environment = plant_find_environment(plant, json_string_value(value))) < 0)
-        return refuse_name("environment", value, REFUSAL_UNKNOWN, error);
-    out->given |= GIVEN_ENVIRONMENT;
-    return true;
-}
-
 bool params_parse(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     *out = (struct params_change){ .selected_asset = -1 };
-    return parse_group(plant, o, out, error) && parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) &&
-           parse_range(o, out, error) && parse_colormap(plant, o, out, error) && parse_selected(plant, o, out, error) &&
-           parse_light(o, out, error) && parse_environment(plant, o, out, error) && params_parse_show(plant, o, out, error) &&
-           params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
+    return parse_found(plant, o, "group", plant_find_group, REFUSAL_NO_GROUP, GIVEN_GROUP, &out->field.group, out, error) &&
+           parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) && parse_range(o, out, error) &&
+           parse_found(plant, o, "colormap", colormap_find, REFUSAL_UNKNOWN, GIVEN_COLORMAP, &out->colormap, out, error) &&
+           parse_selected(plant, o, out, error) && parse_light(o, out, error) &&
+           parse_found(plant, o, "environment", plant_find_environment, REFUSAL_UNKNOWN, GIVEN_ENVIRONMENT, &out->environment, out,
+                       error) &&
+           params_parse_show(plant, o, out, error) && params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
 /* Changes the group (quantity) that a view shows, and sets that group's default parameters. A view of values relative to alarm

@@ -78,9 +78,13 @@ void plant_opcua_finish(struct plant_opcua *opcua);
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
 /* Prepares reading a YAML list into records that begin with `char *id`: allocates a record for each item of the list and sets
-   *count. Reports a list with fewer than `least` items. Returns NULL, reported, if the node is not a list or memory runs out.
-   */
-void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
+   *count. Reports a list with fewer than `least` items, or with more than `most`, of which only the first `most` are read. Returns
+   NULL, reported, if the node is not a list or memory runs out. */
+void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, int most, size_t bytes_each,
+                      int *count);
+/* Returns the number of items of a YAML list, but at most `most`; reports a longer list. Returns -1, reported, if the node is not a
+   list. */
+int plant_list_count(struct yaml_reader *reader, yaml_node_t *node, const char *name, int most);
 /* Reports an error if an earlier record of the list has the same id as the record read last. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
                          size_t stride, size_t line_offset);

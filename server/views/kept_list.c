@@ -18,12 +18,35 @@ size_t kept_list_find(const json_t *list, const char *id)
     return i;
 }
 
+static bool good_members(const struct kept_list_kind *kind, const json_t *entry)
+{
+    for (const char *const *name = kind->texts; *name; name++)
+        if (!json_is_string(json_object_get(entry, *name)))
+            return false;
+    for (const char *const *name = kind->integers; *name; name++)
+        if (!json_is_integer(json_object_get(entry, *name)))
+            return false;
+    return kind->good(entry);
+}
+
+static bool good_list(const struct kept_list_kind *kind, const json_t *list)
+{
+    if (!json_is_array(list) || json_array_size(list) > kind->most)
+        return false;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const json_t *entry = json_array_get(list, i);
+        if (!good_members(kind, entry) || kept_list_find(list, json_string_value(json_object_get(entry, "id"))) != i)
+            return false;
+    }
+    return true;
+}
+
 static void read_file(struct kept_list *kept)
 {
     json_error_t error = { 0 };
     json_t *file = json_load_file(kept->path, JSON_REJECT_DUPLICATES, &error);
     json_t *list = json_object_get(file, kept->kind->key);
-    kept->unreadable = !kept->kind->good(list);
+    kept->unreadable = !good_list(kept->kind, list);
     if (kept->unreadable)
         log_err(kept->log, "%s:%d: %s%s%s%s; the file is ignored and not changed", kept->path, file ? 1 : error.line,
                 file ? "not a list of " : error.text, file ? kept->kind->key : "", file ? " with " : "", file ? kept->kind->members : "");
@@ -141,7 +164,7 @@ enum refusal_code kept_list_put(struct kept_list *kept, json_t *list)
 
 bool kept_list_mirror(struct kept_list *kept, json_t *list)
 {
-    if (!kept->kind->good(list))
+    if (!good_list(kept->kind, list))
         return false;
     if (json_equal(kept_list_newest(kept), list))
         return true;

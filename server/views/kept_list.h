@@ -12,7 +12,10 @@
 struct kept_list_kind {
     const char *file, *key; /* file: file name; key: name of the JSON member that contains the list */
     const char *members;    /* names of the members that each entry must have, as words for a log message, such as "id, text and time_us" */
-    bool (*good)(const json_t *list); /* callback that returns whether a list from a file is valid */
+    size_t most;            /* maximum number of entries */
+    /* names of the members that must be texts (among them `id`) and integers; both end with NULL */
+    const char *texts[8], *integers[4];
+    bool (*good)(const json_t *entry); /* returns whether an entry with these members is valid */
 };
 
 /* list of entries; the owner of this struct may read `list`, but only the functions below change it */

@@ -13,14 +13,6 @@ struct named_views {
     struct kept_list kept; /* form of a saved view: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
 };
 
-static const struct named_view *find_fixed(const struct plant *plant, const char *id)
-{
-    for (size_t i = 0; i < plant->screens.view_count; i++)
-        if (!strcmp(plant->screens.views[i].id, id))
-            return &plant->screens.views[i];
-    return NULL;
-}
-
 /* --- the file --------------------------------------------------------------------------------------------------------------- */
 
 static bool good_version(const json_t *view)
@@ -30,23 +22,21 @@ static bool good_version(const json_t *view)
            json_is_string(json_object_get(view, "by")) && json_is_integer(json_object_get(view, "time_us"));
 }
 
-static bool good_list(const json_t *list)
+static bool good_view(const json_t *view)
 {
-    if (!json_is_array(list) || json_array_size(list) > NAMED_VIEWS)
+    const json_t *before = json_object_get(view, "before");
+    if (!named_view_id_valid(json_string_value(json_object_get(view, "id"))) || !good_version(view) || !json_is_array(before))
         return false;
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const json_t *view = json_array_get(list, i), *before = json_object_get(view, "before");
-        const char *id = json_string_value(json_object_get(view, "id"));
-        if (!id || !named_view_id_valid(id) || !good_version(view) || !json_is_array(before) || kept_list_find(list, id) != i)
+    for (size_t k = 0; k < json_array_size(before); k++)
+        if (!good_version(json_array_get(before, k)))
             return false;
-        for (size_t k = 0; k < json_array_size(before); k++)
-            if (!good_version(json_array_get(before, k)))
-                return false;
-    }
     return true;
 }
 
-static const struct kept_list_kind VIEWS = { NAMED_VIEWS_FILE, "views", "the keys id, title, view, by, time_us and before", good_list };
+static const struct kept_list_kind VIEWS = {
+    NAMED_VIEWS_FILE, "views", "the keys id, title, view, by, time_us and before",
+    NAMED_VIEWS, { "id" }, { NULL }, good_view
+};
 
 struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {
@@ -72,7 +62,7 @@ void named_views_close(struct named_views **pointer)
 static enum refusal_code refusal(const struct named_views *views, const char *id)
 {
     enum refusal_code why = kept_list_refusal(&views->kept);
-    return why ? why : find_fixed(views->plant, id) ? REFUSAL_FIXED : REFUSAL_NONE;
+    return why ? why : named_view_find(views->plant, id) ? REFUSAL_FIXED : REFUSAL_NONE;
 }
 
 /* Returns the earlier versions that a view has after a change: its current version, then the earlier ones that it has already. */
@@ -175,7 +165,7 @@ json_t *named_views_message(const struct named_views *views, const char *id)
         const char *name = json_string_value(json_object_get(view, "id"));
         if (!id || strcmp(name, id) != 0)
             json_object_del(view, "before");
-        if (find_fixed(views->plant, name))
+        if (named_view_find(views->plant, name))
             json_decref(view);
         else
             json_array_append_new(list, view);

@@ -43,23 +43,16 @@ static bool good_place(const json_t *note)
            json_is_number(json_array_get(position, 2));
 }
 
-static bool good_list(const json_t *list)
+static bool good_note(const json_t *note)
 {
-    if (!json_is_array(list) || json_array_size(list) > NOTES + NOTES_ENDED)
-        return false;
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const json_t *note = json_array_get(list, i);
-        const char *id = json_string_value(json_object_get(note, "id")), *text = json_string_value(json_object_get(note, "text"));
-        if (!id || strlen(id) >= NOTE_ID_BYTES || !text || strlen(text) >= NOTE_TEXT_BYTES || !good_place(note) ||
-            !json_is_string(json_object_get(note, "by")) || !json_is_integer(json_object_get(note, "time_us")) ||
-            !json_is_integer(json_object_get(note, "until_us")) || !json_is_integer(json_object_get(note, "ended_us")) ||
-            kept_list_find(list, id) != i)
-            return false;
-    }
-    return true;
+    return json_string_length(json_object_get(note, "id")) < NOTE_ID_BYTES &&
+           json_string_length(json_object_get(note, "text")) < NOTE_TEXT_BYTES && good_place(note);
 }
 
-static const struct kept_list_kind KIND = { NOTES_FILE, "notes", "the keys id, text, by, time_us, until_us and ended_us", good_list };
+static const struct kept_list_kind KIND = {
+    NOTES_FILE, "notes", "the keys id, text, by, time_us, until_us and ended_us",
+    NOTES + NOTES_ENDED, { "id", "text", "by" }, { "time_us", "until_us", "ended_us" }, good_note
+};
 
 struct notes *notes_open(struct log *log, const char *folder, struct file_writer *writer)
 {

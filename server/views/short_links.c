@@ -25,21 +25,16 @@ struct short_links {
     int64_t whole_us;      /* time (UTC) from which BURST_LINKS links may again be made at once; each new link moves it by LINK_US */
 };
 
-static bool good_list(const json_t *list)
+static bool good_link(const json_t *link)
 {
-    if (!json_is_array(list) || json_array_size(list) > SHORT_LINKS)
-        return false;
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const json_t *link = json_array_get(list, i);
-        const char *id = json_string_value(json_object_get(link, "id")), *view = json_string_value(json_object_get(link, "view"));
-        if (!id || strlen(id) >= SHORT_LINK_ID_BYTES || !view || named_view_address_wrong(view) ||
-            !json_is_integer(json_object_get(link, "time_us")) || kept_list_find(list, id) != i)
-            return false;
-    }
-    return true;
+    return json_string_length(json_object_get(link, "id")) < SHORT_LINK_ID_BYTES &&
+           !named_view_address_wrong(json_string_value(json_object_get(link, "view")));
 }
 
-static const struct kept_list_kind LINKS = { SHORT_LINKS_FILE, "links", "the keys id, view and time_us", good_list };
+static const struct kept_list_kind LINKS = {
+    SHORT_LINKS_FILE, "links", "the keys id, view and time_us",
+    SHORT_LINKS, { "id", "view" }, { "time_us" }, good_link
+};
 
 struct short_links *short_links_open(struct log *log, const char *folder, struct file_writer *writer)
 {

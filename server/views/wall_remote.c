@@ -36,26 +36,16 @@ struct wall_remote {
 
 /* --- the file --------------------------------------------------------------------------------------------------------------- */
 
-static bool good_list(const json_t *list)
+static bool good_order(const json_t *order)
 {
-    static const char *const texts[] = { "id", "wall", "area", "view", "title", "desk", "by" };
-    if (!json_is_array(list) || json_array_size(list) > WALLS * WALL_DISPLAYS * WALL_PANES)
-        return false;
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        const json_t *order = json_array_get(list, i);
-        for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
-            if (!json_is_string(json_object_get(order, texts[k])))
-                return false;
-        const char *view = json_string_value(json_object_get(order, "view"));
-        if (!json_is_integer(json_object_get(order, "display")) || !json_is_integer(json_object_get(order, "time_us")) ||
-            (*view && named_view_address_wrong(view)) || kept_list_find(list, json_string_value(json_object_get(order, "id"))) != i)
-            return false;
-    }
-    return true;
+    const char *view = json_string_value(json_object_get(order, "view"));
+    return !*view || !named_view_address_wrong(view);
 }
 
-static const struct kept_list_kind KIND = { WALL_REMOTE_FILE, "walls",
-                                            "the keys id, wall, display, area, view, title, held, desk, by and time_us", good_list };
+static const struct kept_list_kind KIND = {
+    WALL_REMOTE_FILE, "walls", "the keys id, wall, display, area, view, title, held, desk, by and time_us",
+    WALLS * WALL_DISPLAYS * WALL_PANES, { "id", "wall", "area", "view", "title", "desk", "by" }, { "display", "time_us" }, good_order
+};
 
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {

@@ -74,9 +74,7 @@ static void read_colormap(struct yaml_reader *reader, yaml_node_t *node, struct 
 void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     struct plant *plant = record;
-    int count = yaml_list_count(reader, node, "colormaps");
-    if (count > PLANT_COLORMAPS)
-        yaml_error(reader, yaml_place(node), "colormaps: expected at most %d, found %d", PLANT_COLORMAPS, count);
-    for (int i = 0; i < count && i < PLANT_COLORMAPS; i++)
+    int count = plant_list_count(reader, node, "colormaps", PLANT_COLORMAPS);
+    for (int i = 0; i < count; i++)
         read_colormap(reader, yaml_list_item(reader, node, i), plant);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the plant file's `convert`: models that plantcast-prep makes by running a program of the site's own. */
+#include <limits.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -25,7 +26,7 @@ void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struc
                                               NULL },
                                             { 0 } };
     int count;
-    plant->conversions = plant_list_make(reader, node, "convert", 0, sizeof(*plant->conversions), &count);
+    plant->conversions = plant_list_make(reader, node, "convert", 0, INT_MAX, sizeof(*plant->conversions), &count);
     for (int i = 0; i < count; i++) {
         yaml_node_t *item = yaml_list_item(reader, node, i);
         struct plant_conversion *made = &plant->conversions[plant->conversion_count++];

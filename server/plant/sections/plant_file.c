@@ -206,7 +206,7 @@ static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *rec
 {
     struct plant *plant = record;
     int count;
-    plant->assets = plant_list_make(reader, node, "assets", 1, sizeof(*plant->assets), &count);
+    plant->assets = plant_list_make(reader, node, "assets", 1, INT_MAX, sizeof(*plant->assets), &count);
     for (int i = 0; i < count; i++)
         read_asset(reader, yaml_list_item(reader, node, i), plant, &plant->assets[plant->asset_count++]);
 }
@@ -348,7 +348,7 @@ static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *rec
 {
     struct plant *plant = record;
     int count;
-    plant->groups = plant_list_make(reader, node, "groups", 1, sizeof(*plant->groups), &count);
+    plant->groups = plant_list_make(reader, node, "groups", 1, INT_MAX, sizeof(*plant->groups), &count);
     for (int i = 0; i < count; i++)
         read_group(reader, yaml_list_item(reader, node, i), plant, &plant->groups[plant->group_count++]);
 }

@@ -10,9 +10,17 @@
 
 const char *const plant_limit_names[LIMIT_COUNT] = { "LL", "L", "H", "HH" };
 
-void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count)
+int plant_list_count(struct yaml_reader *reader, yaml_node_t *node, const char *name, int most)
 {
-    *count = yaml_list_count(reader, node, name);
+    int count = yaml_list_count(reader, node, name);
+    if (count > most)
+        yaml_error(reader, yaml_place(node), "%s: expected at most %d, found %d", name, most, count);
+    return count < most ? count : most;
+}
+
+void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, int most, size_t bytes_each, int *count)
+{
+    *count = plant_list_count(reader, node, name, most);
     if (*count >= 0 && *count < least)
         yaml_error(reader, yaml_place(node), "%s: expected at least one item, found an empty list", name);
     void *things = *count < 0 ? NULL : mem_try_array((size_t)*count, bytes_each);

@@ -151,10 +151,8 @@ static void read_recipients(struct yaml_reader *reader, yaml_node_t *node, void 
     struct plant *plant = record;
     struct plant_notify *notify = plant->notify;
     int count;
-    notify->recipients = plant_list_make(reader, node, "recipients", 1, sizeof(*notify->recipients), &count);
-    if (count > NOTIFY_RECIPIENTS)
-        yaml_error(reader, yaml_place(node), "recipients: expected at most %d, found %d", NOTIFY_RECIPIENTS, count);
-    for (int i = 0; i < count && i < NOTIFY_RECIPIENTS; i++)
+    notify->recipients = plant_list_make(reader, node, "recipients", 1, NOTIFY_RECIPIENTS, sizeof(*notify->recipients), &count);
+    for (int i = 0; i < count; i++)
         read_recipient(reader, yaml_list_item(reader, node, i), plant, &notify->recipients[notify->recipient_count++]);
 }
 
@@ -321,10 +319,8 @@ static void read_rules(struct yaml_reader *reader, yaml_node_t *node, void *reco
 {
     struct plant_notify *notify = ((struct plant *)record)->notify;
     int count;
-    notify->rules = plant_list_make(reader, node, "rules", 1, sizeof(*notify->rules), &count);
-    if (count > NOTIFY_RULES)
-        yaml_error(reader, yaml_place(node), "rules: expected at most %d, found %d", NOTIFY_RULES, count);
-    for (int i = 0; i < count && i < NOTIFY_RULES; i++)
+    notify->rules = plant_list_make(reader, node, "rules", 1, NOTIFY_RULES, sizeof(*notify->rules), &count);
+    for (int i = 0; i < count; i++)
         read_rule(reader, yaml_list_item(reader, node, i), notify, &notify->rules[notify->rule_count++]);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the list `sources` of a plant file: field devices, servers, brokers and replays. SOURCES.md describes the format. */
 #include <errno.h>
+#include <limits.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -232,7 +233,7 @@ void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, void *rec
 {
     struct plant *plant = record;
     int count;
-    plant->sources = plant_list_make(reader, node, "sources", 0, sizeof(*plant->sources), &count);
+    plant->sources = plant_list_make(reader, node, "sources", 0, INT_MAX, sizeof(*plant->sources), &count);
     for (int i = 0; i < count; i++)
         read_source(reader, yaml_list_item(reader, node, i), plant, &plant->sources[plant->source_count++]);
 }

@@ -35,10 +35,9 @@ void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, void
                                             { "height", KEY_INT, false, offsetof(struct other_plant, height_px), 144, 2160, NULL, NULL },
                                             { 0 } };
     int count;
-    plant->screens.other_plants = plant_list_make(reader, node, "other_plants", 0, sizeof(*plant->screens.other_plants), &count);
-    if (count > OTHER_PLANTS)
-        yaml_error(reader, yaml_place(node), "other_plants: expected at most %d, found %d", OTHER_PLANTS, count);
-    for (int i = 0; i < count && i < OTHER_PLANTS; i++) {
+    plant->screens.other_plants =
+        plant_list_make(reader, node, "other_plants", 0, OTHER_PLANTS, sizeof(*plant->screens.other_plants), &count);
+    for (int i = 0; i < count; i++) {
         struct other_plant *other = &plant->screens.other_plants[plant->screens.other_plant_count++];
         yaml_node_t *item = yaml_list_item(reader, node, i);
         struct yaml_map map;

@@ -27,10 +27,8 @@ static void read_stops(struct yaml_reader *reader, yaml_node_t *node, void *reco
 {
     struct tour *tour = record;
     int count;
-    tour->stops = plant_list_make(reader, node, "stops", 1, sizeof(*tour->stops), &count);
-    if (count > TOUR_STOPS)
-        yaml_error(reader, yaml_place(node), "stops: expected at most %d, found %d", TOUR_STOPS, count);
-    for (int i = 0; i < count && i < TOUR_STOPS; i++)
+    tour->stops = plant_list_make(reader, node, "stops", 1, TOUR_STOPS, sizeof(*tour->stops), &count);
+    for (int i = 0; i < count; i++)
         read_stop(reader, yaml_list_item(reader, node, i), &tour->stops[tour->stop_count++]);
 }
 
@@ -41,10 +39,8 @@ void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
                                             { "stops", KEY_CUSTOM, true, 0, 0, 0, NULL, read_stops },
                                             { 0 } };
     int count;
-    plant->screens.tours = plant_list_make(reader, node, "tours", 0, sizeof(*plant->screens.tours), &count);
-    if (count > TOURS)
-        yaml_error(reader, yaml_place(node), "tours: expected at most %d, found %d", TOURS, count);
-    for (int i = 0; i < count && i < TOURS; i++) {
+    plant->screens.tours = plant_list_make(reader, node, "tours", 0, TOURS, sizeof(*plant->screens.tours), &count);
+    for (int i = 0; i < count; i++) {
         struct tour *tour = &plant->screens.tours[plant->screens.tour_count++];
         struct yaml_map map;
         tour->line = yaml_place(yaml_list_item(reader, node, i)).line;

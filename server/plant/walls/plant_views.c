@@ -58,10 +58,8 @@ void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
 {
     struct plant *plant = record;
     int count;
-    plant->screens.views = plant_list_make(reader, node, "views", 0, sizeof(*plant->screens.views), &count);
-    if (count > NAMED_VIEWS)
-        yaml_error(reader, yaml_place(node), "views: expected at most %d, found %d", NAMED_VIEWS, count);
-    for (int i = 0; i < count && i < NAMED_VIEWS; i++)
+    plant->screens.views = plant_list_make(reader, node, "views", 0, NAMED_VIEWS, sizeof(*plant->screens.views), &count);
+    for (int i = 0; i < count; i++)
         read_view(reader, yaml_list_item(reader, node, i), plant, &plant->screens.views[plant->screens.view_count++]);
 }
 

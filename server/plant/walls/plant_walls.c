@@ -209,10 +209,8 @@ static void read_grid(struct yaml_reader *reader, yaml_node_t *node, void *recor
 static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     struct wall_display *display = record;
-    int count = yaml_list_count(reader, node, "panes");
-    if (count > WALL_PANES)
-        yaml_error(reader, yaml_place(node), "panes: expected at most %d, found %d", WALL_PANES, count);
-    for (int i = 0; i < count && i < WALL_PANES; i++)
+    int count = plant_list_count(reader, node, "panes", WALL_PANES);
+    for (int i = 0; i < count; i++)
         read_pane(reader, yaml_list_item(reader, node, i), display, &display->panes[display->pane_count++]);
 }
 
@@ -282,10 +280,8 @@ static void read_displays(struct yaml_reader *reader, yaml_node_t *node, void *r
                                             { 0 } };
     struct wall *wall = record;
     int count;
-    wall->displays = plant_list_make(reader, node, "displays", 1, sizeof(*wall->displays), &count);
-    if (count > WALL_DISPLAYS)
-        yaml_error(reader, yaml_place(node), "displays: expected at most %d, found %d", WALL_DISPLAYS, count);
-    for (int i = 0; i < count && i < WALL_DISPLAYS; i++) {
+    wall->displays = plant_list_make(reader, node, "displays", 1, WALL_DISPLAYS, sizeof(*wall->displays), &count);
+    for (int i = 0; i < count; i++) {
         struct yaml_map map;
         yaml_map_read(reader, yaml_list_item(reader, node, i), "a display", keys, &wall->displays[wall->display_count++], &map);
     }
@@ -343,10 +339,8 @@ void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
                                             { "displays", KEY_CUSTOM, false, 0, 0, 0, NULL, read_displays },
                                             { 0 } };
     int count;
-    plant->screens.walls = plant_list_make(reader, node, "walls", 0, sizeof(*plant->screens.walls), &count);
-    if (count > WALLS)
-        yaml_error(reader, yaml_place(node), "walls: expected at most %d, found %d", WALLS, count);
-    for (int i = 0; i < count && i < WALLS; i++) {
+    plant->screens.walls = plant_list_make(reader, node, "walls", 0, WALLS, sizeof(*plant->screens.walls), &count);
+    for (int i = 0; i < count; i++) {
         struct wall *wall = &plant->screens.walls[plant->screens.wall_count++];
         struct yaml_map map;
         *wall = (struct wall){ .inches = 55, .metres = 3, .dim_percent = 50, .line = yaml_place(yaml_list_item(reader, node, i)).line };
