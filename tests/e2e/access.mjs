@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Access control: TLS, tokens and their roles by every way, revocation, proxies, host names, pages of other sites; and a user who is asked
-// for a token.
+// Access control: TLS; tokens, their roles and every way to send one; revocation; proxies, host names, pages of other sites;
+// and a user who is asked for a token.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync, writeFileSync } from 'node:fs';
@@ -46,7 +46,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Starts a daemon that trusts no loopback connection, like one that listens on an address reachable by other machines.
+// Starts a daemon that trusts no loopback connection, as if it listened on an address that other machines can reach.
 async function behindProxy(...args) {
     await plant.daemon?.stop();
     await plant.startDaemon('--behind-proxy', '--host', 'plant.example', ...args);
@@ -159,7 +159,7 @@ walls:
     }
 });
 
-// A stream with a token narrowed to views shows only these views, whatever is requested, and reveals nothing else.
+// A stream with a token limited to certain views shows only these views, whatever is requested, and reveals nothing else.
 async function streamsOnlyItsViews(lobby, whole) {
     const client = await open({ headers: [`Authorization: Bearer ${lobby}`] });
     const camera = { eye: [0, -9, 2], target: [0, 0, 0], up: [0, 0, 1], fov: 40 };

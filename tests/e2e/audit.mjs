@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The audit trail: user actions are recorded with name, place and result; tampering is detected; a syslog server gets the entries over TLS;
-// a full disk is reported, and no entry is lost.
+// The audit trail: user actions are recorded with name, place and result; tampering is detected; a syslog server gets the
+// entries over TLS; a full disk is reported, and no entry is lost.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -28,8 +28,8 @@ async function found(what, where) {
     return await until(`${what} in the trail`, () => lines().find(where), 90, () => readFileSync(trail, 'utf8'));
 }
 
-// A server that parses RFC 5425 (messages preceded by their length). requestCert true: it requires a certificate of the client.
-// closes true: it closes each connection after the handshake, as a server does that refuses the name in the certificate.
+// A server that parses RFC 5425 (messages preceded by their length). requestCert true: it requires a client certificate. closes
+// true: it closes each connection after the handshake, like a server that rejects the certificate's name.
 class SyslogServer {
     constructor(key, cert, { requestCert = true, closes = false } = {}) {
         this.messages = [];
@@ -67,7 +67,8 @@ class SyslogServer {
     }
 }
 
-// Returns the number of starts in the trail. There is no file before the first start, and for a moment while a full one is renamed.
+// Returns the number of daemon starts in the trail. The file is missing before the first start, and for a moment while a full
+// one is renamed.
 function starts() {
     try {
         return readFileSync(trail, 'utf8').split('"event":"start"').length - 1;
@@ -75,7 +76,7 @@ function starts() {
         return 0;
     }
 }
-// Starts the daemon, and waits until its start is in the trail: the daemon may be ready before that.
+// Starts the daemon and waits until its start is in the trail, which may be later than the daemon is ready.
 async function start(...args) {
     await plant.daemon?.stop();
     const count = starts();
@@ -83,7 +84,7 @@ async function start(...args) {
     await until('the start in the trail', () => starts() > count);
 }
 
-// Waits until the trail is good: the daemon may just be writing a line, or removing one that did not fit onto the disk.
+// Waits until the trail verifies: the daemon may just be writing a line, or removing one that did not fit on the disk.
 const whole = () => until('a good trail', () => verify().code === 0, 90, () => verify().err);
 // Waits for the metric, which follows a line of the log.
 const isGood = (value) => until(`plantcast_audit_good ${value}`, async () =>
@@ -178,7 +179,8 @@ test('a note is changed by its author, and ended by the author or an engineer; t
 
 test('a plant that is brought in: each file and each order, by whom, and what became of it', { skip, timeout: 120000 }, async () => {
     await start('--import');
-    // a connection for each request, because the server may close one whose upload it refuses while the next request is sent on it
+    // opens a connection per request, because the server may close one whose upload it refuses while the next request is being
+    // sent on it
     const post = (what, token, body, headers = {}) => fetch(`http://127.0.0.1:${plant.port}/api/v1/import${what}`,
         { method: 'POST', body, headers: { Authorization: `Bearer ${token}`, Connection: 'close', ...headers } });
     const since = lines().at(-1).seq, { engineer, operator } = tokens;
@@ -249,7 +251,8 @@ test('thousands of wrong tokens: few lines, and others come in meanwhile', { ski
     await found('the slowing', (line) => /delayed/.test(line.why ?? ''));
     const held = await found('unchecked ones', (line) => /tokens from rate-limited addresses were refused unchecked/.test(line.what ?? ''));
     assert.equal(held.result, 'refused');
-    // Ten failures and the log-in of the other client; then one token every 5 s is checked, and a sum is written every minute.
+    // Ten failures and the other client's login; after that one token is checked every 5 s, and a summary is written every
+    // minute.
     const { length: count } = lines().slice(before_).filter(({ event }) => event === 'login');
     const seconds = (performance.now() - since) / 1000, most = 12 + seconds / 5 + seconds / 60;
     assert.ok(count <= most, `${count} lines in ${seconds} s`);
@@ -317,7 +320,7 @@ test('a small disk that is full is alarmed, no line on it is torn, and a read-on
     trail = join(small, 'audit.log');
     await start();
     assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${full}`]).status, 0);
-    // Sends wrong tokens until the audit log fails: the disk is full, but the last page of the file still has room for some lines.
+    // Sends wrong tokens until the audit log fails: the disk is full, but the file's last page still has room for some lines.
     for (let i = 0; i < 60 && await good() === '1'; i++, await sleep(20))
         await ask('/api/v1/tags', 'pc_wrong', { localAddress: `127.0.2.${i + 1}` });
     await plant.daemon.line(/audit: .*audit\.log cannot be written \(No space left on device/);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Backup while a daemon records, restore to another place, and comparison of both; damaged or conflicting files are refused by name.
+// Backup while a daemon records, restore to another folder, and comparison of the two; damaged or conflicting files are refused
+// by name.
 import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

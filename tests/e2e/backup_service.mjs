@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast backup NAME` while the service's daemon runs, and `plantcast restore` on a bare host: the same server, the same picture.
+// `plantcast backup NAME` while the service's daemon runs, and `plantcast restore` on a bare host: the same server and the same
+// picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

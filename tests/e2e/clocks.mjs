@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core, a renderer and a page whose clocks are an hour apart: ages are those of the readings, and all times follow the core's clock.
+// The clocks of a core, a renderer and a page differ by an hour: ages are still those of the readings, and all times follow the
+// core's clock.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -38,7 +39,7 @@ const startCore = async (name, off_s) => {
     nodes.all.push(core);
     return core.ready();
 };
-// Checks that a time lies between two instants, within 5 s; an answer takes that long on a busy machine.
+// Checks that a time lies between two instants, within 5 s, which is how long an answer may take on a busy machine.
 const between = (us, first_us, last_us, what) => assert.ok(us > first_us - 5e6 && us < last_us + 5e6,
     `${what}: ${(us - first_us) / 1e6} s after it was asked for, of ${(last_us - first_us) / 1e6} s`);
 const alarmOf = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms

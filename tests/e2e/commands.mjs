@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command line as a client: many commands at once over https, and through a proxy that serves the daemon below a path.
+// The command line as a client: many commands at once over https, and through a proxy that serves the daemon under a path.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Confinement of programs that read untrusted files: what a compromised reader can reach, and how readers that crash, hang or use too much
-// memory are ended.
+// Confinement of programs that read untrusted files: what a compromised reader can access, and how readers that crash, hang or
+// use too much memory are ended.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -13,7 +13,8 @@ import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 import { zip } from './support/zip.mjs';
 
 const ESCAPE = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/escape');
-// each step of a reader is ended after --timeout, 10 s here: if a run takes longer than this, no limit worked, whatever the load
+// each step of a reader is ended after --timeout, here 10 s: if a run takes longer than this, the limit did not work, however
+// busy the machine
 const ENDLESS_S = 200;
 const absent = [...missing(), ...['plantcast-import', 'plantcast-match'].filter((name) => !existsSync(join(BIN, name)))];
 absent.push(...[ESCAPE, `${ESCAPE}.so`].filter((path) => !existsSync(path)));

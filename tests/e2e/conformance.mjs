@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PROTOCOL.md against a real daemon, sentence by sentence, with a client that was written from that page alone
-// (support/plain_client.mjs). daemon.mjs tests the answers to fits, picks and mistakes.
+// PROTOCOL.md checked sentence by sentence against a real daemon, with a client written from that page alone
+// (support/plain_client.mjs). daemon.mjs tests the answers to fits, picks and errors.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { FLAG, get, http, PlainClient } from './support/plain_client.mjs';

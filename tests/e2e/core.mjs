@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One daemon reads the devices and two others draw: readings, alarms and operators' actions are passed between them; a lost core is
-// reported.
+// One daemon reads the devices and two others draw: readings, alarms and operators' actions are passed between them, and the
+// loss of the core is reported.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A renderer keeps no history: trends, gaps, the journal, pictures and sessions of the past, and differences from past values come from its
-// core.
+// A renderer keeps no history: it gets trends, gaps, the journal, pictures and sessions of the past, and differences from past
+// values from its core.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -17,7 +17,7 @@ const BEGIN_S = Math.floor(Date.now() / 1000) - 7200;
 const at = (s) => (BEGIN_S + s) * 1e6, iso = (s) => new Date((BEGIN_S + s) * 1000).toISOString();
 let nodes, core, renderer;
 
-// TI-1 is a wave for an hour, TI-2 is bad from minute 10 to 20, then nothing is recorded; one tag has every sample.
+// TI-1 is a wave for an hour; TI-2 is bad from minute 10 to 20; then nothing is recorded. One tag has every sample.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let s = 0; s <= 3600; s++)
@@ -45,8 +45,8 @@ const body = async (node, path, token) => {
     const answer = await node.fetch(path, token);
     return [answer.status, answer.headers.get('content-type'), await answer.text()];
 };
-// Returns the answers of both nodes, read while the core's answer did not change: the first live row after a range belongs to it, and is
-// written at an unknown time.
+// Returns the answers of both nodes, read while the core's answer did not change: it includes the first live row after the
+// range, which is written at an unknown time.
 async function bothAt(path) {
     for (;;) {
         const earlier = await body(core, path), here = await body(renderer, path), there = await body(core, path);
@@ -107,7 +107,7 @@ test('the page of a renderer has trends and the past', options, async () => {
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-1')));
-    // A click by script: a card that moves between press and release of the mouse gets no click.
+    // Clicks by script: a card that moves between press and release of the mouse would get no click.
     await page.locator('#card .trend').evaluate((button) => button.click());
     await page.locator('#trend-chart canvas').waitFor();
     await page.locator('#trend-tags', { hasText: /TI-1.*°C/ }).waitFor();
@@ -156,7 +156,8 @@ test('"an hour ago" is the core\'s, also where the renderer\'s clock is an hour 
     await off.stop();
 });
 
-// Returns the points of the range; the first live row after it belongs to the answer, too, and is written at an unknown time.
+// Returns the points of the range, without the first live row after it, which the answer also has and which is written at an
+// unknown time.
 const recorded = async (path) => {
     const { series, to_us: end } = JSON.parse((await body(renderer, path))[2]);
     return series.map(({ points }) => points.filter(([us]) => us <= end));

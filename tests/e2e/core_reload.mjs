@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core that is reloaded takes its renderers along: they load the same files at the same time, and switch when the core does.
+// A core that is reloaded takes its renderers along: they load the same files at the same time and switch when the core does.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core does for a renderer only what its own check of the user allows. The tests send messages to /core like a renderer, with a
-// renderer's token.
+// A core does for a renderer only what its own check of the user allows. The tests send messages to /core as a renderer would,
+// with a renderer's token.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon from outside: HTTP, a client written from PROTOCOL.md, invalid input of every kind, a PLC that dies.
+// The daemon from outside: HTTP, a client written from PROTOCOL.md, invalid input of every kind, and a PLC that fails.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -236,7 +236,7 @@ test('depth grids come before their pictures, to clients that ask for them', { s
     await plant.tell('set TI-1 33');
     const recoloured = await client.frameWhere('a picture of the new reading', (f, i) => i >= pictures && (f.flags & 2) !== 0);
     assert.equal(recoloured.flags & DEPTH, DEPTH);
-    // On a slow machine a preview with another grid may come between. Bytes 8 to 11 are the sequence number.
+    // On a slow machine a preview with another grid may come in between. Bytes 8 to 11 are the sequence number.
     const grids = client.depths.slice(newest).map(({ message }) => message.toString('hex', 0, 8) + message.toString('hex', 12));
     assert.ok(grids.every((grid, i) => grid !== grids[i - 1]), 'the same depth is not sent twice in a row');
     client.say({ type: 'params', seq: 2, split: { group: 'pressure' } });
@@ -262,7 +262,7 @@ test('equal views share a render', { skip }, async () => {
     for (let i = 0; i < 8; i++) {
         const had = clients.map((client) => client.frames.length);
         await plant.tell(`set TI-1 ${i % 2 ? 10 : 90}`);
-        // until nothing is on its way to any client: then the next change is drawn for all at once
+        // waits until no client is still owed a frame, so that the next change is drawn for all at once
         await Promise.all(clients.map((client, k) => client.frameWhere('the change', (f, n) => n >= had[k] && (f.flags & 2) !== 0)));
     }
     const after = await counts(), renders = after[0] - before[0], frames = after[1] - before[1];
@@ -433,7 +433,7 @@ test('plantcast tags and plantcast probe', { skip }, async (t) => {
     assert.ok(report.frames > 0 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0, probe.out);
     promise(t, 'from one frame of the probe to the next', 1000 / report.fps, 1000);
     promise(t, 'from one frame of its two sessions to the next', 1000 / report.frames, 250);
-    // Every camera that was sent counts as an input, not only those that a frame happened to show.
+    // Every camera that was sent counts as an input, not only those that a frame showed.
     assert.ok(report.input_to_frame_ms.count >= Math.min(60, 3 * report.frames),
         `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
     const crowd = ['--sessions', '40', '--follow', '--blind', '--hz', '10', '--seconds', '6', '--size', '640x360', '--json'];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of the page on one demo plant, in one browser, because starting a daemon of the demo takes two seconds of processor time. They run
-// one after the other: each freezes the plant's readings and releases them.
+// Tests of the page on one demo plant, in one browser: starting a demo daemon takes two seconds of processor time. They run one
+// after another; each freezes the plant's readings and releases them.
 import { describe } from 'node:test';
 import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first subject
 import './demo_pages/demo.mjs';

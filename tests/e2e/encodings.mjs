@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names and units in other systems' text encodings: every format that import and match read, in each encoding. A table shows how many are
-// right.
+// Names and units in other systems' text encodings: every format that import and match read, in each encoding. Prints a table
+// of how many are right.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

@@ -13,7 +13,8 @@ const LEAST = 0.95, WITHIN_MS = 1000, BUSY_MS = 350, QUIET_MS = 1500;
 const SMALL_MS = 500;
 let plant, browser, page;
 
-// Blocks the page's main thread for that many milliseconds, like loading does. A synchronous request does so without using the processor.
+// Blocks the page's main thread for this many milliseconds, as loading does, with a synchronous request, which uses no
+// processor time.
 const BUSY = `globalThis.busy = (ms) => {
         const request = new XMLHttpRequest();
         request.open('GET', '/busy?' + ms, false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first view of a plant whose file defines none: the plant fills the picture, and no part of it is under a legend.
+// The first view of a plant whose file defines no views: the plant fills the picture, and no part of it lies under a legend.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

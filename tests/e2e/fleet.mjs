@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fleet page: what it shows of real servers, of silent ones, and of two hundred; how often it asks, and how much processor time it
-// takes.
+// The fleet page: what it shows of real servers, of unresponsive ones, and of two hundred; how often it polls them, and how
+// much processor time it takes.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
@@ -172,7 +172,8 @@ test('nothing is asked faster than it allows, and who asks for patience gets it'
     try {
         await until('enough requests', () => quick.asked.metrics.length >= 6 && slow.asked.metrics.length >= 3 &&
             slow.asked.picture.length >= 2 && busy.asked.metrics.length >= 2);
-        // Each pause follows an answer, so that the nth request comes n pauses after the start or later, however late it is noticed here.
+        // Each pause follows an answer, so the nth request comes at least n pauses after the start, however late it is noticed
+        // here.
         for (const [name, times, pause_ms] of [['quick', quick.asked.metrics, 1000], ['slow', slow.asked.metrics, 4000],
             ['picture', slow.asked.picture, 6000], ['busy', busy.asked.metrics, 5000]])
             assert.ok(times.every((at, n) => at - began >= n * pause_ms), `${name}: ${times.map((at) => Math.round(at - began))} ms`);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many clients at once, well-behaved and bad ones: what each costs the server and the other clients. SOAK_S=1800 for a long run.
+// Many clients at once, well-behaved and bad ones: what each costs the server and the other clients. SOAK_S=1800 makes it a
+// long run.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { camera, median, metrics, Mover, openFiles, openMany, residentKb, sanitized, sleep } from './support/crowd.mjs';
@@ -48,7 +49,7 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
         `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`);
 });
 
-// Waits until the daemon's memory stops growing; caches for a picture size are not charged to a client.
+// Waits until the daemon's memory stops growing; caches for a picture size do not count as a client's memory.
 async function standsStillKb() {
     let kb = residentKb(pid), same = 0;
     for (let i = 0; i < 40 && same < 4; i++) {
@@ -95,7 +96,7 @@ test('1 Mbit/s and 200 ms: never more than a second old, and not felt by another
         for (const one of [fast, slow, relay])
             one.close();
     });
-    // Measures both rates in turn. A delay that the fast client sees too is not caused by the slow link.
+    // Measures both rates in turn: a delay that the fast client sees as well is not caused by the slow link.
     for (let round = 0, frames = 0; round < 3; round++) {
         await sleep(500);
         const alone = await mover.rate(1000), slowMover = new Mover(slow, 30, frames), begin = performance.now();
@@ -147,8 +148,9 @@ async function wander(port, random, end) {
     }
 }
 
-// Returns the files that the daemon has open for clients. SQLite keeps the descriptor of a closed month file while another handle of it is
-// open, and reuses it. So there are as many such descriptors as handles were ever open at the same time, and some may appear late.
+// Returns the files that the daemon has open for clients. SQLite keeps the descriptor of a closed month file while another
+// handle of it is open, and reuses it. There are thus as many such descriptors as handles were ever open at once, and some may
+// appear late.
 const MOST_OF_HISTORY = 10;
 function openForClients() {
     const all = openFiles(pid), others = all.filter((name) => !name.includes('.history/'));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Root runs backup, restore and token in a folder that the daemon may write: symlinks and foreign files cannot redirect them, and their
-// results are not readable for others. Folders as in deploy/pages/SERVICE.md.
+// Root runs backup, restore and token in a folder that the daemon may write: symlinks and other users' files cannot redirect
+// them, and other users cannot read their results. Folders as in deploy/pages/SERVICE.md.
 import assert from 'node:assert/strict';
 import {
     chmodSync, chownSync, existsSync, linkSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
@@ -15,7 +15,7 @@ const NOBODY = 65534, absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : process.getuid() !== 0 ? 'only root can be led astray' : false;
 let plant, root, state, history, secret;
 
-// The plant file is in a folder of root; tag list and history are in one of the daemon's user.
+// The plant file is in a folder owned by root; tag list and history are in one owned by the daemon's user.
 before(async () => {
     if (skip)
         return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The GPU is reset, and its memory runs out, while sessions are connected: a preloaded library destroys the daemon's context or refuses
-// allocations. Run once as on a GPU, where GL draws everything, and once as without one.
+// The GPU is reset, and its memory runs out, while sessions are connected: a preloaded library destroys the daemon's context or
+// refuses allocations. Each test runs once as on a GPU, where GL draws everything, and once as without one.
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
@@ -87,11 +87,11 @@ function move(client) {
     return { count: () => seen.length, stop: async () => { stopped = true; await done; return seen; } };
 }
 
-// Counts pictures whose size differs from all earlier ones of that camera. An empty picture has half the size.
+// Counts pictures whose size in bytes differs from all earlier ones of the same camera. An empty picture has half the size.
 const strange = (seen, known) =>
     seen.filter(([eye, bytes]) => !known.some(([other, usual]) => other === eye && Math.abs(bytes / usual - 1) < 0.04)).length;
 
-// The test that acts as on a GPU takes most of a minute, so only make test-long runs it.
+// The variant "as on a GPU" takes most of a minute, so only make test-long runs it.
 for (const hardware of [true, false]) {
     const where = hardware ? 'as on a GPU' : 'without a GPU', options = { skip: skip || (hardware && long) };
     test(`a context that is lost ${LOSSES} times under load is made again each time, ${where}`, options, async () => {

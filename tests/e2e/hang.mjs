@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page whose main thread hangs, on an X display: a wall shows that and is reloaded, a desk shows it, the daemon logs it. Also what once
-// made pages hang: alarm rings in a viewport without area.
+// A page whose main thread hangs, on an X display: a wall reports that and is reloaded, a desk only reports it, and the daemon
+// logs it. Also the case that once made pages hang: alarm rings in a viewport without area.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';
@@ -104,7 +104,7 @@ test('a desk that hangs says so until it answers again; the daemon logs that it 
         savePng(display.grab(), join(SCREENSHOTS, 'hang-desk-again.png'));
     }));
 
-// Draws call-outs once they are loaded, in a page or in the panes of a wall. Does not return if the page hangs.
+// Draws call-outs once their module is loaded, in a page or in the panes of a wall. Does not return if the page hangs.
 const drawCallouts = (page, selector) => page.evaluate(async (which) => {
     const windows = which ? [...document.querySelectorAll(which)].map((frame) => frame.contentWindow) : [globalThis];
     for (const { plantcast } of windows) {

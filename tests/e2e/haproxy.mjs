@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy in front of two renderers: a node that is killed, drained, stopped or cut off the core loses no view and no acknowledgement.
+// HAProxy in front of two renderers: when a node is killed, drained, stopped or cut off from the core, no view and no
+// acknowledgement is lost.
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
@@ -49,7 +50,7 @@ async function start(name, i) {
 // Returns the eye in a view token: MAC.PAYLOAD, with the payload as JSON in base64url.
 const eyeOf = (token) => JSON.parse(Buffer.from(token.split('.')[1], 'base64url')).c.eye;
 
-// A page without a screen: it reconnects like pages do, and restores its view only with the view token.
+// A page without a screen: it reconnects as pages do, and restores its view only by the view token.
 class Viewer {
     constructor(number) {
         Object.assign(this, { number, eye: [3 + number / 10, -5, 2], returns: 0, moved: null, resume: null, lostAt: null });
@@ -112,7 +113,7 @@ const standing = async (node) => (await (await node.fetch('/api/v1/alarms', node
 test('each node says how much it can still draw; a cookie keeps to one node', options, async () => {
     assert.match(await line(renderers[0].agentPort), /^up \d{1,3}%\n$/);
     viewers = [];
-    // on a busy machine one node may be able to draw less than the other for a while, so that it gets fewer
+    // on a busy machine one node may for a while be able to draw less than the other, so it gets fewer viewers
     const counts = () => ['r1', 'r2'].map((name) => viewers.filter(({ node }) => node === name).length);
     while (viewers.length < VIEWERS || Math.min(...counts()) < LEAST) {
         assert.ok(viewers.length < MOST, `${counts()} of ${MOST}`);
@@ -214,7 +215,7 @@ const isUp = async (name) => /^UP/.test((await proxy.servers())[name].status);
 const operatorNamed = (name) => new Operator({ name, port: () => proxy.port, token: nodes.tokens.operator, watched: 'TI-2' });
 const nodeOf = ({ jar }) => jar.cookie?.split('=')[1];
 
-// Opens operators with the page's own connection code, until each node has two, and changes a reading five times a second.
+// Connects operators with the page's own connection code until each node has two, and changes a reading five times a second.
 async function watching(t) {
     for (const viewer of viewers ?? [])
         viewer.leave();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy in front of two cores and a renderer: requests that only a core answers go to the leader, also after kill -9, and the renderer's
-// sessions survive.
+// HAProxy in front of two cores and a renderer: requests that only a core answers go to the leader, even after kill -9, and the
+// renderer's sessions survive.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';

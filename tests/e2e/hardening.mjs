@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hardening of all programs by compiler and linker, and the restrictions of the systemd unit for a daemon that an attacker controls.
+// Hardening of all programs by compiler and linker, and the systemd unit's restrictions on a daemon that an attacker controls.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';

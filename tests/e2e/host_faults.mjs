@@ -35,7 +35,7 @@ async function gauge(plant, name) {
 const ledger = (plant, folder) => runProgram('plantcast',
     ['history', 'export', plant.file, '--tags', 'TI-1', '--folder', folder, '--from', '-1h']).out.trim().split('\n').slice(1);
 
-// Sets the tag and waits until the daemon has read it: a value shorter than a poll interval could be missed.
+// Sets the tag and waits until the daemon has read it: a value that lasts less than a poll interval could be missed.
 async function take(plant, value) {
     await plant.tell(`set TI-1 ${value}`);
     await until(`${value} is read`, async () => {
@@ -72,8 +72,8 @@ test('a volume that becomes read-only: it runs on and says so; what it held come
         await take(plant, 33);
         assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
         unmount();
-        // Mounts a copy: programs with mount namespaces of their own (unshare, services) may still hold the volume, and a held volume stays
-        // read-only.
+        // Mounts a copy, because programs with mount namespaces of their own (unshare, services) may still hold the volume, and
+        // a held volume stays read-only.
         const mended = sh(`cp --sparse=always ${volume}.img ${volume}.mended; fsck.ext4 -fy ${volume}.mended >/dev/null || [ $? = 1 ]
             mount -o loop ${volume}.mended ${volume}; touch ${volume}/x`);
         assert.equal(mended.status, 0, mended.stderr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Malicious and careless clients: each gets its answer, all of them together leave another session its frames, and when they have gone the
-// daemon uses no more than before.
+// Malicious and careless clients: each gets its answer, all of them together do not slow another session's frames, and after
+// they leave the daemon uses no more resources than before.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { readdirSync, readlinkSync } from 'node:fs';
@@ -63,7 +63,7 @@ function raw(port) {
     return socket;
 }
 
-// Returns the frames per second of another client, a separate program whose camera moves 60 times a second.
+// Returns the frame rate of another client, a separate program whose camera moves 60 times a second.
 function othersRate(port, seconds) {
     return new Promise((done, fail) => {
         const url = `http://127.0.0.1:${port}/`;
@@ -111,8 +111,8 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
     // the counter is updated once a second at least
     await until('all messages', async () => await metric('plantcast_messages_total') > before[0] + PINGS);
     const told = await metric('plantcast_message_errors_total') - before[1];
-    // A daemon that is too slow to read that many messages within a second cannot find that the client sends too fast. One that has read
-    // all of them in time has read as many as it may in each second but the last.
+    // A daemon too slow to read that many messages within a second cannot notice that the client sends too fast. One that reads
+    // all of them in time has read its maximum in every second but the last.
     const reads = took < 1000 * (PINGS / MESSAGES_PER_S), said = `too fast: said ${told} times in ${took.toFixed(0)} ms`;
     assert.ok(told >= full || !reads, said);
     assert.equal(client.texts.some((m) => m.code === 'too_fast'), told > 0, said);
@@ -189,8 +189,8 @@ test('beyond the limit connections are cut off, and there is room again once oth
     await until('room', () => get(plant.port, '/healthz').then(({ status }) => status === 200, () => false));
 });
 
-// Uses many views that are slow to draw. With few, or with a plant that is quick to draw, all clients sometimes wait for their encoders,
-// and the render thread idles.
+// Uses many views that are slow to draw. With few views, or a plant that is quick to draw, all clients sometimes wait for their
+// encoders while the render thread idles.
 test('where drawing is too busy, one more is refused, told why and when to come again', { skip: skip || noDemo || false }, async () => {
     const busy = await startPlant('', () => {}, ['--limit', 'least-fps=1000']);
     try {

@@ -101,7 +101,7 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         }
         console.log(`# ${common.length} shapes, ${off} boxes differ; area ${areas[0].toFixed(2)} m2 for ${areas[1].toFixed(2)}`);
         assert.equal(off, 0, 'boxes that differ');
-        // The other program removes fewer coincident faces: it keeps those of different size, and all faces of ducts.
+        // The other program removes fewer coincident faces: it keeps those that differ in size, and all faces of ducts.
         const all = run('plantcast', 'import', model, '-o', join(folder, 'all'), '--chord', String(chordMm), '--keep-covered');
         assert.equal(all.status, 0, all.stderr);
         const kept = shapes(join(folder, `all/${file}.glb`));

@@ -48,7 +48,7 @@ for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
 
 const hasOcct = existsSync(join(BIN, 'plantcast-import-occt'));
 
-// Tolerances for areas that the second reader computes. Infinity: its shape is wrong, as its volume or its bounding box shows.
+// Tolerances for areas that the second reader computes. Infinity: its shape is wrong, as its volume or bounding box shows.
 const SECOND_OFF = [[/elbow/, Infinity, 'fills the hole'], [/half of an arc/, Infinity, 'takes the whole arc'],
     [/on a (wall|cylinder)|gradient|sloping/, Infinity, 'lays the profile flat'], [/two outer bounds/, Infinity, 'draws one of two faces'],
     [/polyline|composite|(mapped|clipped) pipe/, 0.085, 'pinches a pipe at a corner'], [/B-rep with/, 0.05, 'draws circles coarsely'],
@@ -62,7 +62,7 @@ function secondAgrees(second, bytes, name, ours) {
     return { good: Math.abs(ratio - 1) < off && sizes, compared: true, text: `area ${(ratio * 100).toFixed(1)} % of the second reader's` };
 }
 
-// Imports elements together, in a long run each from a file of its own, and calls found(i, volume and size, what was said).
+// Imports elements together, or in a long run each from its own file, and calls found(i, volume and size, output) for each.
 function importAll(folder, schema, elements, found) {
     const path = join(folder, 'kind.ifc'), plant = join(folder, 'plant');
     for (const together of sweep(elements.map((one) => [one]), [elements])) {
@@ -74,7 +74,7 @@ function importAll(folder, schema, elements, found) {
     }
 }
 
-// Round shapes are drawn with 24 corners per circle or more, so the volume is up to 2.4 % less than the true one.
+// Round shapes are tessellated with at least 24 corners per circle, so the volume is up to 2.4 % below the exact one.
 test('every kind of shape has the volume and size that geometry gives, area and size of a second reader', { skip }, () => inFolder(
     async (folder) => {
     const wrong = [], { log, warn } = console, second = await secondReader();
@@ -163,8 +163,8 @@ test('an element whose shape is not built is named, with its class and the reaso
     assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);
 }));
 
-// Grid axis A is a straight line, used against its direction; axis 1 is an arc around the origin, or the curve `second`. The grid stands 10
-// m from the origin.
+// Grid axis A is a straight line, used in reverse; axis 1 is an arc around the origin, or the curve `second`. The grid is
+// placed 10 m from the origin.
 test('an element is placed where axes of a grid meet, or named', { skip: skip || (hasOcct ? false : 'no Open CASCADE') }, () => inFolder(
     (folder) => {
     const imported = (schema, placement, second = '#{arc}') => {

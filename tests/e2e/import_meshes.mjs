@@ -84,7 +84,8 @@ test('OBJ: a material file in a folder with backslashes', { skip }, () => withMa
     assert.equal(triangles, 8);
 }));
 
-// 100 in = 2.54 m. The geometric transform moves the pump's own mesh by 1 in x, the child is 2 in x away; neither moves the other.
+// 100 in = 2.54 m. The geometric transform moves the pump's own mesh by 1 in along x; the child is 2 in away along x. Neither
+// moves the other.
 test('FBX: a geometric transform moves its own mesh and no child', { skip }, () => withMaterials((folder) => {
     const whole = fbx(2.54), moved = (x, y) => `"A",${x},0,0\n            P: "GeometricTranslation", "Vector3D", "Vector", "",${y}\n`;
     const mesh = /Geometry: 100[\s\S]*?\n {4}\}\n/.exec(whole)[0], model = /Model: 200[\s\S]*?\n {4}\}\n/.exec(whole)[0];
@@ -139,7 +140,7 @@ test('glTF: names of files with percent signs and accents, required looks, missi
     const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
     assert.match(ran('plantcastd', '--check').stdout,
         /not prepared yet \(.*\)\. Not checked before plantcast-prep has run: textures and extensions that are not drawn, /);
-    // The check names what was left out, also after a second run of plantcast-prep, which does not read the model again.
+    // The check names what was left out, even after a second run of plantcast-prep, which does not read the model again.
     for (let run = 0; run < 2; run++) {
         assert.equal(ran('plantcast-prep').status, 0);
         const checked = ran('plantcastd', '--check').stdout;
@@ -200,7 +201,7 @@ test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () =>
     assert.match(free.out, /not shown: 1 nodes that consist only of lines or points: Pipe axis\n/);
 }));
 
-// Files of the kinds on which exporters differ. The second reader is three.js, which does not apply the unit of FBX and OBJ.
+// Files with features on which exporters differ. The second reader is three.js, which does not apply the unit of FBX and OBJ.
 const polygons = obj().replace(/f .*\n/g, '').concat('g slab\nf -6 -5 \\\n-4 -3\ng wedge\nf 1 5 2\nf 4 3 6\nf 2 5 6 3\nf 1 4 6 5\n');
 const SECOND = [['a.obj', obj()], ['polygons.obj', polygons], ['mm.dae', dae(0.001)], ['feet.dae', dae(0.3048)],
     ['mirrored.dae', dae().replace('<node id="n2"', '<node id="n2x"><matrix>-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix>' +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast import --serve`: a plant is imported on the page. Files are dropped, tags reviewed and decided, units corrected.
+// `plantcast import --serve`: a plant is imported on the page. Files are dropped, tags reviewed and decided on, units
+// corrected.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -267,7 +268,8 @@ test('an import that fails or is cancelled once the new models are in place: the
         assert.equal((await served.idle()).failed, null);
         await breaks('');
         await breaks('?what=anew&units=ft');
-        // A model that is converted by a program which waits while a file `wait` exists: so an import cannot end before it is cancelled.
+        // A model converted by a program that waits as long as the file `wait` exists, so that an import cannot end before it
+        // is cancelled.
         const [wait, drawing] = ['wait', 'box.cad'].map((name) => join(served.folder, name));
         const command = 'test -e "${1%/*}/wait" && touch waits && sleep 100; cp "$1" "$2"';
         writeFileSync(drawing, boxes(['Box']));

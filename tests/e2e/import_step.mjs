@@ -156,7 +156,8 @@ test('parts in other files: names in other cases, of other folders, with escapes
         assert.deepEqual(errors, [{ count: 1, text: 'referenced file gone.stp is not in the model\'s folder' }]);
     }));
 
-// Each kind of statement is taken out once. What is then missing is named; Open CASCADE crashes at some kinds, which is one line, too.
+// Removes one statement of each kind. The import then names what is missing; where Open CASCADE crashes instead, that too is
+// one line of output.
 test('STEP: no kind of damage takes surface away without a word', { skip }, () => withSamples((folder) => {
     const text = readFileSync(join(folder, 'skid_203.step'), 'latin1'), whole = imported(folder, 'skid_203.step').area, silent = [];
     const table = { 'as before': 0, named: 0, refused: 0 };
@@ -178,7 +179,7 @@ test('STEP: no kind of damage takes surface away without a word', { skip }, () =
     assert.ok(table.named >= 6, JSON.stringify(table));
 }));
 
-// Reading each broken file ends within its time limit: the file is refused with one line, or read. Nothing is left behind.
+// Each broken file is either read or refused with one line, within its time limit, and leaves nothing behind.
 test('broken files are one line each, and leave nothing behind', { skip }, () => withSamples((folder) => {
     const step = readFileSync(join(folder, 'skid_214.stp')), iges = readFileSync(join(folder, 'skid.igs'));
     const text = step.toString('latin1');

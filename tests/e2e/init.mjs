@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A first run: `plantcast init` creates everything that a service instance needs, and the daemon starts with it; certbot's hook installs a
-// renewed certificate; a build without the page's charts fails.
+// A first run: `plantcast init` creates everything that a service instance needs, and the daemon starts with it; certbot's hook
+// installs a renewed certificate; a build without the page's charts fails.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -135,7 +135,8 @@ test('a certificate of init is renewed before it expires, and programs that trus
         '-out', tls('csr'));
     byAuthority('3');
     assert.match(openssl('verify', '-CAfile', tls('ca.pem'), tls('leaf.pem')).stderr, /permitted subtree violation/);
-    // replaces the certificate by a self-signed one, as older versions of init made, and later by one of another authority
+    // replaces the certificate, first with a self-signed one, as older versions of init made, and later with one of another
+    // authority
     openssl('req', '-x509', '-key', tls('privkey.pem'), '-days', '20', '-out', tls('fullchain.pem'), '-subj', '/CN=plant.example',
         '-addext', 'subjectAltName=DNS:plant.example');
     assert.match(renew(), /: copy it to browsers/);

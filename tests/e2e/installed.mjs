@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page as an installed app: its service worker caches one version of its files for use without a network. The test's server has only
-// these files.
+// The page as an installed app: its service worker caches one version of the page's files for use without a network. The test's
+// server has only these files.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
@@ -65,7 +65,7 @@ test('files are kept as they are used, parts too', options, async () => {
 });
 
 test('with another version nothing of the one before stays', options, async () => {
-    // The page may still ask for the version after its last part was loaded: it would then reload itself just when told to.
+    // The page may still request the version after its last part was loaded, and would then reload itself just when told to.
     await page.evaluate(() => sessionStorage.setItem('plantcast.renewed', 'bbbbbbbbbbbb'));
     version = 'bbbbbbbbbbbb';
     await page.evaluate(() => caches.open('foreign'));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every action is answered once it is on disk, or with "not kept". For each kind of action, one that was answered as done survives a kill
-// -9 at that moment; on a full disk it is reported as not kept, to programs and on the page.
+// Every action is answered either once it is on disk or with "not kept". For each kind of action: one answered as done survives
+// a kill -9 at that moment; on a full disk, programs and the page report it as not kept.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { appendFileSync, chmodSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statfsSync, truncateSync,
@@ -93,8 +93,8 @@ const onAlarm = (more) => ({ type: 'alarm', alarms: [['TI-1', 'H']], ...more });
 const device = (at = port) => fetch(`http://127.0.0.1:${at}/api/v1/pair?wall=room&display=1`,
     { headers: { Authorization: `Pairing ${SECRET}` } });
 
-// name, message (or a function that returns it), type of the answer, event in the audit trail, and a check that asks the daemon whether the
-// action is there.
+// name; message, or a function that returns it; type of the answer; event in the audit trail; and a check that asks the daemon
+// whether the action took effect.
 const ACTIONS = [
     ['acknowledge', onAlarm({ action: 'acknowledge' }), 'alarmed', 'alarm', async () => (await alarm()).state === 'acknowledged'],
     ['shelve', onAlarm(shelve), 'alarmed', 'alarm', async () => (await alarm()).state === 'shelved'],
@@ -240,7 +240,7 @@ function freezable(folder) {
         : null;
 }
 
-// For each kind of action that is kept in a file: a message, and the type of its answer.
+// For each kind of action stored in a file: a message, and the type of its answer.
 const inFiles = async (at) => [
     [{ type: 'note', text: 'leaks a little', asset: 'E-101' }, 'noted'],
     [{ type: 'save_view', id: 'pump', title: 'The pump', view: 'asset=P-101A' }, 'view_saved'],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kiosk's supervisor (deploy/systemd/kiosk) with the real Chromium, under a service manager: it feeds the watchdog only while the page
-// answers; the page's storage survives a restart. systemd accepts its units.
+// The kiosk's supervisor (deploy/systemd/kiosk) with the real Chromium under a service manager: it feeds the watchdog only
+// while the page responds, the page's storage survives a restart, and systemd accepts its units.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chownSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -149,7 +149,7 @@ test('a browser that ends ends the service', options, async () => {
 
 const NOBODY = 65534, lacks = ['/usr/bin/cage', '/usr/bin/Xwayland'].filter((path) => !existsSync(path));
 const noCage = why || (lacks.length > 0 && `not here: ${lacks.join(', ')}`) || (process.getuid() !== 0 && 'needs root, to become nobody');
-// Makes an authority and a certificate for 127.0.0.1 that it signed: { ca, cert, key } as PEM.
+// Makes a certificate authority, and a certificate for 127.0.0.1 that it has signed: { ca, cert, key } as PEM.
 function authority(name) {
     const script = `new='-newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes'
         openssl req -x509 $new -keyout ca.key -out ca.pem -days 9 -subj "/CN=${name}"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 20,000 tags through the whole daemon: read once a second, shown, recorded, and served in pages. A page of tags is complete and in order,
-// clients are served meanwhile, and the loss of their device raises one alarm.
+// 20,000 tags through the whole daemon: read once a second, shown, recorded, and served in pages. A page of tags is complete
+// and in order, other clients are served meanwhile, and losing the tags' device raises one alarm.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -14,7 +14,8 @@ const MANY = 20000;
 const name = (i) => `X-${String(i).padStart(5, '0')}`;
 let plant;
 
-// As many tags as 65,536 registers hold, on one device, each with a limit. The first numbers belong to the tiny plant's own tags.
+// As many tags as fit into 65,536 registers, on one device, each with a limit. The first registers belong to the tiny plant's
+// own tags.
 before(async () => {
     if (options.skip)
         return;

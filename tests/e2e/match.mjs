@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast match`: tag lists made from real plants' names, matched and compared with the truth; malformed lists; manual changes and a
-// second run; and the whole way from a CAD export to a picture.
+// `plantcast match`: tag lists generated from real plants' names, matched and compared with the truth; malformed lists; manual
+// changes and a second run; and the whole way from a CAD export to a picture.
 import { DATA, inFolder } from './support/folders.mjs';
 import { seed } from './support/sweep.mjs';
 import assert from 'node:assert/strict';
@@ -147,7 +147,7 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     const first = texts();
     match();
     assert.deepEqual(texts(), first);
-    // In matches.csv: an asset for one tag, none for another. In tags.csv: a confirmed position, and another asset.
+    // In matches.csv, an asset for one tag and none for another; in tags.csv, a confirmed position and another asset.
     edit('matches.csv', 'PT-101,none,,', 'PT-101,none,P-101,');
     edit('matches.csv', 'LT-201,sure,V-201', 'LT-201,none,V-201');
     edit('tags.csv', ',E-101,equipment,', ',E-101,,');
@@ -276,7 +276,8 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
         assert.notEqual(readFileSync(elsewhere, 'utf8'), before['tags.csv']);
     }));
 
-// Starts a daemon in a folder where replacing files was begun. Afterwards the plant equals `whole`, and no temporary file is left.
+// Starts a daemon in a folder where a replacement of files was interrupted. Afterwards the plant equals `whole`, and no
+// temporary file is left.
 async function startsWhole(folder, whole, filesOf, what) {
     const daemon = new Program('plantcastd', ['--port', '0', '--gl', 'osmesa', '--h264', 'off', join(folder, 'plant.yaml')]);
     try {
@@ -354,7 +355,7 @@ for (const last of ['import', 'undo'])
         assert.ok(finished >= 3, `${finished}`);
     }));
 
-// Kepware's export of a device, for a plant drawn in PDMS: no line of either is edited by hand.
+// Kepware's export of a device, and a plant drawn in PDMS: no line of either is edited by hand.
 const ROOM = `Tag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,\
 Eng Units,Description
 "ART1105BA_TT01",400001,Float,1,R/O,100,None,,,0,150,"degC","Tank ART1105BA shell top temperature"

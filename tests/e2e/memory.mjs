@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory: a random user tries everything, and the daemon stays under its limit; when all clients have gone it releases the memory. By
-// default one minute of a person's use, as fast as the machine answers; ten minutes in `make test-long`, an hour with USES=1440.
+// Memory: a random user tries everything, and the daemon stays under its limit; when all clients have left it releases the
+// memory. By default the run covers one minute of a person's use, as fast as the machine answers; ten minutes in `make
+// test-long`, an hour with USES=1440.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources of type mqtt with Debian's mosquitto: numbers and JSON, timestamps and qualities in payloads, retained values, a broker that is
-// killed, frozen and restarted, and invalid payloads.
+// Sources of type mqtt with Debian's mosquitto: numbers and JSON, timestamps and qualities in payloads, retained values,
+// invalid payloads, and a broker that is killed, frozen and restarted.
 import assert from 'node:assert/strict';
 import { createServer } from 'node:net';
 import packets from 'mqtt-packet';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brokers with access control: TLS with certificates of both sides, users with passwords, forbidden topics; the last will.
+// Brokers with access control: TLS with certificates on both sides, users with passwords, forbidden topics; and the last will.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

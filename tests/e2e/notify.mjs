@@ -19,7 +19,7 @@ async function createPlant(notify, extra = 0) {
     const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv');
     const place = '"more, of it",temperature,E-101,0.5,0,0,600';
     const rows = Array.from({ length: extra }, (_, i) => `X-${i},${410001 + 2 * i},Float,°C,${place}\n`);
-    plant.keepFresh(); // a reading that is Bad for a moment would end an alarm, which is notified, and raise it again
+    plant.keepFresh(); // a reading that is Bad for a moment would end an alarm, which would be notified, and raise it again
     const text = (readFileSync(tags, 'utf8') + rows.join('')).trim().split('\n');
     writeFileSync(tags, `${[`${text[0]},H,HH`, ...text.slice(1).map((row) => `${row},50,60`)].join('\n')}\n`);
     makeCertificate(plant.folder);

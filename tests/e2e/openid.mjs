@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sign-in with OpenID Connect: with a provider that the test makes misbehave, and with oidc-provider and Glewlwyd, two independent ones.
+// Sign-in with OpenID Connect: with a provider that the test makes misbehave, and with two independent ones, oidc-provider and
+// Glewlwyd.
 import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
@@ -287,7 +288,7 @@ function askFrom(localAddress, where, headers = {}) {
     });
 }
 
-// Begins a log-in for an attacker: returns a function that brings an answer with the right state and cookie.
+// Begins a login as an attacker would. Returns a function that delivers an answer with the right state and cookie.
 async function beginFrom(localAddress) {
     const begun = await askFrom(localAddress, '/login'), cookie = begun.headers['set-cookie'][0].split(';')[0];
     const state = new URL(begun.headers.location).searchParams.get('state');
@@ -295,7 +296,7 @@ async function beginFrom(localAddress) {
 }
 
 const refusals = () => trail().filter((line) => line.event === 'login' && line.result === 'refused').length;
-// The trail has at most two sums each minute: of tokens that were not checked, and of the provider's answers.
+// The trail has at most two summaries per minute: of tokens that were not checked, and of the provider's answers.
 const sumsSince = (began) => 2 + 2 * Math.floor((performance.now() - began) / 60000);
 
 test('foreign answers by thousands leave one line, and lock nobody out', { skip, timeout: 120000 }, async () => {
@@ -376,8 +377,8 @@ test('a slow provider: codes wait in bounds, and the rights of 40 people end in 
     await until('all being revoked', () => provider.live.size === 0);
 });
 
-// Signatures, requests and checks of rights run in other threads. The processor time of the loop's thread shows that on a busy machine,
-// too.
+// Signatures, requests and checks of rights run in other threads, so the processor time of the event loop's thread is a valid
+// measure even on a busy machine.
 test('what people cost the loop: a log-in, a request by cookie, and their rights', { skip, timeout: 120000 }, async (t) => {
     const PEOPLE = 32, REQUESTS = 100;
     t.after(() => { provider.sub = 's1'; provider.claims.groups = ['operators']; });

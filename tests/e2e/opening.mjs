@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures on the page how soon it shows the plant: from the request to the first picture on the screen.
+// Measures how soon the page shows the plant: from the request to the first picture on the screen.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { browserWith, DESKTOP } from './support/browser.mjs';
@@ -23,7 +23,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Opens the page in a new browser profile. Returns the milliseconds until the first picture was on the screen.
+// Opens the page in a new browser profile. Returns the milliseconds until the first picture is on the screen.
 async function load() {
     const context = await browser.newContext(DESKTOP), page = await context.newPage();
     const client = await context.newCDPSession(page);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three real plants, from two systems' exports to a picture with live values: counts what a user types and edits.
+// The three real plants, from two systems' exports to a picture with live values; counts what a user types and edits.
 import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Short tests of the page, each with a plant of its own, in one browser, because starting it costs more than most of these tests.
+// Short tests of the page, each with its own plant, in one browser, because starting a browser costs more than most of these
+// tests.
 import { describe } from 'node:test';
 import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first subject
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time travel with a real daemon, by the client that was written from PROTOCOL.md: past values are shown as they were, and no other session
-// notices.
+// Time travel with a real daemon, by the client written from PROTOCOL.md: past values are shown as they were, and other
+// sessions are unaffected.
 import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -135,7 +135,7 @@ test('the same instant is drawn once for all who look at it', { skip }, async ()
         return Number(text.match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
     };
     const first = await open(), second = await open();
-    let isShared = false; // a frame is cached for half a second; on a busy machine the two requests may be farther apart for a while
+    let isShared = false; // a frame is cached for half a second; on a busy machine the two requests may for a while be farther apart
     for (let s = 440, end = performance.now() + 90000; s < 1800 && performance.now() < end && !isShared; s++) {
         const before = await metric('plantcast_renders_shared_total');
         await Promise.all([first, second].map((client) => travel(client, at(s))));
@@ -265,7 +265,7 @@ test('an imported gap, blanks and state words are no data, in pictures, readings
     assert.match(without.out, /TI-1,[^,]*,12,0x00000000,°C\r\nTI-1,[^,]*,80,0x00000000/);
     assert.doesNotMatch(without.out, /TI-1,[^,]*,,0x80310000/);
 
-    // Its Stale s, 1 s, is shorter than ten times the spacing: 3 s without a sample are no data.
+    // Its Stale s of 1 s is shorter than ten times the spacing, so 3 s without a sample count as no data.
     const steps = Array.from({ length: 20 }, (_, i) => [i / 2 + (i > 9 ? 3 : 0), 50]);
     assert.match(bring('TI-2', steps), /Gaps without data: 1 \(longer than 1 s\)/);
     assert.ok((await told('TI-2', 0, 12)).some(([us, , quality]) => us === (from + 4.5) * 1e6 + 1 && quality === 0x80310000), 'the API');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Placing sensors and checking loops, by the protocol alone: one engineer's trial is not visible to others, a saved list takes effect while
-// the previous one is kept, and loop checks survive the daemon.
+// Placing sensors and checking loops, using only the protocol: one engineer's trial is invisible to others, a saved list takes
+// effect while the previous one is kept, and loop checks survive a restart of the daemon.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -22,7 +22,7 @@ before(async () => {
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
     plant.keepFresh();
-    // A tag without a position, a comment in a column of the user's own, numbers in various notations.
+    // A tag without a position, a comment in a user-defined column, and numbers in various notations.
     const list = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Remark\n');
     writeFileSync(tagsFile, list.replace('0.5,0,0,600\n', '0.500,0.00,0,600,"# by Kim; ""new"""\n')
         + 'TI-9,400007,Float,°C,spare,temperature,,,,,600,\n');
@@ -252,7 +252,8 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is using the folder; try again/);
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
-    // Saving waits for a short match or import, and then locks the folder itself. On a busy machine the other program may take too long.
+    // Saving waits for a short match or import and then locks the folder itself. On a busy machine the other program may take
+    // too long.
     await until('a list that is saved', async () => {
         engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
         await new Promise((done) => setTimeout(done, 300));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// History in Debian's PostgreSQL: every point once, with its quality, despite failures of the server, the connection and the daemon; a
-// replacement machine gets the history back.
+// History in Debian's PostgreSQL: every point once, with its quality, despite failures of the server, the connection and the
+// daemon; a replacement machine gets the history back.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -81,7 +81,7 @@ const settled = () => until('nothing waits', async () => await metric('postgres_
 const sent = (count) => until(`${count} points are sent`, async () => await metric('postgres_points_total') >= count);
 const waiting = (count) => until(`${count} points wait`, async () => await metric('postgres_waiting_points') >= count);
 
-// Asserts that the database has the same points as the API up to three seconds ago, each once.
+// Asserts that the database has the same points, up to three seconds ago, as the API, each once.
 async function assertSame(from) {
     await stopFeeding();
     await settled();

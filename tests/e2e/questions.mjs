@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Long answers about history: a client that does not read its answer costs little memory, and one that asks for everything does not delay
-// others.
+// Long answers about history: a client that does not read its answer costs little memory, and one that requests everything does
+// not delay others.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';

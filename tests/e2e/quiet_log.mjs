@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Growth of the log: bytes that each normal event writes, in the longest log format, and the total of a busy day. Nothing is written while
-// nothing happens.
+// Growth of the log: bytes written per normal event, in the longest log format, and the total of a busy day. While nothing
+// happens, nothing is written.
 import assert from 'node:assert/strict';
 import { chmodSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -95,9 +95,9 @@ test('a device that stays lost is not told of again and again', options, async (
 test('a busy day stays under 10 MB, and one with a device that flaps all day, too', options, () => {
     for (const [what, { bytes, lines }] of Object.entries(costs))
         console.log(`# ${what}: ${bytes.toFixed(0)} bytes, ${lines.toFixed(1)} lines`);
-    // A day of each plant: 40 people and walls that reconnect 50 times each, a scraper and programs that ask every 5 s, a permanent alarm
-    // flood as defined by ISA-18.2 (10 alarms in 10 minutes), a wrong token per minute, a reload per hour, a cable that is unplugged 100
-    // times.
+    // A day of each plant: 40 people and walls that reconnect 50 times each, a scraper and programs that poll every 5 s, a
+    // permanent alarm flood as defined by ISA-18.2 (10 alarms in 10 minutes), a wrong token per minute, a reload per hour, and
+    // a cable that is unplugged 100 times.
     const day = { session: 2000, 'picture or question': DAY_S / 5, 'alarm that comes and goes': DAY_S / 60, 'wrong token': DAY_S / 60,
         reload: 24, 'device that is lost and comes back': 100, 'second of a lost device': DAY_S, '10 s of changing readings': DAY_S / 10 };
     assert.deepEqual(Object.keys(day).sort(), Object.keys(costs).sort());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Changed readings are shown at once, unchanged readings cost almost nothing, and a reading becomes stale without a write.
+// Changed readings are shown at once, unchanged readings cost almost nothing, and a reading becomes stale even without a write.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -40,7 +40,7 @@ test('a loop with nothing to do sleeps', options, async () => {
     assert.ok(rate < 5, `woken ${rate} times a second`); // the loop would sleep ten times a second if it polled every tenth of a second
 });
 
-// The device is read every 100 ms, so the oldest reading of a frame is as old as the change that caused the frame.
+// The device is read every 100 ms, so the oldest reading of a frame is as old as the change that led to the frame.
 test('a changed reading does not wait for a tick', options, async (t) => {
     const ages = [];
     for (let i = 0; i < CHANGES; i++) {

@@ -20,7 +20,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
-    // On a busy machine a late reading or poll must not look like a gap caused by the reload.
+    // A late reading or poll on a busy machine must not look like a gap caused by the reload.
     firstTags = readFileSync(tagsFile, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',60,');
     writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,60,', 'E-101,0.5,0,0,60,-1')); // a limit H of -1, which TI-1 exceeds
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000')}alarms: local\n`);
@@ -168,7 +168,7 @@ test('again and again, by signal, under clients that move', options, async () =>
     }
 });
 
-// Reading a named pipe waits until a writer opens it: so the test decides when the reload becomes ready.
+// Reading a named pipe blocks until a writer opens it, so the test decides when the reload finishes.
 test('who waits too long for an answer is told so, and can ask again', options, async () => {
     const other = await TinyPlant.create(), tags = join(other.folder, 'tags.csv'), aside = join(other.folder, 'aside.csv');
     const ask = () => fetch(`http://127.0.0.1:${other.port}/api/v1/reload`, { method: 'POST' });

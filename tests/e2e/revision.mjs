@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A new CAD export of an existing plant: matches stay, sensors follow their equipment, a review lists the rest; with a running daemon;
-// undone; killed, and on a full disk.
+// A new CAD export of an existing plant: matches stay, sensors follow their equipment, a review lists the rest. Tested with a
+// running daemon, undone, killed midway, and on a full disk.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import {
@@ -148,8 +148,8 @@ T5;temperature;second;;equipment;;;;e
 T6;temperature;second;TT-9;;;;;f
 `);
     const first = filesOf(plant);
-    // A and B exchange their names; A is rotated about the vertical and moved; C has another number; TT-9 is gone; D moved; F is new; E,
-    // which no asset uses, is gone.
+    // A and B exchange names; A is rotated about the vertical and moved; C has another number; TT-9 is gone; D is moved; F is
+    // new; E, which no asset uses, is gone.
     boxes(model, [{ ...D, at: [20, 0, -3] }, { name: 'F', at: [40, 0, 0] }, C, { ...B, name: 'A' },
         { ...A, name: 'B', at: [0, 1, 0], turned: true }]);
     const said = good(run('plantcast', 'import', model, '-o', plant));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon as a service: its messages to the service manager, restarts by the manager, its log and metrics, and what a refused reload
-// leaves visible.
+// The daemon as a service: its messages to the service manager, restarts by the manager, its log and metrics, and how a refused
+// reload stays visible.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -84,7 +84,7 @@ test('plantcast-prep asks for time while it works', { skip }, () => {
     assert.match(stdout, /^notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing/m);
 });
 
-// A plant whose preparing does not end, because a program that makes one of its models does not end.
+// A plant whose preparation never ends, because a program that makes one of its models never ends.
 async function unprepared() {
     const tiny = await TinyPlant.create();
     assert.equal(tiny.prepare().code, 0);

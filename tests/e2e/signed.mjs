@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signed pictures: intact ones are verified and drawn again pixel for pixel, of the present and the past; every alteration is detected.
+// Signed pictures of the present and the past: intact ones are verified and drawn again pixel for pixel; every alteration is
+// detected.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createPrivateKey, sign } from 'node:crypto';
@@ -131,7 +132,8 @@ test('a statement of another version is signed well, and not understood', { skip
         refused(resigned(picture, (text) => text.replace(from, to)), /the statement was not written by Plantcast/);
 });
 
-// Before pictures of sessions were signed, statements contained no overlay and tier: all were complete pictures of /snapshot.png.
+// Before session pictures were signed, statements contained neither overlay nor tier: all were complete pictures of
+// /snapshot.png.
 test('a statement of version 1 is verified, and its picture drawn again', { skip }, () => {
     const first = resigned(picture, (text) => text.replace('"plantcast_statement":2', '"plantcast_statement":1')
         .replace('"overlay":"full",', '').replace('"tier":"refined",', ''));
@@ -205,7 +207,8 @@ test('no file that would show something else is good: the chunk is named', { ski
 });
 
 const url = () => `http://127.0.0.1:${plant.port}/`;
-// Runs a probe that saves at least `least` signed frames, on a busy machine for longer; returns it and the names of the files.
+// Runs a probe that saves at least `least` signed frames, for longer on a busy machine. Returns the probe and the names of the
+// files.
 function probe(folder, least, ...args) {
     for (let seconds = 1; ; seconds *= 4) {
         mkdirSync(folder);
@@ -255,7 +258,7 @@ test('sessions of one view get one signed frame, drawn and encoded once', { skip
     const hello = { type: 'hello', width: 320, height: 200, codecs: ['png'], signed: 'refined' };
     const clients = await Promise.all([1, 2].map(() => PlainClient.open(plant.port)));
     clients.forEach((client) => client.say(hello));
-    // A frame is kept for half a second: on a busy machine, the second session may ask for it later.
+    // A frame is cached for half a second: on a busy machine, the second session may request it too late.
     for (let seq = 1, shared = 0, end = performance.now() + 90000; shared < 2; seq++) {
         for (const client of clients)
             client.say({ type: 'camera', seq, eye: [4, -3, 1 + seq % 9], target: [1, 0, 0], up: [0, 0, 1], fov: 40 });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The soak of a whole host (make soak-host) leaves no program, mount or file behind: after Ctrl-C, after a kill, after a start that failed.
+// The soak test of a whole host (make soak-host) leaves no program, mount or file behind: after Ctrl-C, after a kill, and after
+// a failed start.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { chmodSync, mkdtempSync, readdirSync, readFileSync, readlinkSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
@@ -13,7 +14,7 @@ import { missingTwoCores, until } from './support/two_cores.mjs';
 
 const options = { skip: missingTwoCores() || (missingHaproxy() ?? missingClocks() ?? false), timeout: 240000 };
 
-// Returns the command lines of all processes that were started with this folder for temporary files, or run in it (PostgreSQL overwrites
+// Returns the command lines of all processes that were started with this temporary folder or run in it (PostgreSQL overwrites
 // its environment).
 function programsOf(folder) {
     return readdirSync('/proc').filter((name) => /^\d+$/.test(name)).flatMap((pid) => {
@@ -28,7 +29,7 @@ function programsOf(folder) {
 }
 const mountsOf = (folder) => readFileSync('/proc/mounts', 'utf8').split('\n').filter((line) => line.includes(folder));
 
-// Starts the soak as the Makefile does, in a process group of its own like a shell's job.
+// Starts the soak test as the Makefile does, in its own process group like a shell's job.
 function soak(t, bin = BIN) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-soak-')), { NODE_TEST_CONTEXT, ...env } = process.env;
     chmodSync(folder, 0o711); // for PostgreSQL, which runs as another user

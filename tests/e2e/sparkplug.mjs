@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sparkplug B with Debian's mosquitto and the Eclipse project's client: births, deaths, aliases, types, gaps and rebirths; a node and a
-// broker that are killed.
+// Sparkplug B with Debian's mosquitto and the Eclipse project's client: births, deaths, aliases, types, gaps and rebirths; and
+// a node and a broker that are killed.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 import sparkplug from 'sparkplug-client';

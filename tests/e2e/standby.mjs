@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores and a database: one polls and owns the alarms, the other takes over within 5 s of a kill -9. The two never poll at the same
-// time, whatever is cut, stopped or killed; no operator action is lost, and no notification is sent twice.
+// Two cores and a database: one polls and owns the alarms, the other takes over within 5 s after a kill -9. Whatever is cut,
+// stopped or killed, the two never poll at the same time; no operator action is lost, and no notification is sent twice.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { linkSync, readdirSync, renameSync, writeFileSync } from 'node:fs';
@@ -128,8 +128,8 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
     t.diagnostic(JSON.stringify(hook.taken.map(({ alarms, ...more }) => [more.id, alarms.map(({ tag, state }) => `${tag} ${state}`)])));
 });
 
-// Each core begins a line with the first sample that it gets: such a point may lie on a line in the database and mean the same. The
-// database also lacks the last unchanged sample of a killed leader.
+// Each core begins a line with the first sample that it gets: such a point may lie on a line in the database, which then means
+// the same. The database also lacks the last unchanged sample of a killed leader.
 function isOnLine(points, us, value, quality) {
     const all = [...points].map(([at, text]) => [Number(at), ...text.split(' ')]).filter((one) => one[2] === quality);
     const next = all.findIndex(([at]) => at > Number(us)), [a, b] = [all[next - 1], all[next]];
@@ -140,7 +140,7 @@ function isOnLine(points, us, value, quality) {
     return Math.abs(a[1] - value + (b[1] - a[1]) * (us - a[0]) / (b[0] - a[0])) < 1e-9;
 }
 
-// While nothing changes a core needs no point; the returning core has sent its own first point to the database.
+// While nothing changes, a core needs no point, but the returning core has sent its own first point to the database.
 function isOfRest(points, us, value, quality) {
     const all = [...points].map(([at, text]) => [Number(at), ...text.split(' ')]), next = all.findIndex(([at]) => at > Number(us));
     return [all[next - 1], all[next]].every((one) => one && one[1] === value && one[2] === quality);
@@ -148,8 +148,8 @@ function isOfRest(points, us, value, quality) {
 
 const FEW = 50; // points that may wait to be sent: there are always new ones
 
-// This test runs only in make test-long, because two cores, a device and a database each go at their own pace. historian_test covers the
-// points that no sample but the passing of time makes.
+// Only make test-long runs this test, because two cores, a device and a database each run at their own pace. historian_test
+// covers points that arise from the passing of time alone.
 const inLong = { ...options, skip: skip || long };
 test('history is whole: what the database has is what the API has, and the gaps are the take-overs', inLong, async () => {
     await sleep(5000);
@@ -160,7 +160,7 @@ test('history is whole: what the database has is what the API has, and the gaps 
     for (const node of [core, two.other(core)].map((one) => one.node))
         await until('the files are up to date', async () => await node.metric('plantcast_history_waiting_points') < FEW, 30);
     await until('the database is up to date', async () => await core.node.metric('plantcast_postgres_waiting_points') < FEW, 30);
-    // [core, how often it must have read what it lacked]: twice for the core whose standby went away and came back
+    // [core, how often it must have read what it lacked]: twice for the core whose standby left and came back
     for (const [one, often] of [[core, 2], [two.other(core), 1]])
         await until('what it lacked is read', () => one.program.said.split('polls devices and owns').pop()
             .match(/read \d+ points from PostgreSQL, covering the \d+ s in which another core led/g)?.length >= often, 60);
@@ -335,7 +335,8 @@ test('maintenance of the standby: the leader polls on without the database, and 
     standby('maintenance');
     await alone(1);
     await core.program.line(/lease: standby: maintenance: this core leads alone/);
-    // A database that answers and refuses each change, as one with a full disk: the order to leave maintenance must wait for it.
+    // A database that answers but refuses each change, like one with a full disk: the order to leave maintenance must wait for
+    // it.
     server.ask(`CREATE FUNCTION refuse() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RAISE 'refused'; END $$;
         CREATE TRIGGER refuse BEFORE UPDATE ON plantcast.lease EXECUTE FUNCTION refuse()`);
     standby('normal');

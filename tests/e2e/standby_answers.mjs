@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An action that was answered as done survives any fate of the leader: also if the connection to the standby is slow
+// An action that was answered as done survives any fate of the leader, even if the connection to the standby is slow
 // (tests/faults/late_peer.c) and the leader is killed the moment the answer arrives.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores whose clocks are an hour apart: the standby reports that and takes over as fast; nothing is lost, notified twice or shown older
-// than it is. If a core whose clock is behind recorded while the other was away, the other does not read those points afterwards: the
-// database has them.
+// Two cores whose clocks differ by an hour: the standby reports that and takes over as fast as usual; nothing is lost, notified
+// twice or shown older than it is. Points that a core with a slow clock recorded while the other was away are not read by the
+// other afterwards, but the database has them.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

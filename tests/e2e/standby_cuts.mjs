@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores whose connections to each other and to the database are cut, frozen and restarted: one cut changes nothing, two cuts end the
-// leader before the other begins, and the two never poll at the same time.
+// Two cores whose connections to each other and to the database are cut, frozen and restarted: one cut changes nothing, two
+// cuts end the leader before the other core begins, and the two never poll at the same time.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that was paired at the leading core is also paired at the core that takes over; one that was revoked there stays revoked when
-// the first core leads again.
+// A display paired at the leading core is also paired at the core that takes over; one revoked there stays revoked when the
+// first core leads again.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { PostgresServer } from './support/postgres_server.mjs';
@@ -37,7 +37,7 @@ const ask = async ({ port }) => {
     const headers = { Authorization: `Pairing ${SECRET}` };
     return (await fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers })).json();
 };
-// Sends an action at a renderer; it is answered once the standby has it too, and refused while the renderer has no core.
+// Sends an action to a renderer, which answers once the standby has it too, and refuses it while the renderer has no core.
 const act = (message) => until('the answer of the core', async () => {
     const client = await renderer.client({}, { token: engineer });
     client.say({ seq: 1, ...message });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A standby loads changed files when the leader does. A core that took over and is reloaded at once still reads the points that the other
-// recorded during a cut; for a standby that keeps reconnecting it reads them twice more at most.
+// A standby loads changed files when the leader does. A core that took over and is reloaded at once still reads the points that
+// the other recorded during a cut. For a standby that keeps reconnecting, it reads them at most twice more.
 import assert from 'node:assert/strict';
 import { copyFileSync, cpSync, readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -72,7 +72,7 @@ test('a standby that comes again and again does not have it read as often', { ..
     assert.ok(more >= 1 && more <= 2, `read ${more} times after ${RETURNS} returns`);
 });
 
-// Gives a core plant file and prepared models of its own, as on a machine of its own, and restarts it.
+// Gives a core its own plant file and prepared models, as on its own machine, and restarts it.
 async function separate(core) {
     const own = two.file.replace('two.yaml', 'own.yaml');
     copyFileSync(two.file, own);

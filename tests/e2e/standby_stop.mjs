@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A leader that is ended in good order evaluates its last samples, sends them to its standby and gives it the lease: each change of an
-// alarm is written once, the standby leads at once, and never do two poll.
+// A leader that is shut down properly evaluates its last samples, sends them to its standby and hands over the lease: each
+// change of an alarm is written once, the standby leads at once, and the two never poll at the same time.
 import assert from 'node:assert/strict';
 import { copyFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -88,7 +88,7 @@ test('each change of an alarm is written once, whoever leads, and the standby le
     await stopFeeding();
     await two.plant.tell('set TI-1 51'); // not a value of feed(): once read, no change is on its way
     await until('the last value', async () => (await core.node.tags())['TI-1'].value === 51);
-    // Alarms are written to the journal in order: once a later alarm of another tag is there, so are all changes of TI-1's alarm.
+    // The journal is written in order: once a later alarm of another tag is in it, so are all changes of TI-1's alarm.
     await two.plant.tell('set TI-2 95');
     await until('a later alarm', async () => (await journal(core, 'TI-2')).some(({ event, kind }) => event === 'raise' && kind === 'H'));
     assert.match((await changes(core)).at(-1), / clear /);
@@ -100,7 +100,7 @@ test('each change of an alarm is written once, whoever leads, and the standby le
     assert.deepEqual(await two.network.overlaps(), []);
 });
 
-// Restarts both cores, each with its own file of tokens and its own token of the role standby.
+// Restarts both cores, each with its own token file and its own token with the role standby.
 async function separateTokens() {
     for (const core of Object.values(two.cores)) {
         const own = (name) => join(two.plant.folder, core.name, name);
@@ -112,7 +112,7 @@ async function separateTokens() {
     await Promise.all([two.start('one'), two.start('two')]);
 }
 
-// Makes a core's new token on the other core. Returns a function that revokes the old one there.
+// Copies a core's new token to the other core. Returns a function that revokes the old one there.
 async function handNewToken(core) {
     const other = two.other(core), change = async (...args) => {
         const had = other.program.said.length, { code, out, err } = runProgram('plantcast', ['token', ...args]);

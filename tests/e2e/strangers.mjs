@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client that comes through a proxy of which the daemon was not told has no rights, however the daemon listens; and the log says who was
+// A client that comes through a proxy unknown to the daemon has no rights, however the daemon listens, and the log says who was
 // admitted or refused.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -132,8 +132,8 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     }
     assert.ok(picks.some((pick) => pick.asset && pick.position), 'what is there may be asked');
     assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
-    // Readings are sent at most twice a second, and markers before a picture. So when the second change and its picture come, all messages
-    // that the first change causes have come before.
+    // Readings are sent at most twice a second, and markers before a picture. When the second change and its picture arrive,
+    // all messages that the first change caused have therefore arrived.
     const changes = [];
     for (const value of [82.5, 61.5]) {
         await plant.tell(`set TI-1 ${value}`);
@@ -265,7 +265,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
         assert.ok(!plant.daemon.said.includes(token.slice(3)), 'no token is in the log');
 });
 
-// Names of headers that libwebsockets knows: its parser waits for ever for the rest of a name that is the beginning of one.
+// Header names that libwebsockets knows: on the beginning of such a name, its parser waits forever for the rest.
 const KNOWN = `accept accept-charset accept-encoding accept-language accept-ranges access-control-allow-origin
 access-control-request-headers age allow authorization cache-control connection content-disposition content-encoding content-language
 content-length content-location content-range content-type cookie date dnt etag expect expires forwarded from host http2-settings

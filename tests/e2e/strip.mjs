@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values read from pictures with a legend strip, by their pixels alone, compared with the renderer's values: from the picture itself, from
-// JPEGs, and from a screenshot that was scaled, framed and compressed.
+// Values read from pictures with a legend strip, from their pixels alone, compared with the renderer's values: from the picture
+// itself, from JPEGs, and from a screenshot that was scaled, framed and compressed.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, writeFileSync } from 'node:fs';
@@ -25,8 +25,8 @@ const ffmpeg = (from, to, ...more) => {
 const readings = (out) => [...out.matchAll(/^(\d+),(\d+): ([-\d.e]+) °C \(([-\d.e]+) to ([-\d.e]+)\)$/gm)]
     .map(([, x, y, value, low, high]) => ({ x: Number(x), y: Number(y), value: Number(value), low: Number(low), high: Number(high) }));
 
-// Returns the share of places that are read, the share of value bounds that contain the true value, and the mean error and width in percent
-// of the range.
+// Returns the share of points that are read, the share of value bounds that contain the true value, and the mean error and mean
+// width in percent of the range.
 function judge(name, move = ([x, y]) => [x, y]) {
     const { out } = read(name, ...spots.map(({ at }) => move(at)));
     const truth = new Map(spots.map(({ at, value }) => [move(at).join(), value]));
@@ -47,7 +47,7 @@ before(async () => {
     assert.equal(plant.prepare().code, 0);
     const { code, err } = snapshot('whole.png', '--strip', 'legend');
     assert.equal(code, 0, err);
-    // The renderer's values on a grid. Of 65 places, four are under a marker, a label or an edge and have no legend colour.
+    // The renderer's values on a grid. Of 65 points, four lie under a marker, a label or an edge and have no legend colour.
     spots = [];
     for (let x = 420; x < 900; x += 48)
         for (let y = 160; y < 600; y += 55) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy and nginx with the shipped configuration, as proxies on another host (--trusted-proxy): limits, lock-out, log and audit trail
-// use the client's address, and forged headers change nothing.
+// HAProxy and nginx with the shipped configuration, as proxies on another host (--trusted-proxy): limits, lock-out, log and
+// audit trail use the client's address, and forged headers change nothing.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';

@@ -28,14 +28,14 @@ before(() => {
 const errors = (sensors, interpolation, distance = '') => part.rows.find((row) => row.sensors === sensors &&
     row.interpolation === interpolation && row.distance === distance).outside;
 
-// The temperatures that CalculiX computes are no hotter than the fixed 200, no colder than the surroundings, and mostly in between.
+// The temperatures that CalculiX computes are at most the fixed 200, at least the ambient temperature, and mostly in between.
 test('CalculiX solves what was asked', { skip }, () => {
     assert.ok(part.nodes > 2000 && part.triangles > 4000, `${part.nodes} nodes`);
     assert.ok(Math.abs(part.high - 200) < 0.01 && part.low > 20 && part.low < 40, `${part.low} to ${part.high}`);
 });
 
-// Bounds of the mean error and of the 95th percentile in kelvin; the part's temperatures span 180 K. Each bound is a third above the
-// measured error.
+// Bounds of the mean error and the 95th percentile in kelvin; the part's temperatures span 180 K. Each bound is a third above
+// the measured error.
 for (const [sensors, interpolation, distance, mean, p95] of [
     [20, 'shepard', 'geodesic', 6.3, 18.6], [20, 'harmonic', '', 4.6, 13], [20, 'fin', '', 4.8, 27], [5, 'fin', '', 11.8, 54],
     [20, 'gp', '', 3.3, 6.8], [5, 'gp', '', 21.7, 93],
@@ -47,7 +47,7 @@ for (const [sensors, interpolation, distance, mean, p95] of [
     });
 }
 
-// The walls of the two legs are as far apart as the pipe is thick: straight distances mix a hot leg with a cold one.
+// The walls of the two legs are as far apart as the pipe is thick: straight-line distances mix a hot leg with a cold one.
 test('along the surface is nearer than straight across the gap', { skip }, () => {
     const along = errors(20, 'shepard', 'geodesic').mean, straight = errors(20, 'shepard', 'euclidean').mean;
     assert.ok(along < 0.85 * straight, `${along} K along, ${straight} K straight`);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A view as video, read by other programs: constant frame rate, the clock encoded in its pixels, and a card in place of an old picture.
+// A view as video, read by other programs: constant frame rate, the clock encoded in its pixels, and a card instead of an old
+// picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -29,7 +30,7 @@ async function startVideo(...args) {
     return program;
 }
 
-// Decodes a stream's frames with ffmpeg: the row of blocks at the bottom, as [{ tenths, card, sound }].
+// Decodes a stream's frames with ffmpeg. Returns the row of blocks at the bottom of each, as [{ tenths, card, sound }].
 const BITS = 36, BLOCKS = BITS + 4;
 function codeOf(row) {
     const bits = [...row].map((value) => (value > 127 ? 1 : 0));
@@ -240,7 +241,7 @@ test('a view with a name: all that it says is understood by the server, in persp
     }
 });
 
-// Returns the mean difference of two grey pictures of that width within a box, whose sides are shares of the picture's size.
+// Returns the mean difference of two grey pictures of that width within a box, whose sides are fractions of the picture's size.
 function difference(a, b, wide, [left, top, right, bottom]) {
     const tall = a.length / wide;
     let sum = 0, count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Follows preprocess/YOUR_PLANT.md: types each command as it is printed there, and expects each printed output line; clicks the page's
-// controls by their printed names, and expects the printed results. Only ports differ, and times are not compared.
+// Follows preprocess/YOUR_PLANT.md: types each command as printed there and expects each printed line of output; clicks the
+// page's controls by their printed names and expects the printed results. Only ports differ, and times are not compared.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -86,8 +86,8 @@ test('what the page says is typed, and what it shows comes', { skip, timeout: 40
     }
 });
 
-// The steps of the section `On a page`, in their printed order. In one of many whole runs the click on *Place by hand* did nothing; the
-// cause is not known yet.
+// The steps of the section `On a page`, in their printed order. In one of many complete runs the click on *Place by hand* did
+// nothing; the cause is not known yet.
 test('what the page says is clicked, and what it shows comes', { skip: skip || long, timeout: 400000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), running = [];
     const section = page.slice(page.indexOf('## On a page'), page.indexOf('## 1. The model'));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displays of a control room, as configured in `walls` of the plant file: each pane, an alarm that replaces a view, and a lost server.
+// Displays in a control room, as configured in `walls` of the plant file: each kind of pane, an alarm that replaces a view, and
+// a lost server.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { join } from 'node:path';
@@ -165,7 +166,7 @@ test('another display has its own panes', options, async () => {
     await gone.close();
 });
 
-// The daemon does not start with a wall like this, but a display keeps its panes for a while after a reload.
+// The daemon would not start with such a wall, but a display keeps its panes for a while after a reload.
 test('tags that the plant does not have are named in tiles and trends', options, async () => {
     const openWith = (names, display) => openPage(`${plant.url}wall.html?wall=room&display=${display}`,
         { viewport: { width: 960, height: 540 } }, null, (one) => one.route(/api\/v1\/walls/, async (route) => {
@@ -245,7 +246,7 @@ test('a view that names what the plant does not have is not shown, and said', op
     await other.close();
 });
 
-// The tour pauses while an alarm waits: any alarm, for example after a late answer of the PLC, is acknowledged here.
+// The tour pauses while an alarm waits, so the test acknowledges any alarm here, such as one after a late answer of the PLC.
 test('a tour shows each view for its time, with its text', options, async () => {
     await page.evaluate(() => {
         const { session } = globalThis.wall;
@@ -258,8 +259,8 @@ test('a tour shows each view for its time, with its text', options, async () => 
         session.on('alarms', acknowledge);
         acknowledge();
     });
-    // Records the titles; the times at which the pane begins another view, whose picture may come later; and for how long it could not do
-    // so because timers were late or an alarm waited.
+    // Records the titles; the times at which the pane begins another view, whose picture may come later; and how long it could
+    // not do so because timers were late or an alarm waited.
     const watch = () => {
         const log = globalThis.titles = [], begun = globalThis.begun = [], { setItem } = Storage.prototype;
         let last = performance.now(), late = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A wall display whose server is killed repeatedly: it reports that, shows no old picture as new, and recovers each time.
+// A wall display whose server is killed repeatedly: it reports that, never shows an old picture as new, and recovers each time.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
@@ -34,7 +34,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Returns the times of the pane's picture and of the texts next to it, for the present connection.
+// Returns the times of the pane's picture and of the texts next to it, for the current connection.
 const shown = () => wall.page.evaluate(() => {
     const inner = document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session, { session } = globalThis.wall;
     return { picture: inner?.isCurrent ? inner.picture?.dataTimeUs ?? 0 : 0, words: session.isCurrent ? session.freshAt : 0 };

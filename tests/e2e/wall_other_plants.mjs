@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pane of a wall that shows another plant, with two daemons; and what it shows if the other server does not send a picture.
+// A pane of a wall that shows another plant, with two daemons, and what it shows if the other server does not send a picture.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { once } from 'node:events';
@@ -89,7 +89,7 @@ async function startOther() {
     await other.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
 }
 
-// Starts the plant: its wall shows the other plant large, and next to it one whose server answers nonsense.
+// Starts the plant: its wall has a large pane of the other plant, and next to it a pane of a server that answers nonsense.
 async function startPlant() {
     plant = await TinyPlant.create();
     const at = (id, more = '') => `- { id: ${id}, url: "http://127.0.0.1:${fakePort}/${id}", every_s: 2${more} }\n`;

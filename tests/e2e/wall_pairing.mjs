@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairing of a display without typing a token there: its six digits, an engineer who approves it, the display's rights from then on, and
-// its removal.
+// Pairing of a display without typing a token at it: its six digits, an engineer who approves it, the display's rights from
+// then on, and its removal.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -42,7 +42,7 @@ const letIn = async (page, token) => {
 };
 const get = (path, token) => fetch(plant.url + path, { headers: token ? { Authorization: token } : {} });
 const audit = () => readFileSync(join(folder, 'audit'), 'utf8');
-// Waits until the audit trail has a line like that: the daemon writes the trail after it has answered.
+// Waits until a line of the audit trail matches: the daemon writes the trail after it has answered.
 const recorded = (pattern) => until(`${pattern} in the trail`, () => pattern.test(audit()), 90, audit);
 // Waits until the session of a page is open; name: `wall` or `plantcast`.
 const connected = (page, name) => page.waitForFunction((of) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notes of a shift, and a wall controlled from a desk: a view sent to a pane, held, pointed at and released, with the user's name; also
-// after reloads.
+// Notes of a shift, and a wall controlled from a desk: a view is sent to a pane, held, pointed at and released, with the user's
+// name; also after reloads.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
@@ -65,8 +65,8 @@ test('a note is seen by all, and on the wall, until it is removed', options, asy
     assert.ok(list[0].until_us > list[0].time_us);
 });
 
-// Waits until all sessions of a page are open: that of the desk, or those of the wall and of its pane. isOld true: marks their models;
-// false: waits until these have other models, from another start of the daemon.
+// Waits until all sessions of a page are open: the desk's, or those of the wall and its pane. isOld true: marks their models;
+// false: waits until they have other models, from another start of the daemon.
 const opened = (page, isOld) => page.waitForFunction((marks) => {
     const all = globalThis.wall ? [globalThis.wall, document.querySelector('.pane.views iframe')?.contentWindow.plantcast]
         : [globalThis.plantcast];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forty wall displays lose their server at the same time: they reconnect one after another, and all show values again. Each uses the page's
-// own connection and session code on a plain socket.
+// Forty wall displays lose their server at the same time: they reconnect one after another, and all show values again. Each
+// uses the page's own connection and session code on a plain socket.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Connection, FIRST_WAIT_MS, JITTER } from '../../clients/web/core/connection.js';

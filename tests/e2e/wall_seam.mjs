@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Adjacent displays as people see them: the picture continues from one to the next, although it is shifted to prevent burn-in.
+// Adjacent displays as people see them: the picture continues from one to the next, even though it is shifted to prevent
+// burn-in.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -51,8 +52,8 @@ const pictureOf = ({ width, height, rgb }) => ({ width, height, at: (x, y) => [0
 // colours may differ a little, because pictures are sent as JPEG or H.264
 const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) < 40);
 
-// Returns the smallest share of pixels in two displays that equal the large picture: along the seam, at the lower edge between legend and
-// corner, and where a box is, which is neither white nor grey.
+// Returns the smallest share of pixels on two displays that equal the large picture: along the seam, at the lower edge between
+// legend and corner, and where a box is (pixels that are neither white nor grey).
 function agreement(screens, large, [x0, y0]) {
     const parts = { edges: [0, 0], box: [0, 0] };
     const look = (i, x, y, part = parts.edges) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Marks on a picture over two displays: alarms on either display, notes, the desk's pointer, and the view's title, in either order of
-// connecting.
+// Marks on a picture across two displays: alarms on either display, notes, the desk's pointer, and the view's title, whichever
+// display connects first.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -48,7 +48,8 @@ const point = (position, wall = 'wide') => crew.say({ type: 'point', wall, displ
 const mark = (i, text) => pages[i].page.locator('.marks .alarm', { hasText: text });
 const count = (i, what) => pages[i].page.locator(what).count();
 
-// Returns the position of a mark on a display, as shares of its sides; below 0 or above 1 if it is on the neighbouring display.
+// Returns the position of a mark on a display as fractions of its sides; below 0 or above 1 if it is on the neighbouring
+// display.
 const placeOf = (i, what, hasText) => pages[i].page.locator(what, { hasText }).evaluate((element) =>
     ['--x', '--y'].map((name) => parseFloat(element.style.getPropertyValue(name)) / 100));
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One picture over many displays, on the server's side: drawn once, cut without a seam, shown by all at one instant or not at all.
+// One picture over many displays, on the server's side: drawn once, cut without a seam, shown by all at the same instant or not
+// at all.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -68,7 +69,7 @@ const picture = (clients) => clients[0].until('a picture that all show', () => {
     return common && clients.map((client) => presents(client).find((one) => one.picture === common.picture));
 });
 
-// Moves the leader's camera until isEnough(); then waits until all clients were told to show the refined picture of the last camera.
+// Moves the leader's camera until isEnough(), then waits until all clients were told to show the last camera's refined picture.
 // Returns how long the camera moved in milliseconds.
 async function moveAll(clients, leader, isEnough) {
     const began = performance.now();
@@ -88,7 +89,7 @@ async function moveAll(clients, leader, isEnough) {
     return took;
 }
 
-// Moves a client's camera until a matching picture arrives; returns the numbers of that frame and of its camera.
+// Moves a client's camera until a matching picture arrives. Returns the numbers of that frame and its camera.
 async function moveUntil(client, wanted, still) {
     for (let seq = 1; seq < 200; seq++) {
         client.say(camera(seq, 0.3));
@@ -118,7 +119,7 @@ async function whole(width, height, still) {
 // The burn-in shift moves all tiles within the large picture, by the clock.
 const MARGIN = 3, shiftNow = () => burnShift(Date.now() * 1000), margins = (size) => size + 2 * MARGIN;
 
-// Returns the shift of pictures that are begun now; waits if one with the previous shift may still be on its way.
+// Returns the shift of newly started pictures; waits if one with the previous shift may still be under way.
 async function shiftHeld() {
     const HELD_MS = 180000, SETTLED_MS = 3000, sinceMove = Date.now() % HELD_MS;
     await sleep(Math.max(0, SETTLED_MS - sinceMove));
@@ -283,7 +284,8 @@ test('what is no tile is refused by name', options, async () => {
     assert.ok(client.frames[0].flags & KEY);
     const widest = Math.max(...client.frames.map(({ full_width: width }) => width));
     assert.ok(widest <= 2730, `${widest}: three of 4096 are more than a picture has`);
-    // Reloads the plant three times. Returns the tile's part before and after, as text; repeats this if the burn-in shift moved meanwhile.
+    // Reloads the plant three times. Returns the tile's part before and after, as text; starts over if the burn-in shift moved
+    // meanwhile.
     const reloaded = async () => {
         const part = () => JSON.stringify(tilesSaid(client).part), shift = await shiftHeld(), before = part(), said = client.texts.length;
         for (let i = 0; i < 3; i++) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Monitoring: the rules of deploy/prometheus and the panels of deploy/grafana, in a real Prometheus that reads a real daemon.
+// Monitoring: the rules of deploy/prometheus and the panels of deploy/grafana, in a real Prometheus that reads from a real
+// daemon.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';

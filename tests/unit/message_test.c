@@ -345,7 +345,7 @@ TEST(queries_make_views)
     assert_true(view.width_px == 1280 && view.height_px == 720 && !view.dark);
 }
 
-/* The triangles around a single sensor are not subdivided: modes that they cannot show exactly are refused. TI-1 is the only sensor on E-101. */
+/* Triangles around a single sensor may be left whole: modes that they cannot show exactly are then refused. TI-1 is alone on E-101. */
 TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
 {
     static const char *const paper[] = { "interpolation=paper" }, *const split[] = { "split=interpolation=paper" };

@@ -15,11 +15,12 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const SCREEN = { viewport: sweep({ width: 1680, height: 1000 }, { width: 1280, height: 800 }) };
 const UPRIGHT = { ...TABLET, viewport: { width: 768, height: 1024 } };
 const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
-// By default all rules run in one theme, and only the colour rules in the other: nothing else differs between themes.
+// By default all rules run in one theme, and only the colour rules run in the other, because the themes differ only in colours.
 const COLOURS = { type: 'rule', values: ['color-contrast', 'link-in-text-block'] };
 const WALKS = sweep([['dark', RULES], ['light', RULES]], [['dark', RULES, 'light']]);
 const THEMES = { dark: RULES, light: sweep(RULES, COLOURS) };
-// Parts of the page that a step has opened, by the step's name: only this part is checked after the step, unless asked otherwise.
+// The part of the page that each step opens, by the step's name: only this part is checked after the step, unless stated
+// otherwise.
 const PARTS = {
     card: '#card', place: '#place', picture: '#picture-panel', split: '#split-bar', views: '#views', display: '#display',
     trend: '.lower', alarms: '#alarms', shelve: '#shelve',
@@ -64,8 +65,8 @@ const NAMED = new Set(['button', 'link', 'checkbox', 'radio', 'switch', 'slider'
     'listbox', 'option', 'tab', 'tablist', 'tabpanel', 'tree', 'treeitem', 'menuitem', 'dialog', 'alertdialog', 'region', 'navigation',
     'complementary', 'main', 'image', 'columnheader', 'Date', 'DateTime', 'InputTime', 'progressbar', 'meter']);
 
-// Returns what a screen reader could not announce, by the browser's accessibility tree: controls, dialogs and regions without a name,
-// tables without column or row titles, and open dialogs without the focus.
+// Returns what a screen reader could not announce, according to the browser's accessibility tree: controls, dialogs and regions
+// without a name, tables without column or row titles, and open dialogs without the focus.
 async function unspoken(on) {
     const client = await on.context().newCDPSession(on);
     const { nodes } = await client.send('Accessibility.getFullAXTree');

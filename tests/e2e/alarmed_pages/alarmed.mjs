@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plant with an alarm that all tests of this folder use, each with pages of its own. None of them changes the plant.
+// The plant with an alarm that all tests in this folder share, each with its own pages. None of them changes the plant.
 import { after } from 'node:test';
 import { startAlarmed } from '../support/panels.mjs';
 

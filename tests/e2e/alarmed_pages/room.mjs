@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layout on every screen: lists and panels are next to the picture, and the controls needed to read the picture stay complete and visible.
+// Layout on every screen: lists and panels lie next to the picture, and the controls needed to read it stay complete and
+// visible.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { before, test } from 'node:test';
@@ -28,7 +29,7 @@ before(async () => {
         [, url] = await alarmed();
 });
 
-// Returns elements that overlap the picture or stick out of it and should not, and missing parts of the legend.
+// Returns elements that should not overlap the picture or extend beyond it but do, and missing parts of the legend.
 const amiss = (page) => page.evaluate(() => {
     const box = (element) => element.getBoundingClientRect(), picture = box(document.getElementById('viewport'));
     const shown = (selector) => [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && box(e).width > 0);
@@ -121,7 +122,8 @@ for (const name of WALKED) {
     });
 }
 
-// Returns panels and dialogs that leave the screen or cover the buttons that opened them, and texts that leave them.
+// Returns panels and dialogs that extend beyond the screen or cover the buttons that opened them, and texts that extend beyond
+// their panel.
 const panelsAmiss = (page) => page.evaluate(() => {
     const box = (element) => element.getBoundingClientRect(), found = [];
     const buttons = box(document.querySelector('.actions'));
@@ -240,7 +242,7 @@ test('until a picture of the new shape comes, the last one is not distorted, and
     }
 });
 
-// The row of quantities can be dragged; keys and messages of the server bring the chosen one into view.
+// The row of quantities scrolls when dragged; keys and server messages bring the selected one into view.
 test('of seven quantities each is named in full', options, async () => {
     const names = ['Differential pressure', 'Volume flow', 'Level', 'Vibration velocity', 'Electrical power'];
     const [many, address] = await startAlarmed((file) => writeFileSync(file, readFileSync(file, 'utf8').replace(/^sources:/m,
@@ -271,7 +273,7 @@ test('of seven quantities each is named in full', options, async () => {
 });
 
 const PARTS = '.identity, .alarm-strip, .viewport, .alarms, .stage > .card, .panel.open, .lower, #groups, .actions';
-// Returns parts that overlap or leave the window at a side, and the page itself if it scrolls sideways.
+// Returns parts that overlap or extend beyond a side of the window, and the page itself if it scrolls sideways.
 const collisions = (page) => page.evaluate((selector) => {
     const wide = () => [...document.body.querySelectorAll('*')].filter((e) => e.getBoundingClientRect().right > innerWidth)
         .map((e) => `${e.tagName} ${e.id || e.className} in ${e.parentNode.id || e.parentNode.className}`);
@@ -349,7 +351,7 @@ const setField = (page, fields) => page.evaluate((all) => {
         document.getElementById(id).dispatchEvent(new Event('input', { bubbles: true }));
     }
 }, fields);
-// Returns the text of a part that is whole on the screen and covered by nothing; '': it is not.
+// Returns the text of a part that is entirely on the screen and not covered; otherwise ''.
 const readable = (page, selector) => page.evaluate((one) => {
     const element = document.querySelector(one), { left, top, right, bottom, width } = element.getBoundingClientRect();
     const inside = width > 0 && left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;

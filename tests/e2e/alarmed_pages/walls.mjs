@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// On a control room's wall of any size and distance, legends, clock and age of the data are complete and do not cover the picture.
+// On a control room's wall of any size and viewing distance, legends, clock and data age are complete and do not cover the
+// picture.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

@@ -17,7 +17,8 @@ before(async () => {
         [, url] = await alarmed();
 });
 
-// Returns visible texts while all words of the page are replaced by marks: what can still be read must come from the plant.
+// Returns the visible texts after all of the page's own words are replaced by marks: whatever can still be read must come from
+// the plant.
 const unsaid = (page) => page.evaluate(() => {
     const { session: { model } } = globalThis.plantcast;
     const own = [model.plant, ...model.groups, ...model.assets, ...model.tags, ...model.colormaps].flatMap((one) =>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For each codec, a real browser shows the same picture as `plantcast snapshot` draws; a codec that it cannot decode is not used.
+// For each codec, a real browser shows the same picture as `plantcast snapshot` draws; a codec that the browser cannot decode
+// is not used.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -65,7 +66,7 @@ async function compare(t, page, codec) {
     assert.ok(mean <= 2, `mean dE ${mean}`);
 }
 
-// Draws pictures of moving cameras. Returns by how many MB the shared memory of the browser grew, and how many MB the pictures take.
+// Draws pictures while the camera moves. Returns the growth of the browser's shared memory and the size of all pictures, in MB.
 async function growth(page, count) {
     const before = sharedMb(family(process.pid)), { width, height } = await grab(page);
     await page.evaluate(async (most) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The demo plant that all tests of this folder use, each with pages of its own. Its readings change only when a test sets them; otherwise
-// each page would have pictures drawn all the time.
+// The demo plant that all tests in this folder share, each with its own pages. Its readings change only when a test sets them,
+// so that pages do not request pictures all the time.
 import { after } from 'node:test';
 import { startPlant } from '../support/plant.mjs';
 

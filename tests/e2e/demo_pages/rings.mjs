@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarms in the picture: every alarm ring has a label or a call-out, however small the picture, and none of these covers a legend. No ring
-// is drawn over a note.
+// Alarms in the picture: every alarm ring has a label or a call-out, however small the picture, and none of these covers a
+// legend. No ring covers a note.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';

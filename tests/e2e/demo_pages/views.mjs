@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views in the browser: standard views, parallel projection, a section, hidden and shown equipment, and what is at a place.
+// Views in the browser: standard views, parallel projection, a section, hidden and shown equipment, and what lies at a clicked
+// point.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -135,8 +136,8 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-// For every sixth tag: whether it would be visible from its own side at 5 m, and from where the camera arrives, and which part of the
-// picture its equipment fills there.
+// For every sixth tag: whether it is visible at 5 m from its own side and from where the camera arrives, and what share of the
+// picture its equipment then fills.
 test('a flight to a tag ends where the tag is seen and its equipment fills 35 % of the picture', options, async (t) => {
     const arrived = await page.evaluate(async () => {
         const { session, cameraController: { approach }, viewport } = globalThis.plantcast, from = session.camera, found = [];

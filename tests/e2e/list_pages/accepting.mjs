@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Five hundred assumed positions are accepted at once, filtered by equipment, name, distance and confidence; restoring the old list gives
-// the same bytes.
+// Five hundred assumed positions, filtered by equipment, name, distance and confidence, are accepted at once; restoring the old
+// list gives the same bytes.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

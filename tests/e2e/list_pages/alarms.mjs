@@ -35,7 +35,7 @@ const words = () => page.locator('#alarm-words').textContent();
 const waitForWords = (pattern) => page.waitForFunction(
     (p) => new RegExp(p).test(document.getElementById('alarm-words').textContent), pattern);
 const limitOf = (name) => tags.find((tag) => tag.name === name).limits;
-// Returns the position of a tag's alarm ring over the picture, and the alarm; null: no ring is drawn.
+// Returns the position of a tag's alarm ring in the picture, and the alarm; null: no ring is drawn.
 const ring = (name) => page.evaluate((tag) => {
     const { overlay } = globalThis.plantcast, found = overlay.markers.find((marker) => marker.tag.name === tag && marker.alarm);
     const box = document.getElementById('viewport').getBoundingClientRect();
@@ -200,7 +200,7 @@ test('one row and one count for a tag; what has returned is not active, and draw
         const found = await ring(LOW);
         return found?.state === 'returned' && found;
     });
-    // The ring of a returned alarm is white where an active alarm's ring has the colour of its priority.
+    // The ring of a returned alarm is white where an active alarm's ring shows the colour of its priority.
     const [r, g, b] = await page.evaluate(({ x, y }) => {
         const box = document.getElementById('viewport').getBoundingClientRect(), { canvas, unit } = globalThis.plantcast.overlay;
         const ratio = canvas.width / box.width;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment: areas, search, keyboard, links, selection in the list and in 3D; and a plant of 20,000 tags, which scrolls
-// smoothly.
+// The list of equipment: areas, search, keyboard, links, selection in the list and in 3D; and a plant of 20,000 tags, which
+// scrolls smoothly.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -134,7 +134,8 @@ test('by the keyboard alone', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-// Measures the page's own work for each frame of a scrolling list with all assets open; drawing is up to the browser.
+// Measures only the page's own work for each frame while a list with all assets open scrolls; drawing is the browser's
+// business.
 test('20,000 tags scroll smoothly', options, async (t) => {
     const { frames, work, rows } = await page.evaluate(async (steps) => {
         const { assets, session } = globalThis.plantcast;
@@ -163,9 +164,9 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     await shoot(page, 'assets-20000');
 });
 
-// Garbage is collected before each measurement; one second of use by default, half an hour in `make test-long`.
+// Garbage is collected before each measurement. By default one second of use, in `make test-long` half an hour.
 const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // EACH: a panel is opened or closed at every EACH-th action
-// Permitted growth of memory and nodes. By default a panel is used ten times, so half of the growth is allowed that twenty uses may cause.
+// Allowed growth of memory and nodes. By default a panel is used only ten times, so half of the growth allowed for twenty uses.
 const MOST = sweep({ share: 0.1, megabytes: 2, nodes: 500 }, { share: 0.05, megabytes: 1, nodes: 250 });
 const isSteady = (before, after) => after.megabytes < before.megabytes * (1 + MOST.share) + MOST.megabytes &&
     after.nodes < before.nodes * (1 + 2 * MOST.share) + MOST.nodes;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engineer's panel in the browser: a sensor is placed on the surface, dragged and saved, and its loop is checked against a forced
-// transmitter.
+// The engineer's panel in the browser: a sensor is placed on the surface, dragged and saved, and its loop is checked with a
+// forced transmitter.
 import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening and closing every part of the page, and alarms that come and go, leave no nodes, listeners or memory behind.
+// Opening and closing every part of the page, and alarms that come and go, leave behind no nodes, listeners or memory.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
@@ -8,7 +8,7 @@ import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 const options = { skip: notBuilt(), timeout: 300000 };
 const WARM_UP = 3, CYCLES = 5, HEAP_KB = 25; // HEAP_KB: largest growth of the heap per cycle
 const TRIES = 40, PAUSE_MS = 250;            // the page may differ for a moment, for example while a message is shown
-// Without compiled code, whose size depends on the time that functions run, the size of the heap is nearly the same in each run.
+// Without compiled code, whose size depends on how long functions run, the heap has nearly the same size in each run.
 const JITLESS = ['--js-flags=--jitless'];
 let plant, browser, page, devTools;
 
@@ -38,13 +38,13 @@ async function measure() {
     const { metrics } = await devTools.send('Performance.getMetrics');
     const { Nodes: nodes, JSEventListeners: listeners, JSHeapUsedSize: heap } =
         Object.fromEntries(metrics.map(({ name, value }) => [name, value]));
-    // Not counted, because it depends on the answers that had arrived when the part was closed: the sensor card's content (drift,
+    // Not counted, because they depend on which answers had arrived when the part was closed: the sensor card's content (drift,
     // neighbours, alarm), and the list of sensors that disagree with their neighbours, each with a button.
     const { card = 0, disagreeing = 0, drifting = 0 } = await contents(), buttons = await page.locator('#disagreeing button').count();
     return { nodes: nodes - card - disagreeing - drifting, listeners: listeners - buttons, heap };
 }
 
-// Returns how many nodes each element of the document with an id contains directly or through elements without an id.
+// Returns, for each element of the document with an id, how many nodes it contains directly or through elements without an id.
 const contents = () => page.evaluate(() => {
     const counts = {}, walker = document.createTreeWalker(document);
     for (let node = walker.nextNode(); node; node = walker.nextNode()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nothing old is shown as present: the value at which an alarm was raised, notes written later, rings and lists of a lost device or server.
+// Nothing old is shown as current: the value at which an alarm was raised, notes written later, and rings and lists of a lost
+// device or server.
 import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -156,8 +157,8 @@ test('the pins of notes cover neither each other nor a legend nor the right half
         session.setCamera({ ...session.camera, eye: [x + 6, y - 6, z + 4], target }); // the tag is in the middle of each half
         all.forEach((text) => session.post({ type: 'note', seq: ++session.toldSeq, text, tag: 'TI-1' }));
     }, texts);
-    // Returns pins that overlap another pin or a legend, leave the left half, or are cut. On a phone, the list of notes has the whole
-    // text.
+    // Returns pins that overlap another pin or a legend, extend beyond the left half, or are cut off. On a phone, the list of
+    // notes has the whole text.
     const amiss = () => page.evaluate(() => {
         const view = document.getElementById('viewport').getBoundingClientRect(), { split } = globalThis.plantcast.session.shown;
         const right = split ? view.left + view.width / 2 : view.right;
@@ -182,7 +183,7 @@ test('the pins of notes cover neither each other nor a legend nor the right half
             await becomes(amiss, [], `${size.width}${split ? ', split' : ''}`);
         }
     }
-    await page.evaluate(async () => { // moves the camera down until the place of the notes is at the upper edge of the picture
+    await page.evaluate(async () => { // moves the camera down until the notes' point is at the picture's upper edge
         const { projector } = await import('/core/camera.js'), { session, viewport } = globalThis.plantcast;
         const { position } = session.model.tag('TI-1'), lower = ([x, y, z]) => [x, y, z - 0.01];
         let { camera } = session;

@@ -42,8 +42,8 @@ const assetBox = (id) => page.evaluate(async (asset) => {
     return { left: Math.min(...xs) - 16, right: Math.max(...xs) + 16, top: Math.min(...ys) - 16, bottom: Math.max(...ys) + 16 };
 }, id);
 
-// Readings keep changing, and on a busy machine most pictures are smaller previews: a picture that has arrived may be replaced before it is
-// grabbed.
+// Readings keep changing, and on a busy machine most pictures are smaller previews, so a picture that has arrived may be
+// replaced before it is grabbed.
 const waitForWhole = (width, height) => page.waitForFunction(([w, h]) => {
     const canvas = document.getElementById('picture');
     return globalThis.plantcast.session.picture.still && canvas.width === w && canvas.height === h;

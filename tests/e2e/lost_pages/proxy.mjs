@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Proxies that pass pages but no WebSocket: the page, the log and the command line name the proxy and say what it needs.
+// Proxies that pass pages but no WebSocket: the page, the log and the command line name the proxy and state what it must do.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -96,8 +96,8 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
 
 const PASS = { passes: true };
 
-// A proxy that answers handshakes itself and passes on all other requests. answer: status line; null: it closes the connection; PASS: it
-// passes handshakes on. tls: key and certificate, or null.
+// A proxy that answers handshakes itself and passes on all other requests. answer: status line; null: it closes the connection;
+// PASS: it passes on handshakes too. tls: key and certificate, or null.
 async function startOther(answer, headers, tls = null) {
     const serve = (asked, told) => {
         const on = request({ port: plant.port, path: asked.url, headers: { ...asked.headers, host: `127.0.0.1:${plant.port}` } }, (got) => {

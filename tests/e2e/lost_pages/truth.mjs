@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Anything not current, not measured or not from this version is marked: simulated data, a page after sleep, a page of another version;
-// also on a wall, legible from afar.
+// Anything not current, not measured or not from this version is marked: simulated data, a page after sleep, a page of another
+// version; also on a wall, legibly from afar.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createHash, X509Certificate } from 'node:crypto';
@@ -126,7 +126,7 @@ test('a tablet whose date is wrong tells ages and the plant\'s time all the same
         assert.ok(await far() < -3 * 86400e3 + 60000, 'its date is wrong');
         const told = () => page.evaluate(() => ({ clock: document.getElementById('clock').textContent,
             age: document.getElementById('age').textContent }));
-        // the age must also be right while the clock is set back; set forward, it would look like a sleep
+        // the age must stay right even when the clock is set back; setting it forward would look like a sleep
         const ages = await page.evaluate(() => new Promise((done) => {
             const seen = [], timer = setInterval(() => {
                 seen.push(document.getElementById('age').textContent);
@@ -271,8 +271,8 @@ test('it can be installed: a manifest with icons, all there; no service worker o
         assert.equal(await page.evaluate(async () => (await navigator.serviceWorker?.getRegistrations())?.length ?? 0), 0);
     }));
 
-// Makes a self-signed certificate, and flags that make chromium trust it: service workers are refused on pages with ignored certificate
-// errors.
+// Makes a self-signed certificate, and flags that make Chromium trust it: service workers are refused on pages whose
+// certificate errors are merely ignored.
 function certify(folder) {
     const [key, cert] = ['key.pem', 'cert.pem'].map((name) => join(folder, name));
     const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures how much the page transfers and how soon it shows the plant; tests its parts that are loaded on first use.
+// Measures how much the page transfers and how soon it shows the plant; also tests the parts that are loaded on first use.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -10,7 +10,7 @@ import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-// limits on the first load: bytes on the wire, compressed; a touch screen also loads what follows a finger
+// limits of the first load: compressed bytes on the wire; a touch screen also loads the code for fingers
 const MOST_BYTES = { desk: 70000, touch: 95000, warp: 15000 }, MOST_REQUESTS = 30, QUIET_MS = 1500;
 const source = readFileSync(new URL('../../../clients/web/app/lazy_modules.js', import.meta.url), 'utf8');
 const PARTS = [...source.matchAll(/^    (\w+): \{ file:/gm)].map(([, name]) => name);
@@ -104,7 +104,7 @@ const press = async (page, key) => {
 const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
 
 test('a part that cannot be loaded says so, and comes by itself once it can be', options, async () => {
-    // a key that opens a part, and a file that the part loads; parts later in this list may load the same file
+    // key that opens a part, a file that the part loads, and the part; parts later in this list may load the same file
     const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'],
         ['p', 'app/picture/picture.html', '#picture-panel.open'], ['v', 'app/views/views.js', '#views.open']];
     const words = [['v', 'words/lazy.en.js', '#views.open']]; // file with the words of all lazily loaded parts
@@ -187,7 +187,8 @@ test('what hands and keys do first is done, though what steers by them is still 
             await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
             const began = performance.now();
             await act(page);
-            // The page drops input that is older than 2 s. On a busy machine, loading may take longer: then a user acts again.
+            // The page drops input that is older than 2 s. On a busy machine loading may take longer, so the test repeats the
+            // action as a user would.
             while (!await waitForMove(page, ELSEWHERE.eye, { timeout: 10000 }).catch(() => null))
                 await act(page);
             promise(t, 'until the camera moves', performance.now() - began, 5000);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OPC UA servers that send wrong sizes, fall silent between rare messages, send future timestamps or have a wrong clock, or are at the
-// second address of their name.
+// OPC UA servers that send wrong sizes, fall silent between rare messages, send future timestamps, have a wrong clock, or
+// listen at the second address of their name.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -32,7 +32,7 @@ async function rest() {
         before = taken();
 }
 
-// Lets the daemon connect to whatever listens at the server's port; returns its memory in MB beyond `before`.
+// Lets the daemon connect to whatever listens at the server's port. Returns the daemon's memory in MB above `before`.
 async function meet(before = 0) {
     await plant.start('security: none', ROWS);
     await plant.said(/no readings \(/);
@@ -49,7 +49,7 @@ test('what lies about sizes is left, named, and costs nothing', options, async (
         const liar = await tellLies(server.port, lies);
         try {
             let moreMb = await meet(before);
-            if (moreMb >= MOST_MB) { // measures again, because a busy machine may use more memory once: a real leak costs it each time
+            if (moreMb >= MOST_MB) { // measures again, because a busy machine may use more memory once; a real leak grows each time
                 await plant.daemon.stop();
                 moreMb = Math.min(moreMb, await meet(before));
             }
@@ -137,7 +137,7 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         assert.equal(plant.daemon.said.match(/timestamps are/g).length, 1, 'it is said once');
     });
 
-// With a server clock that is off, certificates that were just made are not valid yet: the server's and the client's.
+// If the server's clock is slow, new certificates are not valid yet: neither the server's nor the client's.
 test('a server whose clock is before its certificate is read, and said; a certificate of tomorrow is refused by name', clocks, async () => {
     const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
     for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])

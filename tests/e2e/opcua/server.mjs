@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The server that all tests of this folder share, not running at first, and a plant that uses it as a source.
+// The server that all tests in this folder share, not running at first, and a plant that uses it as a source.
 import { after, afterEach, before } from 'node:test';
 import { OpcuaServer } from '../support/opcua.mjs';
 import { PublishedPlant } from '../support/published_plant.mjs';
@@ -16,7 +16,7 @@ async function make() {
     return { server, plant: await PublishedPlant.create(server) };
 }
 
-// Sets up one subject: take(server, plant) is called before its tests. Each test has a daemon of its own.
+// Sets up one group of tests: calls take(server, plant) before they run. Each test has its own daemon.
 export function shareOpcua(options, take) {
     let plant;
     before(async () => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources of type opcua with node-opcua's server: values, status codes and timestamps bit by bit, arrays, namespaces that move, deadbands,
-// browsing, and a server that is killed, frozen, full and restarted.
+// Sources of type opcua with node-opcua's server: values, status codes and timestamps bit by bit, arrays, namespaces that
+// change their index, deadbands, browsing, and a server that is killed, frozen, full and restarted.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -156,7 +156,7 @@ test(`${MANY} nodes, and changes of all of them`, options, async () => {
     const rows = Array.from({ length: MANY }, (_, i) => `N${i},${NODE}N${i},,,,,,,,,,,,,`);
     await server.reset({ many: MANY });
     await plant.run(server.security(), rows);
-    // waits until all values have arrived before the next change: the server keeps only the newest of each
+    // waits until all values have arrived before the next change, because the server keeps only the newest value of each node
     for (const each of [0, 1e6, 2e6]) {
         if (each > 0)
             await server.tell({ each });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wind around a tank, from four sensors with directions to arrows: what a client receives, what the page draws, what a snapshot shows; and
-// a lost direction, which leaves its surroundings without arrows.
+// Wind around a tank, from four sensors with directions to arrows: what a client receives, what the page draws, what a snapshot
+// shows; and a lost direction, which leaves no arrows around its sensor.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,7 +9,7 @@ import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from 
 import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-// LOST: bearing of the sensor whose direction goes Bad; other readings stay uncertain while the device is away
+// LOST: bearing of the sensor whose direction goes Bad; readings stay uncertain while the device is away
 const SENSORS = [0, 90, 180, 270], LOST = 270;
 let plant, browser;
 
@@ -82,8 +82,8 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Returns the arrows of the drawn picture as sent to the page: [x, y, dx, dy, value, uncertain, half], and the picture's size. whole: the
-// picture has its full size; smaller previews of a busy machine have fewer arrows.
+// Returns the drawn picture's arrows as sent to the page: [x, y, dx, dy, value, uncertain, half], and the picture's size.
+// whole: waits for the full size, because smaller previews of a busy machine have fewer arrows.
 const arrows = () => browser.page.evaluate(() => {
     const { session } = globalThis.plantcast, { picture, size } = session;
     return { rows: session.markersOf(picture.seq)?.arrows ?? [], width: picture.fullWidth, height: picture.fullHeight,
@@ -101,7 +101,7 @@ async function until(what, good) {
 }
 
 test('arrows go round the tank as the wind does, from where sensors are to where none is', options, async () => {
-    // Up to two arrows may be unknown: at the top of the tank the directions of the four sensors cancel out.
+    // Up to two arrows may be unknown: at the top of the tank, the four sensors' directions cancel out.
     const known = ({ rows }) => rows.length > 15 && rows.filter(isUnknown).length < 3 && rows.every((row) => row[5] === 0);
     const { rows, width, height } = await until('directions known', known);
     let front = 0;

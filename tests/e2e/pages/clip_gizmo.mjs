@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clipping by direct manipulation: arrows on the plane, on the box's sides and for the whole box, in both halves, by mouse, keys and touch.
+// Clipping by direct manipulation: arrows on the plane, on the box's sides and for the whole box, in both halves, by mouse,
+// keyboard and touch.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A hundred sensors on one side of a box: some markers are left out; a click at a hidden one selects the surface; searching for its name or
-// zooming in shows it.
+// A hundred sensors on one side of a box: some markers are left out. A click where a marker is left out selects the surface;
+// searching for its name or zooming in shows it.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sensor that drifts away from its neighbours' estimate: found in recorded history by the daemon and by the tool, and shown on the page.
+// A sensor that drifts away from its neighbours' estimate: the daemon and the tool find it in recorded history, and the page
+// shows it.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -18,7 +19,7 @@ PI-1,400009,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 `;
 let plant, url;
 
-// All four follow the time of day; TI-3 drifts upwards by 8 K in the week. TI-4 is lost for a day.
+// All four follow the time of day; TI-3 also drifts upwards by 8 K in the week. TI-4 is lost for a day.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let quarter = 0; quarter < HOURS * 4; quarter++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ten tasks of a user who opens the page for the first time, and the number of clicks that each takes. Typing a text, and the Enter that
-// ends it, are no clicks. tests/bench/notes/first_tasks.md lists the figures.
+// Ten tasks of a user who opens the page for the first time, and the number of clicks that each takes. Typing a text, and
+// pressing Enter after it, does not count. tests/bench/notes/first_tasks.md lists the figures.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -40,7 +40,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Clicks count here and not in the page, because the browser's driver repeats a click on an element that moves.
+// Counts clicks here and not in the page, because the browser's driver repeats a click on an element that moves.
 const click = (what, text) => {
     clicks++;
     return page.locator(what, text ? { hasText: text } : {}).first().click();

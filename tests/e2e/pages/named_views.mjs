@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Named views: those of the plant file and those that users save in the page, shared by all, in one order, with their earlier versions.
+// Named views: those in the plant file and those that users save on the page, shared by all users, in one order, with earlier
+// versions.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { land, openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';

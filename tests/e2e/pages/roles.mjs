@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Actions on alarms by role and alarm mode: shown by the page and enforced by the server; over plain http with a host name.
+// Actions on alarms by role and alarm mode: offered by the page and enforced by the server; over plain http with a host name.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -61,7 +61,7 @@ const waitForState = (page, states) => page.waitForFunction((any) =>
     any.includes(globalThis.plantcast.session.model.alarms.list()[0]?.state ?? 'none'), states);
 const waitForMode = (page, mode) => page.waitForFunction((is) => globalThis.plantcast.session.welcomed &&
     globalThis.plantcast.session.model.alarms.known && globalThis.plantcast.session.model.alarms.mode === is, mode);
-// Waits until these actions are offered for the first alarm of the list, or of those set aside.
+// Waits until these actions are offered for the first alarm in the list, or in the list of those set aside.
 const offers = async (page, wanted, role, list = '#alarms-list') => {
     await page.locator(`${list} tr`).first().waitFor();
     const actions = page.locator(`${list} tr`).first().locator('[data-action]');
@@ -171,7 +171,7 @@ for (const mode of ['display', 'mirror']) {
     });
 }
 
-// Parameters of the field are for engineers only: a viewer's page names the view, from which the server takes them.
+// Only engineers may send field parameters: a viewer's page names the saved view, and the server looks up its parameters.
 test('a viewer keeps a saved view after a reload of the page and a restart of the daemon', options, async () => {
     const { viewer } = pages, isStrong = () => viewer.waitForFunction(() => {
         const { confirmed, params, welcomed } = globalThis.plantcast?.session ?? {};

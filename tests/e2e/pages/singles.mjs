@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A group with a single sensor on an asset, whose triangles were not refined: what cannot be drawn correctly on them is refused for every
-// client, with a hint; and drawn once the plant file asks for refinement.
+// A group with a single sensor on an asset, whose triangles were not refined. What cannot be drawn correctly on them is refused
+// for every client, with a hint, and is drawn once the plant file requests refinement.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

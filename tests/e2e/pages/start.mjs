@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assets that start hidden or as ghosts: what begins with them, how the user shows them, and what a link and a plant reload do to them.
+// Assets that start hidden or ghosted: which views start that way, how the user shows the assets, and what a link and a plant
+// reload change.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

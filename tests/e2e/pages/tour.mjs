@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tour of an operator's page: overview, alarm, flying there, trend, past, acknowledgement, sharing. Reduced copies of its screenshots are
-// in the README (deploy/pictures).
+// A tour of an operator's page: overview, alarm, flight to it, trend, past, acknowledgement, sharing. Reduced copies of its
+// screenshots are in the README (deploy/pictures).
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -16,7 +16,8 @@ const options = { skip: why ?? false, timeout: 280000 };
 const HOT = 'TE-101', MOST_MS = 180000;
 let plant, browser, page, began;
 
-// Records fifty minutes for each tag near its value, and freezes the values: otherwise pictures would be drawn all the time.
+// Records fifty minutes for each tag near its value, and freezes the values, because otherwise pictures would be drawn all the
+// time.
 async function remember({ file, ask }) {
     const folder = dirname(file), now = Math.floor(Date.now() / 1000), lines = ['Tag,Time,Value,Quality'];
     const rows = readFileSync(join(folder, 'tags.csv'), 'utf8').trim().split('\n').slice(1), names = rows.map((row) => row.split(',')[0]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A root folder of its own, like a host that has only the programs: /usr of this machine and the build, read-only, an empty /etc and /var.
+// A root folder of its own, like a host that has only the programs: read-only /usr of this machine and the build, and an empty
+// /etc and /var.
 import { spawnSync } from 'node:child_process';
 import { chmodSync, cpSync, existsSync, mkdirSync, mkdtempSync, symlinkSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
@@ -40,7 +41,7 @@ export class BareRoot {
         writeFileSync(this.path(name), text, { mode });
     }
 
-    // Returns the command line that runs a command of the shell as this root's user root; its programs end with it.
+    // Returns the command line that runs a shell command as user root of this root folder; its programs end with it.
     line(command) {
         const binds = [['/usr', 'usr'], [TOP, TOP], [BIN, BIN], ['/dev', 'dev'], ['/proc', 'proc']]
             .map(([from, to]) => `mount --rbind ${from} ${join(this.folder, to)}`).join(' && ');

@@ -79,7 +79,7 @@ export class Broker {
     }
 }
 
-// Makes a certificate authority and certificates of a server (127.0.0.1, localhost) and of a client, as PEM files in a folder.
+// Makes a certificate authority and the certificates of a server (127.0.0.1, localhost) and a client, as PEM files in a folder.
 export function makeCertificates(folder, name = 'ca') {
     const run = (...args) => {
         const { status, stderr } = spawnSync('openssl', args, { cwd: folder, encoding: 'utf8' });

@@ -9,12 +9,12 @@ import { BUILD } from './plant.mjs';
 import { sweep } from './sweep.mjs';
 import { BIN } from './tiny_plant.mjs';
 
-// Loaded with require() and only when a page is opened: as an import, node would scan the whole module for names, which takes 0.2 s of
-// processor time.
+// Loaded with require(), and only when a page is opened: for an import, node would scan the whole module for names, which takes
+// 0.2 s of processor time.
 const playwright = () => createRequire(import.meta.url)('playwright-core');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
-// chromium without windows and menus, whose processes take four times as long to start as an empty page. `make test-long` uses the full
-// browser.
+// Chromium without windows and menus, whose processes take four times as long to start as an empty page. `make test-long` uses
+// the full browser.
 const SHELL = '/usr/bin/chromium-headless-shell';
 const HEADLESS = sweep(CHROMIUM, existsSync(SHELL) && !process.env.CHROMIUM ? SHELL : CHROMIUM);
 const QUIET = [
@@ -23,16 +23,16 @@ const QUIET = [
 ];
 const PATIENCE_MS = 120000; // limit for everything that waits for a page, even on a very busy machine
 export const SCREENSHOTS = join(BUILD, 'screenshots');
-// Layout depends on CSS pixels, the cost of a picture on device pixels: their density is halved except in `make test-long`, or with
-// `...SHARP`.
+// Layout depends on CSS pixels, the cost of a picture on device pixels. Their density is therefore halved except in `make
+// test-long` or with `...SHARP`.
 export const SHARP = { deviceScaleFactor: 2 };
 const DENSITY = sweep(SHARP, { deviceScaleFactor: 1 });
 export const DESKTOP = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1280, height: 800 }) };
 export const TABLET = { viewport: { width: 1024, height: 768 }, ...DENSITY, hasTouch: true };
 export const PHONE = { viewport: { width: 390, height: 844 }, ...DENSITY, hasTouch: true, isMobile: true };
 
-// The camera jumps instead of flying, as for users who prefer reduced motion, because each frame of a flight costs 15 ms of processor time
-// in the browser. `make test-long` flies everywhere; tests about flights use `...FLYING`.
+// The camera jumps instead of flying, as for users who prefer reduced motion, because each frame of a flight costs the browser
+// 15 ms of processor time. `make test-long` flies everywhere; tests of flights use `...FLYING`.
 export const FLYING = { reducedMotion: 'no-preference' };
 const MOTION = sweep(FLYING, { reducedMotion: 'reduce' });
 
@@ -50,7 +50,7 @@ after(async () => {
     await Promise.all([...browsers.values()].map(async (browser) => (await browser).close()));
 });
 
-// Pages that no test has closed, because a failed test leaves its page open. Each with its newest console lines and failed requests.
+// Pages not closed yet: a failed test leaves its page open. Each with its newest console lines and failed requests.
 const open = new Map(), MAX_LINES = 30;
 
 function record(page) {
@@ -69,7 +69,7 @@ async function report([page, lines]) {
     console.log([`# left open: ${page.url()}`, ...lines, `text: ${text.replace(/\s+/g, ' ').slice(0, 1500)}`].join('\n#   '));
 }
 
-// A browser with a profile on disk: only there a page can be installed or go full screen.
+// A browser with a profile on disk: only with one can a page be installed or go full screen.
 async function profileWith(args, shape) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const whole = { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] };
@@ -99,8 +99,8 @@ export async function browserOn(display, url, width, height, clockMs = 0) {
     return { page, close: () => context.close() };
 }
 
-// Makes waitForFunction poll every 50 ms: playwright's default, every animation frame, makes the browser draw 60 times a second. For
-// conditions that last less long use { polling: 'raf' }.
+// Makes waitForFunction poll every 50 ms: playwright's default, every animation frame, makes the browser draw 60 times a
+// second. For conditions that hold for less time, use { polling: 'raf' }.
 function waitingSeldom(page) {
     const wait = page.waitForFunction.bind(page);
     page.waitForFunction = (f, arg, options) => wait(f, arg, { polling: 50, ...options });
@@ -126,7 +126,7 @@ async function leave(page, kind) {
     closed.set(kind, [...closed.get(kind) ?? [], page]);
 }
 
-// Fails if a file of the page has changed since the page was joined (deploy/join): the daemon would serve the older page.
+// Fails if a file of the page changed after the page was joined (deploy/join): the daemon would serve the older page.
 function checkJoined() {
     const joined = join(BIN, 'web/app/first.js'), sources = resolve('clients/web');
     const changedIn = (folder) => readdirSync(folder, { withFileTypes: true }).flatMap((entry) => {
@@ -139,9 +139,9 @@ function checkJoined() {
 }
 let isChecked = false;
 
-// Returns { page, errors, close }. The page has no stored state. errors: script errors and requests to other origins. before: a function
-// that runs in the page before its scripts, or [function, argument]; arrange(page): further set-up of routes and events. screen.args:
-// browser arguments; screen.profile: use a browser of its own with a profile.
+// Returns { page, errors, close }. The page has no stored state. errors: script errors and requests to other origins. before: a
+// function that runs in the page before its scripts, or [function, argument]. arrange(page): further set-up of routes and
+// events. screen.args: browser arguments. screen.profile: uses a separate browser with a profile.
 export async function openPage(url, screen = DESKTOP, before = null, arrange = null) {
     isChecked ||= checkJoined() ?? true;
     const { args = [], profile = false, ...own } = screen, shape = { ...MOTION, ...own }, kind = kindOf(shape);
@@ -169,7 +169,8 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = n
     return { page, errors, close };
 }
 
-// Sets the size of the window, and waits for the style sheets of narrow screens and phones, which the page loads when it first needs them.
+// Resizes the window, and waits for the style sheets of narrow screens and phones, which the page loads when it first needs
+// them.
 export async function resize(page, viewport) {
     await page.setViewportSize(viewport);
     await page.waitForFunction(async ({ width, height }) => {
@@ -180,7 +181,8 @@ export async function resize(page, viewport) {
     }, viewport);
 }
 
-// true: take screenshots. Only in `make test-long`, or with PLANTCAST_SHOTS=1, because they would take longer than the tests themselves.
+// true: take screenshots. Only `make test-long` and PLANTCAST_SHOTS=1 set it, because they take longer than the tests
+// themselves.
 export const SHOOTS = sweep(true, process.env.PLANTCAST_SHOTS === '1');
 
 export async function shoot(page, name) {
@@ -194,8 +196,8 @@ export const waitForHealth = (page, kind, timeout = PATIENCE_MS) =>
     page.waitForFunction((k) => document.getElementById('health').dataset.kind === k, kind, { timeout });
 export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture);
 
-// Waits until the refined picture of the newest camera and parameters is on the screen; with quietMs, and frozen readings, also until no
-// picture has followed for that long.
+// Waits until the refined picture of the newest camera and parameters is on the screen. With quietMs and frozen readings, also
+// waits until no picture has followed for that long.
 export async function settle(page, quietMs = 0) {
     try {
         await page.waitForFunction((quiet) => {
@@ -213,8 +215,8 @@ export async function settle(page, quietMs = 0) {
     }
 }
 
-// Waits until the picture on the screen has the page's camera and size and no flight is under way, so that objects are where they are
-// drawn.
+// Waits until the picture on the screen has the page's camera and size and no flight is under way, so that objects are where
+// they are drawn.
 export const land = (page) => page.waitForFunction(() => {
     const { cameraController, session, viewport } = globalThis.plantcast, { picture, size } = session, ratio = devicePixelRatio;
     return !cameraController?.fly && !session.cameraNews && picture.cameraSeq === session.cameraSeq &&
@@ -247,7 +249,7 @@ export const travel = (page, us) => page.evaluate(async (to) => {
     requests.travel(globalThis.plantcast.session, to);
 }, us);
 
-// Returns the position on the page of a point of the plant for the camera that the page requested: [x, y].
+// Returns where a point of the plant appears on the page with the camera that the page requested: [x, y].
 export const pageOf = (page, point) => page.evaluate(async (at) => {
     const { projector } = await import('/core/camera.js');
     const box = document.getElementById('viewport').getBoundingClientRect();
@@ -255,7 +257,7 @@ export const pageOf = (page, point) => page.evaluate(async (at) => {
     return [box.left + x, box.top + y];
 }, point);
 
-// Returns the position on the page of a point of the plant in the picture on the screen: { x, y }.
+// Returns where a point of the plant appears on the page in the picture on the screen: { x, y }.
 export const drawnAt = (page, point) => page.evaluate(async (place) => {
     const [{ projector }, { halves }] = await Promise.all([import('/core/camera.js'), import('/core/split_view.js')]);
     const { session: { picture, params }, viewport } = globalThis.plantcast, box = viewport.element.getBoundingClientRect();
@@ -269,7 +271,7 @@ export async function held(page) {
     return page.evaluate(() => globalThis.plantcast.cameraController.anchor.point);
 }
 
-// Returns the markers of the shown group: name, asset, position in pixels of the picture, visible or hidden.
+// Returns the shown group's markers: name, asset, position in pixels of the picture, visible or hidden.
 export const markers = (page) => page.evaluate(() => {
     const { overlay, session } = globalThis.plantcast;
     const box = document.getElementById('viewport').getBoundingClientRect();

@@ -33,7 +33,7 @@ export const camera = (seq, angle) => ({
     type: 'camera', seq, eye: [1.5 + 7 * Math.cos(angle), 7 * Math.sin(angle), 4], target: [1.5, 0, 0],
 });
 
-// Moves its camera at that rate until stop(), starting at sequence number seq. `waits`: time until each camera was shown.
+// Moves its camera at the given rate until stop(), starting at sequence number seq. `waits`: time until each camera was shown.
 export class Mover {
     constructor(client, hz = 60, seq = 0) {
         Object.assign(this, { client, seq, shown: seq, frames: 0, sent: new Map(), waits: [] });

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A random user who tries everything: every look, light, backdrop, group, quantity, split, section, ghost, size, instant and snapshot that
-// the protocol offers. Each step waits for its answer, so that an hour of a person's actions takes as long as the machine needs for it.
+// A random user who tries everything: every look, light, backdrop, group, quantity, split, section, ghost, size, instant and
+// snapshot that the protocol offers. Each step waits for its answer, so an hour of a person's actions takes only as long as the
+// machine needs for it.
 import { http, PlainClient } from './plain_client.mjs';
 
 const SIZES = [[640, 360], [1280, 720], [1366, 768], [1920, 1080], [390, 844], [1024, 1366]];
 const PATIENCE_MS = 120000, QUIET_MS = 10000;
-const REFINED_MS = 30000; // maximum wait for a refined picture: a busy machine may show only previews of new readings for longer
+const REFINED_MS = 30000; // maximum wait for a refined picture: a busy machine may for a while show only previews of new readings
 const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
 // Returns a generator of numbers 0 <= x < 1, the same for the same seed (mulberry32).
@@ -36,7 +37,7 @@ export class Curious {
     some(list, most) { return Array.from({ length: Math.floor(this.random() * (most + 1)) }, () => this.any(list)); }
     get ids() { return this.welcome.assets.map((asset) => asset.id); }
 
-    // Waits until a refined picture of the last request is there; while the past is played, any picture.
+    // Waits until the refined picture of the last request is there; during playback of the past, any picture.
     async still() {
         const { seq, playing } = this;
         const said = performance.now(), any = () => playing || performance.now() - said > REFINED_MS;

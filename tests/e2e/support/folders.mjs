@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-// folder of models and readings that are not part of the tree; tests that need them are skipped if it is absent
+// folder of models and readings that are not in the repository; without it, tests that need it are skipped
 export const DATA = fileURLToPath(new URL('../../../../shared/data', import.meta.url));
 
 const make = () => mkdtempSync(join(tmpdir(), 'plantcast-test-')), remove = (folder) => rmSync(folder, { recursive: true, force: true });

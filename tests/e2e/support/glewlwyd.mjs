@@ -67,7 +67,7 @@ export class Glewlwyd {
         await this.ask('POST', 'user/', this.person({}));
     }
 
-    // The property `user-code` is one of the few that users have by default: here it holds the groups.
+    // The property `user-code` is one of the few that users have by default; here it holds the groups.
     person(more) {
         const lee = { username: 'lee', name: 'Lee', password: 'pass word 1', enabled: true, scope: ['openid'] };
         return { ...lee, 'user-code': 'operators', ...more };

@@ -13,8 +13,8 @@ const shipped = (name) => readFileSync(new URL(`../../../deploy/proxy/${name}`, 
 export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
 
 export class Haproxy {
-    // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons. ca and coreCa: files with certificates of
-    // renderers and cores; null: without TLS. port: port of the balancer; default: a free one
+    // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons. ca and coreCa: files with
+    // certificates of renderers and cores; null: no TLS. port: port of the balancer; default: a free one
     static async start(renderers, core, standby = null, { host = '127.0.0.1', ca = null, coreCa = ca, port: own = null } = {}) {
         const authorities = [ca, ca, coreCa]; // certificate authorities in the order in which the shipped file uses them
         const tls = (authority) => (authority ? ` ssl verify required ca-file ${authority}` : '');
@@ -29,7 +29,7 @@ export class Haproxy {
         return Haproxy.run(text, own ?? await freePort());
     }
 
-    // Starts HAProxy in front of two cores, without renderers and without TLS. cores: [{ port }, { port }]
+    // Starts HAProxy in front of two cores, without renderers or TLS. cores: [{ port }, { port }]
     static async startCores(cores) {
         let text = shipped('haproxy-cores.cfg').replace(/ ssl verify required ca-file \S+/, '').replaceAll(/ verifyhost \S+/g, '');
         cores.forEach(({ port }, i) => {
@@ -56,8 +56,8 @@ export class Haproxy {
         return proxy;
     }
 
-    // Returns the state of each server of a backend from `show stat`: { r1: { status, weight, sessions, since_s } }; since_s: seconds since
-    // the status changed.
+    // Returns the state of each server in a backend from `show stat`: { r1: { status, weight, sessions, since_s } }; since_s:
+    // seconds since the status changed.
     async servers(backend = 'renderers') {
         const text = await new Promise((done, fail) => {
             const socket = connect(join(this.folder, 'admin.sock'), () => socket.end('show stat\n'));

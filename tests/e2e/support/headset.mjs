@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An emulated headset (npm's iwer, a Quest 3) in the pages of the browser: moves it, and reads what its eyes see.
+// An emulated headset (npm's iwer, a Quest 3) in the browser's pages: moves it, and reads what its eyes see.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 
-// size of an eye's picture in pixels; the emulator draws both eyes into the window, side by side
+// size of one eye's picture in pixels; the emulator draws both eyes into the window, side by side
 export const EYE = { width: 700, height: 700 };
 export const SCREEN = { viewport: { width: 2 * EYE.width, height: EYE.height } };
 export const IPD_M = 0.063;
 const HEAD_M = 1.6; // height of the emulated head above the room's floor
 
-// Returns an init script that installs the headset, whose eyes have a field of view of 90 degrees.
+// Returns an init script that installs the headset, with a field of view of 90 degrees per eye.
 export function headsetScript() {
     const runtime = readFileSync(createRequire(import.meta.url).resolve('iwer/build/iwer.min.js'), 'utf8');
     return { content: `${runtime};(() => {
@@ -26,8 +26,8 @@ export async function enterVr(page) {
     await page.waitForFunction(isNear, null, { polling: 50 });
 }
 
-// Puts the eyes at a place of the plant, looking level along `forward`, and waits for the picture from there. Only the right hand is
-// there, or both.
+// Puts the eyes at a point of the plant, looking level along `forward`, and waits for the picture from there. hasLeft: whether
+// the left hand is present besides the right.
 export async function lookFrom(page, eye, forward, hasLeft = false) {
     await page.evaluate(async ([at, towards, head, both]) => {
         const { headset } = globalThis.plantcast.modules.there('enterVr'), { device } = globalThis;
@@ -46,7 +46,7 @@ export async function lookFrom(page, eye, forward, hasLeft = false) {
     }, eye, { polling: 50 });
 }
 
-// Points the right hand at a place of the plant, and waits for the frame that shows it.
+// Points the right hand at a point of the plant, and waits for the frame that shows it.
 export const aimAt = (page, point) => page.evaluate(async (place) => {
     const { headset } = globalThis.plantcast.modules.there('enterVr'), { position, quaternion } = globalThis.device.controllers.right;
     const { axes, at } = headset.rig, from = place.map((m, i) => m - at[i]), hand = [position.x, position.y, position.z];
@@ -70,7 +70,8 @@ export const pull = (page) => page.evaluate(async () => {
     }
 });
 
-// Runs f(headset) in the page right after a frame is drawn. yaw: angle in radians by which the head turns just before that frame.
+// Runs f(headset) in the page right after a frame is drawn. yaw: angle in radians by which the head turns just before that
+// frame.
 const inFrame = (page, f, yaw = null) => page.evaluate(`new Promise((done) => {
     const { headset } = globalThis.plantcast.modules.there('enterVr'), { next } = headset, yaw = ${yaw};
     const last = (now, frame) => {
@@ -85,7 +86,8 @@ const inFrame = (page, f, yaw = null) => page.evaluate(`new Promise((done) => {
     };
 })`);
 
-// Returns what the eyes see: { left, right: { width, rgba, undrawn (share of pixels that no picture shows) }, seq of the picture }.
+// Returns what the eyes see: { left, right: { width, rgba, undrawn (share of pixels that no picture covers) }, seq of the
+// picture }.
 export async function seen(page, yaw = null) {
     const { pixels, seq } = await inFrame(page, ((headset) => {
         const { gl } = headset.painter, { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
@@ -110,6 +112,6 @@ export async function seen(page, yaw = null) {
     return { left: eye(0), right: eye(width), seq };
 }
 
-// Returns what the eyes see in the next frame, as a PNG file: the left eye's picture beside the right eye's.
+// Returns what the eyes see in the next frame, as a PNG file with the left eye's picture beside the right eye's.
 export const eyesPng = async (page) =>
     Buffer.from(await inFrame(page, ((headset) => headset.painter.gl.canvas.toDataURL('image/png').split(',')[1]).toString()), 'base64');

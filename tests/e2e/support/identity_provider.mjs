@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An identity provider (OpenID Connect) on this machine that does what a test says, including what a provider must not do.
+// An OpenID Connect identity provider on this machine that does what a test tells it, including what a provider must not do.
 import { createHash, createSign, generateKeyPairSync, randomUUID } from 'node:crypto';
 import { createServer } from 'node:http';
 import { freePort } from './ports.mjs';

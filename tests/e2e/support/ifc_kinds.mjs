@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small IFC files, one for each kind of shape, with the volume (m3) and the size (m) that geometry gives.
+// Small IFC files, one for each kind of shape, with the expected volume (m3) and size (m) from geometry.
 const R = 25, PIPE = Math.PI * R * R * 1e-9, HALF_TURN = Math.PI * 500;
 
-// Statements are written without numbers, as {$name} = text; #{name} refers to another one of the list, or to one of those before.
+// Statements are written without numbers, as {$name} = text; #{name} refers to another one in the list, or to one of those
+// before.
 function statements(lines, first, before = new Map()) {
     const numbers = new Map([...before, ...lines.map(([name], i) => [name, first + i])]);
     const numbered = (text) => text.replace(/#\{(\w+)\}/g, (_, to) => `#${numbers.get(to)}`);
@@ -19,7 +20,7 @@ const HEAD = [['o', 'IFCCARTESIANPOINT((0.,0.,0.))'], ['frame', 'IFCAXIS2PLACEME
     ['site', "IFCSITE('0$PlantcastKinds0000002',$,'S',$,$,#{place},$,$,.ELEMENT.,$,$,$,$,$)"],
     ['in', "IFCRELAGGREGATES('0$PlantcastKinds0000003',$,$,$,#{project},(#{site}))"]];
 
-// The statements of element `i`, with identifiers and a name that no other element has: "K-1" is the first one.
+// The statements of element `i`, with identifiers and a name that no other element has; the first is "K-1".
 const element = (lines, type, i) => [...lines,
     ['body', `IFCSHAPEREPRESENTATION(#{context},'Body','${type}',(#{item}))`],
     ['shape', 'IFCPRODUCTDEFINITIONSHAPE($,$,(#{body}))'],
@@ -27,8 +28,8 @@ const element = (lines, type, i) => [...lines,
     ['on', "IFCRELCONTAINEDINSPATIALSTRUCTURE('0$PlantcastKinds0000005',$,$,$,(#{element}),#{site})"]].map(([name, text]) =>
     [name, text.replace("'K-1'", `'K-${i + 1}'`).replace(/Kinds00(?=\d{5}')/, `Kinds${String(i).padStart(2, '0')}`)]);
 
-// Returns an IFC file in millimetres with the elements "K-1", "K-2", ... Each is given as { lines, type }: statements, of which "item" is
-// its shape, and the type of its representation.
+// Returns an IFC file in millimetres with the elements "K-1", "K-2", ... Each is given as { lines, type }: its statements, of
+// which "item" is its shape, and the type of its representation.
 export function ifcOfAll(schema, elements) {
     const head = statements(HEAD, 1), body = [...head.text];
     elements.forEach(({ lines, type = 'SweptSolid' }, i) =>
@@ -86,8 +87,8 @@ const turned = [point('far', 0, 500, 0), ['axis', 'IFCAXIS1PLACEMENT(#{far},#{x}
 const upright = (name, along) => [[`${name}at`, `IFCPOINTBYDISTANCEEXPRESSION(IFCLENGTHMEASURE(${along.toFixed(6)}),$,$,$,$)`],
     [name, `IFCAXIS2PLACEMENTLINEAR(#{${name}at},$,$)`]];
 
-// An alignment: in plan a line of 1 m, a clothoid of 0.4 m and an arc of 0.5 m with a radius of 1 m. Its heights are a line, a parabola
-// from 0.5 m to 1.3 m, a crest arc to 1.7 m, and a line.
+// An alignment: in plan a line of 1 m, a clothoid of 0.4 m, and an arc of 0.5 m with a radius of 1 m. Its heights follow a
+// line, a parabola from 0.5 m to 1.3 m, a crest arc to 1.7 m, and a line.
 const curveSegment = (name, parent, at, slope, length) => [point(`${name}p`, ...at),
     [`${name}d`, `IFCDIRECTION((${Math.cos(slope).toFixed(12)},${Math.sin(slope).toFixed(12)}))`],
     [`${name}f`, `IFCAXIS2PLACEMENT2D(#{${name}p},#{${name}d})`],

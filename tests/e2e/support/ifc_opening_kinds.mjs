@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements with openings, as statements of ifc_kinds.mjs, with the volume that remains. The element is a box of 200 x 100 x 50 mm unless a
-// name says otherwise.
+// Elements with openings, as statements of ifc_kinds.mjs, and the volume that remains. The element is a box of 200 x 100 x 50
+// mm unless its name says otherwise.
 import { point } from './ifc_kinds.mjs';
 
 const BOX = 200 * 100 * 50, DISC = Math.PI * 20 ** 2;

@@ -38,7 +38,7 @@ export async function tellLies(port, lies) {
     return { seen: () => seen, stop: () => end(listener, sockets) };
 }
 
-// Relays connections to a server at `to`; after `spared` bytes from the server, one number in every message is made too large.
+// Relays connections to the server `to`. After the first `spared` bytes from it, one number in every message is made too large.
 export async function distort(port, to, spared) {
     let distorted = 0;
     const sockets = new Set();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A wedge on a slab, 2 x 1 x 0.5 m with Z up, as text or bytes of each format that Assimp reads. Its vertices identify every axis.
+// A wedge on a slab, 2 x 1 x 0.5 m with Z up, as text or bytes in each format that Assimp reads. Its vertices identify every
+// axis.
 const POINTS = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0], [0, 0, 0.5], [0, 1, 0.5]];
 const FACES = [[0, 2, 1], [0, 3, 2], [0, 1, 4], [3, 5, 2], [1, 2, 5], [1, 5, 4], [0, 4, 5], [0, 5, 3]];
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alters boxes of a signed video (MP4, one track): what a player would show differently, and why `plantcast verify` refuses it.
+// Alters boxes of a signed video (MP4, one track), each alteration with what a player would then show wrongly, and why
+// `plantcast verify` refuses it.
 
 // by type of MP4 box: number of bytes before its inner boxes
 const HEADS = { moov: 8, trak: 8, edts: 8, mdia: 8, minf: 8, stbl: 8, stsd: 16, avc1: 86, udta: 8 };

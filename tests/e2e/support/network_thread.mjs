@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links that can be cut, and a tap before a device, on a thread of their own: a test that waits for a program does not delay them.
+// Links that can be cut, and a tap before a device, in a separate thread, so that a test that waits for a program does not
+// delay them.
 import { connect, createServer } from 'node:net';
 import { isMainThread, parentPort, Worker } from 'node:worker_threads';
 import { CuttableLink } from './postgres_server.mjs';

@@ -61,8 +61,8 @@ export class Node {
 }
 
 export class Nodes {
-    // Makes a plant with alarms at 90 and a token for each of a viewer, an operator, a renderer and a standby. slowDevice: allow slow
-    // answers of the device, for a busy machine.
+    // Makes a plant with alarms at 90 and one token each for a viewer, an operator, a renderer and a standby. slowDevice:
+    // allows slow answers of the device, for a busy machine.
     static async create({ slowDevice = false } = {}) {
         const nodes = new Nodes();
         nodes.plant = await TinyPlant.create();
@@ -105,8 +105,8 @@ export class Nodes {
         return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, ...at, ...more]);
     }
 
-    // Returns these daemons' connections to the device, by local address. Another test's daemon may outlive its test for a moment and poll
-    // a port that was reused.
+    // Returns these daemons' connections to the device, by local address. The daemon of another test may outlive it for a
+    // moment and poll a port that was reused.
     pollers() {
         const port = this.plant.modbusPort.toString(16).toUpperCase().padStart(4, '0'), established = '01';
         const ours = new Set(this.all.flatMap(({ program }) => sockets(program.child.pid)));
@@ -115,8 +115,9 @@ export class Nodes {
             remote?.endsWith(`:${port}`) && state === established && ours.has(`socket:[${inode}]`)).map(([, local]) => local);
     }
 
-    // Waits until exactly one daemon polls; there may be none only while it reconnects. The system lists connections piece by piece, so an
-    // ending connection may appear together with its successor. Two pollers are an error only if both are listed twice in a row.
+    // Waits until exactly one daemon polls; none may do so only while it reconnects. The system lists connections one by one,
+    // so an ending connection may appear together with its successor. Two pollers are an error only if both are listed twice in
+    // a row.
     onePoller() {
         let before = [];
         return until('one poller', () => {

@@ -26,8 +26,8 @@ export function opcuaOptions(timeout) {
     return { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout };
 }
 
-// Makes NAME.crt and NAME.key in a folder, with an authority of its own; uri, hosts: subject alternative names; dates: [from, to], in
-// openssl's format. All share one key, because making keys is slow; ownKey: make a new one.
+// Makes NAME.crt and NAME.key in a folder, with their own authority. uri, hosts: subject alternative names; dates: [from, to],
+// in openssl's format. All share one key, because making keys is slow; ownKey: makes a new one.
 export function makeCertificate(folder, name, { uri = `urn:test:${name}`, hosts = 'IP:127.0.0.1,DNS:localhost', dates, ownKey } = {}) {
     const run = (...args) => {
         const { status, stderr } = spawnSync('openssl', args, { cwd: folder, encoding: 'utf8' });
@@ -85,8 +85,8 @@ export class OpcuaServer {
 
     get runs() { return this.child?.exitCode === null && this.child.signalCode === null; }
 
-    // Stops serving, and serves again with these settings (opcua_server.mjs). ahead_s: how far its wall clock is ahead. The process keeps
-    // running, because loading node-opcua takes three seconds of processor time.
+    // Stops serving, and serves again with these settings (opcua_server.mjs). ahead_s: how far its wall clock is ahead. The
+    // process keeps running, because loading node-opcua takes three seconds of processor time.
     async restart(settings = this.settings ?? {}) {
         if (!this.runs)
             this.run();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A node-opcua server in a process of its own, which tests can kill. Commands are lines of JSON on its standard input: `serve` restarts
-// serving with the given settings (OpcuaServer in opcua.mjs); `set` sets a node. It counts requests that clients must not make.
+// A node-opcua server in its own process, which tests can kill. Commands are lines of JSON on its standard input: `serve`
+// restarts serving with the given settings (OpcuaServer in opcua.mjs); `set` sets a node. It counts requests that clients must
+// not make.
 import certificateManager from 'node-opcua-certificate-manager';
 import dateTime from 'node-opcua-date-time';
 import opcua from 'node-opcua-server';
@@ -14,7 +15,7 @@ const { DataType, Variant, VariantArrayType } = variant;
 const PUBLISHING_MS = opcua.Subscription.minimumPublishingInterval;
 const COUNTED = { _on_WriteRequest: 'write', _on_CallRequest: 'call' };
 let server, told, nodes, counts;
-// node-opcua extrapolates its time from the last reading of the clock and reads the clock rarely; the test may have set the clock since.
+// node-opcua reads the clock rarely and extrapolates its time from the last reading; the test may have set the clock since.
 const { periodicClockAdjustment: looks } = dateTime;
 looks.interval = 50;
 dateTime.installPeriodicClockAdjustment();

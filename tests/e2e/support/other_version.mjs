@@ -3,8 +3,8 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { BIN, runProgram } from './tiny_plant.mjs';
 
-// Writes a copy of the daemon with another version number into a folder. Returns { program, version, other }: its path, the real version
-// and its own.
+// Writes a copy of the daemon with another version number into a folder. Returns { program, version, other }: its path, the
+// real version, and the copy's version.
 export function otherVersion(folder) {
     const { out } = runProgram('plantcastd', ['--version']), [, version] = /^plantcastd (\d\S*)/.exec(out);
     const program = join(folder, 'plantcastd'), other = version.replace(/\d$/, (digit) => String((Number(digit) + 5) % 10));

@@ -24,7 +24,8 @@ const PARTS = { picture: '#picture-panel.open', views: '#views.open', split: '#s
 // Opens everything, one after the other; calls f for each.
 export async function everyPanel(page, f) {
     const press = async (key, name) => {
-        // A part is loaded when it is first opened; if that takes seconds the page forgets the key, and a user would press it again.
+        // A part is loaded when it is first opened. If that takes seconds, the page forgets the key, and a user would press it
+        // again.
         const isOpen = () => !PARTS[name] || page.locator(PARTS[name]).waitFor({ timeout: 10000 }).then(() => true, () => false);
         do {
             await page.locator('#viewport').focus();

@@ -86,8 +86,8 @@ export function deltaE(a, b) {
     return { mean, p99: all.sort()[Math.floor(all.length * 0.99)] };
 }
 
-// Structural similarity of two pictures of one size (Wang, Bovik, Sheikh and Simoncelli, 2004), by luma, in windows of 8 x 8 pixels
-// every 4.
+// Structural similarity of two pictures of equal size (Wang, Bovik, Sheikh and Simoncelli, 2004), by luma, in windows of 8 x 8
+// pixels at every fourth pixel.
 export function similarity(a, b) {
     const { width, height } = a, SIDE = 8, STEP = 4, C1 = (0.01 * 255) ** 2, C2 = (0.03 * 255) ** 2;
     const luma = ({ rgba }) => Float64Array.from({ length: width * height }, (_, i) =>

@@ -6,8 +6,8 @@ import { connect } from 'node:net';
 export const FLAG = { key: 1, still: 2, noLiveData: 4, more: 8, past: 32 }; // more: another part of the same picture follows
 const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 };
 
-// Resolves with { status, headers (lower case), body } of one HTTP request; `head` is sent as given. localAddress: source address,
-// 127.0.0.1 or another one of this machine.
+// Resolves with { status, headers (lower case), body } of one HTTP request; `head` is sent as given. localAddress: source
+// address, 127.0.0.1 or another one of this machine.
 export function http(port, head, { timeoutMs = 60000, localAddress } = {}) {
     return new Promise((done, fail) => {
         const socket = connect({ port, host: '127.0.0.1', localAddress }, () => socket.write(head));
@@ -77,8 +77,8 @@ function readDepth(bytes) {
 }
 
 export class PlainClient {
-    // Resolves once the server accepts the handshake. options: protocol (null: none), origin, host, path, headers, acknowledge (true),
-    // localAddress.
+    // Resolves when the server accepts the handshake. options: protocol (null: none), origin, host, path, headers, acknowledge
+    // (true), localAddress.
     static open(port, options = {}) {
         const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', headers = [] } = options;
         const { acknowledge = true, localAddress } = options;
@@ -185,7 +185,7 @@ export class PlainClient {
             this.socket.write(bytes);
     }
 
-    // Sends one byte at a time. Other frames, such as pongs, wait meanwhile: no frame may begin inside another.
+    // Sends one byte at a time. Other frames, such as pongs, wait meanwhile, because no frame may begin inside another.
     async trickle(bytes, pauseMs) {
         this.held = [];
         for (const byte of bytes) {

@@ -22,7 +22,7 @@ export function missing() {
     return absent.length > 0 ? `not built: ${absent.join(', ')}` : null;
 }
 
-// Starts a program and waits for an output line that begins with `ready`; later output is kept for the report.
+// Starts a program and waits for a line of output that begins with `ready`; later output is kept for the report.
 function start(program, args, ready) {
     const child = spawn(join(BIN, program), args, { stdio: ['ignore', 'pipe', 'pipe'] });
     let said = '';
@@ -81,8 +81,8 @@ function copyPlant(folder, modbusPort, more) {
             symlinkSync(join(DEMO, name), join(folder, name));
     }
     const text = readFileSync(join(DEMO, 'plant.yaml'), 'utf8');
-    // Removes `simulated`, so that its values count as measured; other tests cover simulated values.
-    // `more` may have views and walls in place of the demo's
+    // Removes `simulated`, so that values count as measured; other tests cover simulated values. `more` may contain views and
+    // walls that replace the demo's
     const bare = /^(views|walls):/m.test(more) ? text.replace(/\nviews:\n[^]*$/, '\n') : text;
     const moved = bare.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`).replace(/^\s+simulated: yes\n/m, '');
     if (moved === bare)
@@ -91,8 +91,8 @@ function copyPlant(folder, modbusPort, more) {
     return join(folder, 'plant.yaml');
 }
 
-// more: further lines of the plant file. arrange(plant): called when the simulator runs and the daemon does not yet. flags: further
-// arguments of the daemon.
+// more: further lines of the plant file. arrange(plant): called when the simulator runs and the daemon does not yet. flags:
+// further arguments of the daemon.
 export async function startPlant(more = '', arrange = () => {}, flags = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-e2e-'));
     const [modbusPort, controlPort, httpPort] = [await freePort(), await freePort(), await freePort()];
@@ -108,8 +108,8 @@ export async function startPlant(more = '', arrange = () => {}, flags = []) {
         async startDaemon() {
             daemon = await startDaemon();
         },
-        // Freezes every tag at its present value, and waits until the daemon has read it: from then on nothing changes by itself. It waits
-        // for two readings, because the device may have answered the first one's request before.
+        // Freezes every tag at its current value, and waits until the daemon has read it: from then on nothing changes by
+        // itself. Waits for two readings, because the device may have answered the request for the first before the freeze.
         async freeze(tags) {
             for (const tag of tags)
                 await plant.ask(`set ${tag} ${await plant.ask(`get ${tag}`)}`);

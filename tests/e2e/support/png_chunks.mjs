@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PNG files as lists of chunks, so that a test can alter one and write it with the right checksum.
+// PNG files as lists of chunks, so that a test can alter one and write it with the correct checksum.
 import zlib, { deflateSync, inflateSync } from 'node:zlib';
 
 const SIGNATURE = 8;
@@ -50,7 +50,7 @@ export function withText(png, keyword, change) {
     }));
 }
 
-// Returns the PNG with changed rows; change() gets the bytes of all rows, each preceded by its filter.
+// Returns the PNG with changed rows. change() gets the bytes of all rows, each preceded by its filter type.
 export function withRows(png, change) {
     const chunks = chunksOf(png), rows = inflateSync(Buffer.concat(chunks.filter(({ type }) => type === 'IDAT').map(({ data }) => data)));
     change(rows);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's PostgreSQL on a free port with a database of its own, and a relay in front of it that can cut connections.
+// Debian's PostgreSQL on a free port with its own database, and a relay in front of it that can cut connections.
 import { spawn, spawnSync } from 'node:child_process';
 import { chownSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
@@ -68,8 +68,8 @@ export class PostgresServer {
         }
     }
 
-    // Makes its processes stop answering without closing connections. The first process is stopped first: from then on, it makes no other
-    // process, and removes none that has ended.
+    // Makes the server's processes stop answering without closing connections. The first process is stopped first, so that it
+    // neither starts new processes nor reaps ended ones.
     freeze() {
         this.child.kill('SIGSTOP');
         this.signalOthers('SIGSTOP');
@@ -113,7 +113,7 @@ export class PostgresServer {
         return stdout.split('\n').filter(Boolean).map((line) => line.split('\t'));
     }
 
-    // Makes an empty database that belongs to a user of its own; more: further words of the statement.
+    // Makes an empty database owned by its own user; more: appended to the statement.
     makeDatabase(name, more = '') {
         this.database = name;
         const made = this.psql(`CREATE DATABASE ${name} ${more}`, 'postgres');
@@ -151,10 +151,11 @@ export class PostgresServer {
     }
 }
 
-// Relays bytes to a port of this machine until it is cut: then all connections end, and new ones are refused until it is mended.
+// Relays bytes to a port of this machine until it is cut: then all connections end, and new ones are refused until it is
+// mended.
 export class CuttableLink {
-    // at: where it listens, and from where it connects, { host, port, from }; freeze() passes nothing on and closes nothing, like an
-    // unplugged cable.
+    // at: { host, port, from }: where it listens, and from which address it connects. freeze() passes nothing on and closes
+    // nothing, like an unplugged cable.
     static async open(port, at = {}) {
         const link = new CuttableLink();
         link.sockets = new Set();

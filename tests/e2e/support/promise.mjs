@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time limits in milliseconds of the wall clock. `make test-long` enforces them, on a machine with nothing else to do; elsewhere they are
-// only printed, because other load delays the product as much.
+// Time limits in milliseconds of the wall clock. `make test-long` enforces them, on a machine with nothing else to do.
+// Elsewhere they are only printed, because other load delays the product just as much.
 import assert from 'node:assert/strict';
 
 // Why `make test` skips a case that takes half a minute or more; false in `make test-long`.

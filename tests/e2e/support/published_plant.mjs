@@ -20,7 +20,8 @@ export class PublishedPlant {
     get folder() { return this.plant.folder; }
     get daemon() { return this.plant.daemon; }
 
-    // Writes the plant file and the tag list with the source's keys and the rows. more: more columns of the tag list's header.
+    // Writes the plant file and the tag list with the source's keys and the rows. more: further columns for the tag list's
+    // header.
     write(keys, rows, more = '') {
         writeFileSync(this.file, `plant: { name: Two boxes }
 assets:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Receivers of alarm notifications: a mail server with TLS and an HTTP server on loopback, which can hang, refuse and disappear.
+// Receivers of alarm notifications: a mail server with TLS and an HTTP server, on loopback, which can hang, refuse and
+// disappear.
 import { spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
@@ -19,8 +20,8 @@ export function makeCertificate(folder, name = 'mail') {
 }
 
 // A mail server that implements only the part of RFC 5321 that one message needs. mode: 'take', 'hang' (never answers),
-// 'refuse' (550 to every recipient), 'busy' (451). starttls: TLS starts on request, and no mail is accepted before; otherwise TLS from
-// the first byte.
+// 'refuse' (550 to every recipient), 'busy' (451). starttls true: TLS starts on request, and no mail is accepted before; false:
+// TLS from the first byte.
 export class MailServer {
     constructor(folder, { starttls = false, user = null, password = null } = {}) {
         Object.assign(this, { starttls, user, password, mode: 'take', mails: [], tried: 0, sockets: new Set() });

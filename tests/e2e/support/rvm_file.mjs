@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An RVM model as a tree of groups that a test can rename, move, copy and remove, and then write again.
+// An RVM model as a tree of groups, which a test can rename, move, copy, remove and write again.
 
 const HEADER = 24;
 
@@ -13,7 +13,8 @@ function texts(body, at, count) {
     return { found, at };
 }
 
-// Returns { before, groups, after }: chunks as [id, body], and groups of { name, rest, items }, whose items are groups and chunks.
+// Returns { before, groups, after }: chunks are [id, body]; groups are { name, rest, items }, whose items are groups and
+// chunks.
 export function readRvm(bytes) {
     const root = { items: [] }, stack = [root], after = [];
     for (let at = 0; at < bytes.length;) {

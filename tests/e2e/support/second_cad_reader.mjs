@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Second readers of STEP and IGES (occt-import-js, a newer Open CASCADE in WebAssembly with an assembly tree of its own), and of FBX,
+// Second readers of STEP and IGES (occt-import-js, a newer Open CASCADE in WebAssembly with its own assembly tree), and of FBX,
 // COLLADA and OBJ (loaders of three.js).
 import { createRequire } from 'node:module';
 import { extname } from 'node:path';
@@ -8,7 +8,7 @@ import { triangleSums } from './triangle_sums.mjs';
 const CHORD_M = 0.001;
 const require = createRequire(import.meta.url);
 
-// Returns { area, size: [x, y, z] with Z up } of triangles whose axes are as given, or null without triangles.
+// Returns { area, size: [x, y, z] with Z up } of triangles with the given up axis, or null if there are none.
 function summed(sums, yUp) {
     const { area, extent: [x, y, z] } = sums.result();
     return area > 0 ? { area, size: yUp ? [x, z, y] : [x, y, z] } : null;
@@ -36,7 +36,7 @@ function sumScene(THREE, scene, metres) {
     return summed(sums, true);
 }
 
-// Returns null where it is not installed, else a function that takes a name and the bytes of a STEP or IGES file.
+// Returns null if it is not installed, otherwise a function that takes a name and the bytes of a STEP or IGES file.
 export async function secondCadReader() {
     try {
         const occt = await require('occt-import-js')({ print() {}, printErr() {} });
@@ -46,8 +46,8 @@ export async function secondCadReader() {
     }
 }
 
-// Returns null where it is not installed, else a function that takes a name, the bytes of an OBJ, COLLADA or FBX file, and the unit of OBJ
-// and FBX in metres. COLLADA's loader applies that of the file.
+// Returns null if it is not installed; otherwise a function that takes a name, the bytes of an OBJ, COLLADA or FBX file, and
+// the unit of OBJ and FBX in metres. COLLADA's loader applies the unit of the file.
 export async function secondMeshReader() {
     let THREE, loaders, DOMParser;
     try {

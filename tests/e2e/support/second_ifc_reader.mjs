@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A second reader of IFC, which shares no code with web-ifc or Open CASCADE: ifc-lite, in WebAssembly. It draws circles coarsely.
+// A second reader of IFC that shares no code with web-ifc or Open CASCADE: ifc-lite, in WebAssembly. It tessellates circles
+// coarsely.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { triangleSums } from './triangle_sums.mjs';
 
-// Returns null if it is not installed; otherwise a function that takes a file's bytes and returns { area (m2), size (m: x, y, z) } of
-// everything that the file shows, or null if that is nothing. Openings are left out.
+// Returns null if it is not installed; otherwise a function that takes a file's bytes and returns { area (m2), size (m: x, y,
+// z) } of everything that the file shows, or null if it shows nothing. Openings are ignored.
 export async function secondReader() {
     let lite;
     try {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Generates tag lists like those of a plant's control system from its equipment names: tags by ANSI/ISA-5.1-2009 (letters of table 4.1,
-// loop numbers, suffixes) and by equipment, as OPC servers and control systems build them; with spelling slips, repeated rows and tags of
-// other plants. The truth is kept separately. This file uses nothing of the matching code.
+// Generates tag lists like those of a plant's control system from its equipment names: tags by ANSI/ISA-5.1-2009 (letters of
+// table 4.1, loop numbers, suffixes) and by equipment, as OPC servers and control systems build them, with spelling mistakes,
+// repeated rows and tags of other plants. The truth is kept separately. This file uses none of the matching code.
 const VARIABLES = [['T', 'temperature', '°C', [0, 150]], ['P', 'pressure', 'bar(g)', [0, 16]], ['F', 'flow', 'm3/h', [0, 400]],
     ['L', 'level', '%', [0, 100]], ['V', 'vibration', 'mm/s rms', [0, 20]], ['PD', 'differential pressure', 'mbar', [0, 500]],
     ['A', 'analysis', 'ppm', [0, 50]], ['S', 'speed', 'rpm', [0, 3000]]];
@@ -19,14 +19,14 @@ function randomOf(seed) { // the mulberry32 generator
     };
 }
 
-// Returns an operator's name for a piece of equipment: its name without signs at its ends; for a family of building services its first word
-// and number.
+// Returns an operator's name for a piece of equipment: its name without punctuation at its ends; for a family of building
+// services, its first word and number.
 function spoken(id) {
     const family = id.match(/^M_([A-Z][a-z]+(?: [A-Z][a-z]+)*).*:(\d+)$/);
     return family ? `${family[1].replaceAll(' ', '_')}-${family[2]}` : id.replace(/^[^\p{L}\d]+|[^\p{L}\d]+$/gu, '');
 }
 
-// Returns the number that loops of this equipment use: the longest run of digits, the last one of equal length.
+// Returns the number that this equipment's loops use: the longest run of digits, the last one of those equally long.
 function numberOf(id) {
     return (id.match(/\d+/g) ?? []).reduce((best, run) => (run.length >= best.length ? run : best), '');
 }

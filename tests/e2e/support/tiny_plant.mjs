@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant of two boxes and three tags in a folder of its own, prepared and served on free ports.
+// A plant of two boxes and three tags in its own folder, prepared and served on free ports.
 import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { appendFileSync, chownSync, copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
@@ -21,7 +21,7 @@ export const missing = () => PROGRAMS.filter((name) => !existsSync(join(BIN, nam
 // Returns why a test of the tiny plant is skipped, or false.
 export const notBuilt = () => (missing().length > 0 ? `not built: ${missing().join(', ')}` : false);
 
-// Returns a glTF of one box, one metre wide, deep and high; each face has its own corners.
+// Returns a glTF of one box, one metre wide, deep and high, with separate corners for each face.
 function boxModel() {
     const positions = [], normals = [], indices = [];
     for (let axis = 0; axis < 3; axis++) {
@@ -92,7 +92,7 @@ export class Program {
         this.ended = this.end();
     }
 
-    // Returns how the program ended, once its last output has been read; a descendant that lives on would keep the pipe open.
+    // Returns how the program ended, once its last output has been read; a surviving descendant would keep the pipe open.
     async end() {
         const closed = new Promise((done) => this.child.once('close', done));
         const [code, signal] = await new Promise((done) => this.child.once('exit', (...how) => done(how)));
@@ -143,7 +143,8 @@ export class TinyPlant {
         return plant;
     }
 
-    // Returns a prepared plant with simulator and daemon, one side warm and one cold. fresh: its readings stay good on a busy machine.
+    // Returns a prepared plant with running simulator and daemon, one side warm and one cold. fresh: its readings stay good
+    // even on a busy machine.
     static async running({ fresh = false } = {}) {
         const plant = await TinyPlant.create();
         if (fresh)
@@ -177,8 +178,8 @@ export class TinyPlant {
         return ended;
     }
 
-    // Preparing the two boxes with their three sensors takes plantcast-prep a quarter of a second of processor time: all programs of one
-    // run of tests/run share the first result, whose name is a hash of everything that it depends on.
+    // Preparing the two boxes with their three sensors takes plantcast-prep a quarter of a second of processor time. All
+    // programs of one run of tests/run share the first result, whose name is a hash of everything that it depends on.
     get prepared() { return join(this.folder, 'plant.prepared'); }
     takePrepared() {
         const shared = process.env.PLANTCAST_SHARED;
@@ -199,8 +200,8 @@ export class TinyPlant {
                     copyWhole(join(this.prepared, name), join(shared, `box-${name}`));
     }
 
-    // Computing the ambient openness takes half of a daemon's start and is the same for the same prepared plant: all programs of one run of
-    // tests/run share it.
+    // Computing the ambient openness takes half of a daemon's start and always gives the same for a prepared plant, so all
+    // programs of one run of tests/run share it.
     openness() {
         const manifest = join(this.prepared, 'manifest.json');
         if (!process.env.PLANTCAST_SHARED || !existsSync(manifest))
@@ -233,7 +234,7 @@ export class TinyPlant {
         await this.sim.line(/^plantcast-sim: (listening|publishing)/m);
     }
 
-    // Runs the daemon as an unprivileged user from now on, like a service: file permissions do not apply to root.
+    // Runs the daemon as an unprivileged user from now on, like a service, because file permissions do not apply to root.
     disown() {
         if (process.getuid() !== 0)
             return;
@@ -256,8 +257,8 @@ export class TinyPlant {
         });
     }
 
-    // Starts the daemon. Without --port it uses a port that stays reserved while the daemon is away: a port chosen by the system could be
-    // another program's then.
+    // Starts the daemon. Without --port it uses a port that stays reserved while the daemon is away: another program could take
+    // over a port chosen by the system.
     async startDaemon(...args) {
         const at = args.includes('--port') ? [] : ['--port', String(await freePort())];
         this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before, this.bin);
@@ -279,9 +280,9 @@ export class TinyPlant {
     }
 }
 
-// Returns a plant with the interface of plant.mjs; the demo takes several times as much processor time to start and to draw. Its readings
-// stay good on a busy machine and have a limit of 90. more: further lines of the plant file. flags: further arguments of the daemon.
-// remember(plant): called before the daemon starts, to record an earlier history.
+// Returns a plant with the interface of plant.mjs; the demo takes several times as much processor time to start and to draw.
+// Its readings stay good on a busy machine and have a limit of 90. more: further lines of the plant file. flags: further
+// arguments of the daemon. remember(plant): called before the daemon starts, to record an earlier history.
 export async function startTiny(more = '', flags = [], remember = () => {}) {
     const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv'), port = await freePort();
     plant.addAlarms();

@@ -4,8 +4,8 @@
 const minus = (a, b) => a.map((v, i) => v - b[i]);
 const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 
-// Returns { add, result }: add(a, b, c) takes the corners of a triangle, result() returns { area, volume, extent: [x, y, z] }. The area is
-// 0 if there are no triangles.
+// Returns { add, result }: add(a, b, c) takes a triangle's corners, result() returns { area, volume, extent: [x, y, z] }.
+// Without triangles, the area is 0.
 export function triangleSums() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     let area = 0, volume = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores of one plant, each with a network of its own that can be cut: to the other core and to the database; and a tap before the
-// device that records who polls, and when.
+// Two cores of one plant, each with its own network, whose links to the other core and to the database can be cut; and a tap
+// before the device that records who polls, and when.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -29,7 +29,7 @@ export const terms = (core) => core.program.said.match(/polls devices and owns t
 export const kill = (core, signal) => () => core.program.child.kill(signal);
 
 export class TwoCores {
-    // server: PostgresServer with a database; more: YAML at the end of the plant file; access: the cores' access options.
+    // server: PostgresServer with a database; more: YAML appended to the plant file; access: the cores' access options.
     static async create(server, more = '', access = ['--trust-local']) {
         const two = new TwoCores();
         Object.assign(two, { server, access });
@@ -78,7 +78,7 @@ ${more}`);
     }
 
     // Starts a core, which follows or leads. as: its node name. Members of the core: `before`: command prefix that starts it;
-    // `tokenFile`: the tokens that it accepts; `standbyFile`: its token for the other core.
+    // `tokenFile`: tokens that it accepts; `standbyFile`: its token for the other core.
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
         const { plant, standbyFile, tokenFile } = this.nodes;

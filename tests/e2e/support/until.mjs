@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { isDeepStrictEqual } from 'node:util';
 
-// Asks until the answer is true, and returns it. Fails after that many seconds with the name of the condition, the last answer and, if
-// given, the text of more(), such as a program's log.
+// Calls ask() until its answer is true, and returns that. Fails after that many seconds with the name of the condition, the
+// last answer and, if given, the text of more(), such as a program's log.
 export async function until(what, ask, seconds = 90, more = () => '') {
     for (const end = performance.now() + seconds * 1000; ; await sleep(50)) {
         const found = await ask();
@@ -16,8 +16,8 @@ export async function until(what, ask, seconds = 90, more = () => '') {
     }
 }
 
-// Asks until the answer equals `wanted`. Fails after that many seconds with the difference. For what follows an event by an unknown time,
-// such as the layout of a page.
+// Calls ask() until its answer equals `wanted`. Fails after that many seconds with the difference. For results that follow an
+// event after an unknown time, such as the layout of a page.
 export async function becomes(ask, wanted, what, seconds = 90) {
     for (const end = performance.now() + seconds * 1000; ; await sleep(50)) {
         const found = await ask();

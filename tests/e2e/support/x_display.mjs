@@ -10,7 +10,7 @@ import { crc } from './png_chunks.mjs';
 const PROGRAM = '/usr/bin/Xvfb';
 export const missingDisplay = () => (existsSync(PROGRAM) ? null : 'no Xvfb');
 
-// Returns { name, pid, env: environment for programs that use it, grab(): { width, height, at(x, y): [r, g, b] }; stop }.
+// Returns { name, pid, env: environment for programs that use it, grab(): { width, height, at(x, y): [r, g, b] }, stop }.
 export async function startDisplay(width, height, more = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-display-'));
     const args = ['-displayfd', '3', '-screen', '0', `${width}x${height}x24`, '-fbdir', folder, '-nolisten', 'tcp', ...more];
@@ -34,7 +34,8 @@ export async function startDisplay(width, height, more = []) {
     };
 }
 
-// Layout of an X window dump as Xvfb writes it: a header of big-endian numbers, the colour map, then rows of B, G, R and a pad byte.
+// Layout of an X window dump as written by Xvfb: a header of big-endian numbers, the colour map, then rows of B, G, R and a pad
+// byte.
 function layoutOf(bytes) {
     const number = (i) => bytes.readUInt32BE(4 * i);
     return { width: number(4), height: number(5), stride: number(12), from: number(0) + 12 * number(19) };

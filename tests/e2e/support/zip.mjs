@@ -3,7 +3,8 @@
 import { deflateRawSync } from 'node:zlib';
 import { crc } from './png_chunks.mjs';
 
-// Returns a ZIP file with these files by name. packed: false stores them as they are; flags: flags of each file, 1 for a password.
+// Returns a ZIP file with these files by name. packed: false stores them uncompressed; flags: flags of each file, 1 for a
+// password.
 export function zip(files, { packed = true, flags = 0 } = {}) {
     const parts = [], central = [];
     let at = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Markers and labels stay in step with the picture while the user moves it over a slow link: each is drawn where the frame on the screen
-// shows its position, not where the newest camera would.
+// Markers and labels stay in step with the picture while the user moves it over a slow link: each is drawn where the frame on
+// the screen shows its point, not where the newest camera would.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
@@ -14,8 +14,8 @@ const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const LEAST_VIEWS = 10, LEAST_RUN_PX = 12, FRAME_MS = 1000 / 60;
 const MARK_PX = 1.5, PICTURE_PX = 5; // encoded edges bleed a little, more so while the picture moves
-// JPEG codes colour in blocks of 16 pixels, which reach beyond the box by some pixels in a few rows. A mesh that stretches over a step in
-// depth colours whole areas beyond the box.
+// JPEG codes colour in blocks of 16 pixels, which in a few rows extend some pixels beyond the box. A mesh that stretches over a
+// step in depth would colour whole areas beyond the box.
 const WARPED_PX = 8, WARPED_SHARE = 0.002; // WARPED_SHARE: most coloured pixels farther than WARPED_PX beyond the box, of all coloured ones
 let plant, relay;
 
@@ -32,8 +32,9 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Records for every drawn frame: the positions of markers and box corners by this test's own projection, for that frame's camera and for
-// the page's newest camera; where the page has drawn markers, their pixels, and the coloured area of the picture.
+// Records for every drawn frame: the positions of markers and box corners by this test's own projection, with that frame's
+// camera and with the page's newest camera; where the page has drawn markers; their pixels; and the coloured area of the
+// picture.
 const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
     const { viewport, session, overlay } = globalThis.plantcast, { onDrawn } = viewport, picture = document.getElementById('picture');
     const marks = document.getElementById('overlay'), ratio = devicePixelRatio, { min, max } = session.model.asset('E-101').bounds;
@@ -177,8 +178,8 @@ sweep(test, () => {})('by fingers, on a tablet held upright', options, async (t)
     }
 });
 
-// Records every drawing of a picture from the page's own camera: how many animation frames after that camera was set, how far markers are
-// from where that camera has them, and the bounds of the coloured pixels and of the box.
+// Records every drawing of a picture from the page's own camera: how many animation frames after that camera was set, how far
+// the markers are from where that camera has them, and the bounds of the coloured pixels and of the box.
 const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
     const { viewport, session, overlay } = globalThis.plantcast, { onDrawn } = viewport, cameras = [];
     let frame = 0;
@@ -213,8 +214,8 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
         copy.drawImage(canvas, 0, 0, width, height);
         return new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer);
     };
-    // Returns how many pixels of the canvas are none of the three that a fade may show: a pixel of the warped picture, a pixel of the
-    // server's picture, which replaces the warped one, or a transparent pixel.
+    // Returns how many pixels of the canvas are none of the three that a fade may show: a pixel of the warped picture, a pixel
+    // of the server's picture that replaces it, or a transparent pixel.
     let warpedPixels;
     const countMixed = (canvas) => {
         const server = pixelsOf(viewport.canvas, canvas.width, canvas.height);
@@ -242,8 +243,8 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
     };
 }, LEAST_RUN_PX);
 
-// Ends the counting of watchWarped(). Then counts animation frames, drawings and timers until the server has answered two pings,
-// except the timer by which the connection checks that the server still answers. news: number of other messages from the server.
+// Ends the counting of watchWarped(). Then counts animation frames, drawings and timers until the server has answered two
+// pings, except the timer that checks whether the server still answers. news: number of other messages from the server.
 const still = (page) => page.evaluate(() => new Promise((done) => {
     globalThis.rests = true;
     requestAnimationFrame(done);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trends and the time slider in the browser: the past is shown and labelled, compared, exported, played, and left again.
+// Trends and the time slider in the browser: the past is shown and labelled, compared, exported, played back, and left again.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -416,7 +416,7 @@ test('alarms are marked where they were raised', options, async () => {
     if (await page.locator('#timeline').isVisible())
         await page.locator('#time-toggle').click();
     await page.locator('#time-toggle').click();
-    // The mark may not be the first: marks close together are merged into one, which lists them in the order of their time.
+    // The mark may not be the first: marks close together are merged into one, which lists them in order of time.
     const mark = page.locator('#time-track .alarm title', { hasText: /\bTI-2 HH?, \d\d:\d\d:\d\d/ }).first();
     await mark.waitFor({ state: 'attached' });
     assert.match(await page.locator('#time-alarms').textContent(), /^\d+ alarms? raised$/);
@@ -426,7 +426,8 @@ test('alarms are marked where they were raised', options, async () => {
 
 const instantOf = (us) => page.waitForFunction((to) => globalThis.plantcast.session.time.atUs === to, us);
 const timeText = (us) => new Date(us / 1000).toISOString().slice(0, 19);
-// Returns an instant `s` seconds after the history begins, or one second later: Chromium drops seconds of :00 from a date field.
+// Returns an instant `s` seconds after the history begins, or one second later if that is a full minute: Chromium drops seconds
+// of :00 from a date field.
 const afterBegin = (s) => (BEGIN_S + s + ((BEGIN_S + s) % 60 === 0)) * 1e6;
 
 test('marks lead to their instant, from alarm to alarm, and to a date', options, async () => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tools of the toolbar: frozen values, a distance, a picture, links with a QR code, following and leading, dark and light.
+// The toolbar's tools: frozen values, a distance, a picture, links with a QR code, following and leading, dark and light.
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -227,7 +227,7 @@ test('the legend says that values are not to be read from a glossy look', option
 
 // Returns the text that a camera reads from the QR code on the screen.
 async function scan(where) {
-    // The element around the code stays when the page replaces the code by one of a shorter link.
+    // The element around the code stays when the page replaces the code with that of a shorter link.
     const { width, height, rgba } = await readPng(where, await where.locator('#share-code').screenshot());
     return jsqr.default ? jsqr.default(rgba, width, height)?.data : jsqr(rgba, width, height)?.data;
 }
@@ -315,7 +315,7 @@ test('links to the view, the tag and the equipment, each with a code that a came
     await other.page.locator('#toast', { hasText: 'this short link is unknown or no longer stored' }).waitFor();
     await shoot(other.page, 'short-link-unknown');
     await other.close();
-    let requests = 0; // The server never answers the first request for the link: the page starts without it, and opens it later.
+    let requests = 0; // The server never answers the first request for the link: the page starts without it and opens it later.
     const late = await openPage(links['This view'], SCREEN, null, (on) => on.route('**/api/v1/link?*', (route) =>
         requests++ > 0 && route.continue()));
     await late.page.waitForURL(/#group=.*colormap=cividis/);
@@ -454,7 +454,7 @@ test('dark, and light again; it stays as it was left', options, async () => {
         session.setParams({ group: 'temperature' });
         session.setCamera(session.homeIn(width, height)); // shows the whole plant, with no equipment at the left edge
     });
-    // The code for keys and buttons is loaded when it is first needed, so the effect may come a little later.
+    // The code for keys and buttons is loaded when first needed, so the effect may come slightly later.
     const waitForTheme = (name) => page.waitForFunction((is) => document.documentElement.dataset.theme === is, name);
     await page.keyboard.press('z');
     await waitForTheme('dark');
