@@ -148,7 +148,7 @@ walls:
         await streamsOnlyItsViews(lobby, whole);
         await until('the refusal in the trail', () =>
             /"who":"lobby"[^\n]*view: “rest” is not allowed: this token/.test(readFileSync(path('views.log'), 'utf8')));
-        // A named view shows the same as the same query, but without readings, for every role.
+        // For every role, a named view shows the same as an equal query, but without readings.
         const query = 'group=temperature&hidden=P-101A&camera=0,-4,2,0,0,0,40&width=320&height=200';
         const [named, asked] = [await picture('view=left&width=320&height=200', whole), await picture(query, whole)];
         assert.equal(named.status, 200);
@@ -503,7 +503,7 @@ test('through nginx, as deploy/proxy has it', { skip: skip || (existsSync(NGINX)
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://plant.example' }), 101);
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://evil.example' }), 403);
         await plant.daemon.stop();
-        // starts a daemon that was not told of the proxy; requests use an unknown host name
+        // starts a daemon that was not told about the proxy; requests carry an unknown host name
         await plant.startDaemon('--port', String(plant.port));
         assert.equal(await throughNginx(port, '/healthz'), 403);
         assert.equal(await throughNginx(port, '/api/v1/tags', null, { Host: 'localhost' }), 403);
@@ -521,7 +521,7 @@ test('a person is asked for a token, and sees the plant', {
     try {
         await page.waitForSelector('#token[open]');
         for (let i = 0; i < 3; i++)
-            await page.keyboard.press('Escape'); // without a token the page shows nothing, so the keys have no effect
+            await page.keyboard.press('Escape'); // without a token the page shows nothing, so these keys have no effect
         await page.waitForSelector('#token[open]');
         await page.fill('#token-text', 'pc_wrong');
         await page.click('#token-form button');

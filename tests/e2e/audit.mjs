@@ -18,7 +18,7 @@ const skip = notBuilt();
 let plant, trail, tokens, syslog;
 
 const path = (name) => join(plant.folder, name);
-// The whole lines of the trail. The daemon may just be writing another one.
+// The complete lines of the trail; the daemon may just be writing another one.
 const lines = () => readFileSync(trail, 'utf8').split('\n').slice(0, -1).map((line) => JSON.parse(line));
 const verify = (...args) => runProgram('plantcast', ['audit', 'verify', trail, ...args]);
 const bearer = (token) => `Authorization: Bearer ${token}\r\n`;
@@ -347,7 +347,7 @@ test('a full file is renamed, and a new one begins', { skip }, async () => {
     await start('--audit-size', '1');
     await until('the new file', () => readdirSync(plant.folder).some((name) => /^full\.log\.\d{12}$/.test(name)));
     await plant.daemon.stop();
-    assert.equal(lines()[0].event, 'audit'); // the line that says that the full file's last line is no line of an audit trail
+    assert.equal(lines()[0].event, 'audit'); // the line that reports that the full file's last line is not a line of an audit trail
     trail = usual;
 });
 
@@ -377,7 +377,7 @@ test('syslog by TLS: each line as RFC 5424, after an outage too, and only to who
     assert.match(wrong.err, /needs --audit/);
 });
 
-// With TLS 1.3, the client's handshake succeeds before the server checks the client's certificate.
+// With TLS 1.3, the client's handshake succeeds before the server has checked the client's certificate.
 for (const [how, options, reason] of [['by an alert', {}, 'alert certificate required'],
     ['by closing', { requestCert: false, closes: true }, '(closed|reset)']])
     test(`a syslog server that refuses our certificate after the handshake, ${how}, loses no line`, { skip }, async () => {

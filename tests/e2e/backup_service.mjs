@@ -24,7 +24,7 @@ const ok = ({ code, out, err }) => {
     return out;
 };
 
-// Prepares and serves p1 as the unit does: as the user plantcast, with the file of options.
+// Prepares and serves p1 as the unit does: as the user plantcast, with the options file.
 async function serve(root) {
     const prepared = `--prepared ${STATE}/prepared --history ${STATE}/history`;
     const [program, args] = root.line(`. ${ETC}/options; exec setpriv --reuid plantcast --regid plantcast --init-groups sh -euc "` +
@@ -45,14 +45,14 @@ async function stop() {
         await daemon.ended;
     }
 }
-// Draws the recorded readings of an instant through the daemon, with a token of the tokens file.
+// Draws the readings recorded for an instant through the daemon, with a token of the tokens file.
 function draw(root) {
     root.write('/tmp/token', tokens.viewer, 0o600);
     ok(root.run(`plantcast snapshot https://localhost:${port}/ --ca ${ETC}/tls/fullchain.pem --token-file /tmp/token ` +
         `--at ${BEGIN_S + 3000} ` + '--size 320x200 -o /tmp/picture.png; chmod 644 /tmp/picture.png'));
     return readFileSync(root.path('tmp/picture.png'));
 }
-// All files that the service needs, with owner, mode and size or content.
+// All files that the service needs, with owner, mode, and size or content.
 const listing = (root) => ok(root.run(`find ${ETC} /etc/plantcast/mail.password ${STATE} -path ${STATE}/history -prune -o ` +
     `-path ${STATE}/prepared -prune -o ! -name 'audit.log*' -printf '%p %U %u %g %m ' ` +
     "! -type d -exec sha256sum {} ';' -o -type d -printf '\\n'"))
@@ -99,7 +99,7 @@ test('backup needs a word about keys, and an instance', options, () => {
 });
 
 test('a backup while the daemon runs has everything, its keys only encrypted', options, () => {
-    // run the backup with only the capabilities that the nightly systemd unit leaves
+    // runs the backup with only the capabilities that the nightly systemd unit leaves it
     const [, unit] = readFileSync('deploy/systemd/plantcast-backup@.service', 'utf8').match(/^CapabilityBoundingSet=(.*)$/m);
     const set = unit.split(' ').map((name) => name.replace('CAP_', '+').toLowerCase());
     const { code, err, out } = first.run(`setpriv --no-new-privs --bounding-set=-all,${set.join(',')} ` +

@@ -16,7 +16,7 @@ let nodes;
 before(async () => {
     if (options.skip)
         return;
-    nodes = await Nodes.create({ slowDevice: true }); // allow slow answers, because without a Good reading a picture has no age
+    nodes = await Nodes.create({ slowDevice: true }); // allows slow answers, because a picture without a Good reading has no age
     await nodes.plant.set({ 'TI-1': 20, 'TI-2': 20, 'PI-1': 5 });
 });
 after(() => nodes?.destroy());

@@ -24,7 +24,7 @@ const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))';
 const abi = Number(spawnSync('/usr/bin/python3', ['-c', ASK], { encoding: 'utf8' }).stdout);
 const unguarded = skip || (abi >= 2 ? false : `this kernel has ABI ${abi} of Landlock; 2 is needed to hold all of this back`);
 
-// Returns a folder of the programs in which the mesh reader is replaced.
+// Returns a folder with the programs in which the mesh reader is replaced.
 function programs(folder, reader, ...more) {
     const bin = join(folder, 'bin');
     mkdirSync(bin);
@@ -92,7 +92,7 @@ test('a matcher that is taken over reaches nothing of the daemon or the machine'
     }
 });
 
-// The daemon prepares the plant at start because the models have changed.
+// The models have changed, so the daemon prepares the plant at start.
 test('a plantcast-prep of the daemon that is taken over reaches nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(
     async (folder) => {
         const plant = await TinyPlant.create(), port = await freePort(), bin = programs(folder, ESCAPE, 'plantcastd');

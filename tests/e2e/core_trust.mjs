@@ -60,7 +60,7 @@ async function open(token = nodes.tokens.renderer) {
     return client;
 }
 
-// Returns version, plant and configuration from the core's message: every renderer knows them.
+// Returns version, plant and configuration from the core's message, which every renderer knows.
 async function learnIdentity() {
     const client = await open(), [, version] = /plantcastd (\S+)/.exec(runProgram('plantcastd', ['--version']).out);
     const configuration = /configuration ([0-9a-f]{16})/.exec(core.program.said)[1];
@@ -70,7 +70,7 @@ async function learnIdentity() {
     return { version, plant: 'Two boxes', configuration };
 }
 
-// Sends a message in the name of `who`, like a renderer that an attacker has taken over.
+// Sends a message on behalf of `who`, like a renderer that an attacker has taken over.
 async function asEvil(message, who) {
     const client = await open();
     client.say({ type: 'renderer', node: 'evil', ...identity });

@@ -17,7 +17,7 @@ const SAMPLES = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/cad/st
 const FOUND = join(DATA, 'found');
 const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
 
-// Two names and a unit per encoding; node can write none of these encodings, iconv all.
+// Two names and a unit per encoding. node can write none of these encodings, iconv can write them all.
 const ENCODINGS = {
     'UTF-8': ['UTF-8', '离心泵', '储罐 V-201', '℃'],
     GB18030: ['GB18030', '离心泵', '储罐 V-201', '℃'],
@@ -54,7 +54,7 @@ Objects:  {\n${[a, b].map((name, i) => `\tGeometry: 100${i}, "Geometry::g", "Mes
 \tModel: 200${i}, "Model::${name}", "Mesh" {\n\t\tVersion: 232\n\t}\n`).join('')}}
 Connections:  {\n${[0, 1].map((i) => `\tC: "OO",200${i},0\n\tC: "OO",100${i},200${i}\n`).join('')}}\n`;
 
-// A file of Open CASCADE, with other names. Strings of IGES say how long they are.
+// A file of Open CASCADE, with other names. IGES strings begin with their length.
 let samples = null;
 const sample = (name) => {
     if (!samples) {

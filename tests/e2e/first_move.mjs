@@ -77,7 +77,7 @@ test('it looks as the refined picture does, within a second', options, async (t)
     t.diagnostic(said.join('; '));
     const good = seen[alike.findIndex((ssim) => ssim >= LEAST)], first = alike[seen.findIndex(({ still }) => still)];
     assert.ok(first >= LEAST, `refined at once, not in two stages: ${said.join('; ')}`);
-    // The first previews of a new page are small, because its bandwidth is not known yet.
+    // The first previews of a new page are small, because its bandwidth is still unknown.
     assert.ok(seen.every((one) => one.fullWidth === image.width || one.at <= SMALL_MS), `of the viewport's size: ${said.join('; ')}`);
     assert.ok(good.at <= WITHIN_MS, said.join('; '));
     assert.deepEqual(browser.errors, []);

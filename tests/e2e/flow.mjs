@@ -80,7 +80,7 @@ test('fifty clients that take nothing cost next to nothing', { skip }, async () 
     }
     const moreKb = residentKb(pid) - beforeKb;
     console.log(`# ${STALLED} stalled clients: ${moreKb} kB more`);
-    const picturesKb = 3 * 1280 * 720 * 4 / 1024; // bytes of the pictures in flight at that moment: two being drawn, one being encoded
+    const picturesKb = 3 * 1280 * 720 * 4 / 1024; // size of the pictures in flight at that moment: two being drawn, one being encoded
     assert.ok(sanitized || moreKb <= 5 * 1024 + picturesKb, `${moreKb} kB more`);
 });
 

@@ -69,7 +69,7 @@ test('what leads out of the folder is not copied, by whatever name', { skip }, (
             put(path);
             const made = backUp('two');
             assert.equal(made.code, 1, `${name} ${why}`);
-            if (name !== '../tags.csv') // if the tag list is no regular file, reading the plant fails already
+            if (name !== '../tags.csv') // if the tag list is not a regular file, reading the plant already fails
                 assert.match(made.err, why, name);
             assert.ok(!existsSync(join(root, 'two')) && !existsSync(join(root, 'two.part')), name);
             rmSync(path, { recursive: true });

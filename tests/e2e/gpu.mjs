@@ -71,7 +71,7 @@ async function rest(clients, sinceUs) {
     return pictures.map(digest);
 }
 
-// Moves the camera until told to stop; then returns the pictures received, as [camera, bytes].
+// Moves the camera until told to stop, then returns the received pictures as [camera, bytes].
 function move(client) {
     const seen = [];
     let stopped = false;
@@ -129,7 +129,7 @@ for (const hardware of [true, false]) {
         }
         const grown = residentBytes(plant) - before;
         console.log(`# ${where}: resident ${(grown / 1e6).toFixed(1)} MB more, ${strangers} of ${moved} moving pictures strange`);
-        if (!long) // on a loaded machine moving pictures have another JPEG quality, and so another size
+        if (!long) // on a loaded machine, moving pictures have another JPEG quality and thus another size
             assert.ok(strangers < 0.2 * moved, `${strangers} of ${moved} pictures of those who moved were none like before`);
         assert.equal(faults.get('lost'), LOSSES);
         assert.equal(await metric(plant, 'plantcast_gl_losses_total'), LOSSES);
@@ -144,7 +144,7 @@ for (const hardware of [true, false]) {
     });
 }
 
-// Parameters with other fields, colours, isolines, lights and sizes: each set needs GPU memory of its own.
+// Parameters with different fields, colours, isolines, lights and sizes, each of which needs its own GPU memory.
 const WISHES = [
     { isolines: 10 }, { light: [0.3, 0.5, 0.8] }, { ghost: ['P-101A'] }, { selected: 'E-101' }, { colormap: 'turbo' },
     { clip: { planes: [[1, 0, 0, 0.1]] } }, { split: { group: 'pressure' } }, { width: 300, height: 200 },
@@ -190,7 +190,7 @@ test('who finds no room on the GPU is refused and told why; all others keep thei
     await again.until('a picture', (c) => c.frames.length > 0, PATIENCE_MS);
     again.close();
     const seen = await moving.stop();
-    if (!long) // on a loaded machine moving pictures have another JPEG quality, and so another size
+    if (!long) // on a loaded machine, moving pictures have another JPEG quality and thus another size
         assert.ok(strange(seen, seen.slice(0, 3 * EYES.length)) < 0.1 * seen.length);
     assert.deepEqual(await rest(clients, since), expected);
     assert.ok(clients.every((client) => !client.closed && !client.texts.some((message) => message.type === 'error')));

@@ -39,7 +39,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Waits until the watchdog's band is visible on the display, or has gone.
+// Waits until the watchdog's band appears on the display or has gone.
 async function seesVeil(wanted) {
     const end = performance.now() + PATIENCE_MS;
     for (;;) {

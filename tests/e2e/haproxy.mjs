@@ -47,7 +47,7 @@ async function start(name, i) {
     return Object.assign(node, { agentPort, name });
 }
 
-// Returns the eye in a view token: MAC.PAYLOAD, with the payload as JSON in base64url.
+// Returns the eye from a view token: MAC.PAYLOAD, where the payload is JSON in base64url.
 const eyeOf = (token) => JSON.parse(Buffer.from(token.split('.')[1], 'base64url')).c.eye;
 
 // A page without a screen: it reconnects as pages do, and restores its view only by the view token.
@@ -197,7 +197,7 @@ test('a drained node sends its sessions elsewhere, one after the other, and is a
 });
 
 test('a token that was changed, or is another person\'s, restores nothing; as it was made it does', options, async () => {
-    await renderers[1].stop(); // restart this renderer, so that it keeps no views of former sessions
+    await renderers[1].stop(); // restarts this renderer, so that it keeps no views of earlier sessions
     renderers[1] = await start('r2', 1);
     const { resume } = viewers[0], [secret, body, mac] = resume.split('.');
     const cases = [[`${secret}.${body}.${mac.replace(/.$/, (c) => (c === '0' ? '1' : '0'))}`, 'operator', false],

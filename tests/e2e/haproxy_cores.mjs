@@ -43,7 +43,7 @@ const chosen = async () => {
     const { core, standby } = await proxy.servers('core');
     return [[core, 'one'], [standby, 'two']].filter(([{ status }]) => /^UP/.test(status)).map(([, name]) => name).join();
 };
-// Returns the status of the answer to a request through the proxy without renderers.
+// Returns the status of the answer to a request through the proxy that has no renderers.
 const plainStatus = async () =>
     (await get(plain.port, '/api/v1/history?tags=TI-1', 'GET', `Authorization: Bearer ${two.nodes.tokens.viewer}\r\n`)).status;
 const journal = async () => JSON.parse((await ask('/api/v1/alarms/journal?tag=TI-1')).body).rows;

@@ -65,14 +65,14 @@ test('the button: only with a headset, and only if the server sends depth', opti
     }
 });
 
-// Returns the snapshot that the server draws from an eye: the true picture.
+// Returns the server's snapshot from the position of an eye, which serves as the reference.
 async function truth(page, eye, side) {
     const camera = [eye[0] + side * IPD_M / 2, eye[1], eye[2], eye[0] + side * IPD_M / 2, 0, eye[2], 90].map((m) => m.toFixed(4)).join();
     const query = `width=${EYE.width}&height=${EYE.height}&look=flat&strip=none&hidden=P-101A&camera=${camera}`;
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?${query}`);
     return readPng(page, Buffer.from(await answer.arrayBuffer()));
 }
-// Returns the first and the last coloured pixel of a row, left of a snapshot's legend.
+// Returns the first and last coloured pixel of a row, left of the snapshot's legend.
 function runOf({ width, rgba }, row) {
     const coloured = [...Array(Math.round(0.8 * width)).keys()].filter((x) => {
         const [r, g, b] = rgba.slice(4 * (row * width + x), 4 * (row * width + x) + 3);
@@ -120,7 +120,7 @@ test('both eyes see the plant from their own places; a turned head sees it in th
 test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, () => withHeadset(async (page) => {
     await enterVr(page);
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0]);
-    await aimAt(page, [-0.8, -1.2, -0.8]); // the floor is where the user stands: 1.6 m below the eyes
+    await aimAt(page, [-0.8, -1.2, -0.8]); // the floor is where the user stands, 1.6 m below the eyes
     await pull(page);
     await page.waitForFunction(() => Math.abs(globalThis.plantcast.modules.there('enterVr').headset.rig.at[0] + 0.8) < 0.05);
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0]);
@@ -141,7 +141,7 @@ test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, ()
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0], true);
     const button = await page.evaluate(() => {
         const { hands } = globalThis.plantcast.modules.there('enterVr').headset, { at, axes: [x, y], width, height } = hands.panel();
-        // position in the room of the right button of the panel's first row
+        // position in the room of the right-hand button in the panel's first row
         return at.map((m, i) => m + x[i] * width * 0.25 + y[i] * height * 0.38);
     });
     await aimAt(page, button);

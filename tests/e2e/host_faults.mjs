@@ -63,7 +63,7 @@ test('a volume that becomes read-only: it runs on and says so; what it held come
         await until('a point on disk', () => ledger(plant, history).some((line) => /,11[.,]/.test(`${line},`)));
         writeFileSync(trigger, '1');
         assert.notEqual(sh(`touch ${volume}/x`).status, 0, 'the volume is read-only');
-        await take(plant, 77); // 77 is not on the line from 11 to 33, so the history must record this reading
+        await take(plant, 77); // 77 does not lie on the line from 11 to 33, so the history must record this reading
         await until('plantcast_history_good is 0', async () => await gauge(plant, 'plantcast_history_good') === 0);
         await plant.daemon.line(/history-[\d-]+\.sqlite: .*error$/m);
         await plant.daemon.line(/history: cannot be written \(/);

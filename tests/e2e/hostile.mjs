@@ -19,8 +19,8 @@ const noDemo = missingDemo();
 const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000, PATIENCE_MS = 60000;
 const PINGS = 4000, MESSAGES_PER_S = 1000;
 const HELLO = { type: 'hello', width: 320, height: 180, codecs: ['jpeg'] };
-const LEAST_CPU_S = 0.4; // processor seconds that one viewer costs at least if it gets all its frames
-const MOST_TIMES = 5; // factor on one viewer's processor time that all clients together may cost
+const LEAST_CPU_S = 0.4; // minimum processor seconds of one viewer that gets all its frames
+const MOST_TIMES = 5; // all clients together may cost at most this many times one viewer's processor time
 let plant, quiet;
 
 before(async () => {
@@ -41,7 +41,7 @@ after(() => Promise.all([plant?.destroy(), quiet?.destroy()]));
 const closed = (client) => client.until('a close', (c) => c.closed, PATIENCE_MS);
 const metric = async (name) => Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
 const cpuSeconds = ({ daemon }) => cpuMs(daemon.child.pid) / 1000;
-// Counts the daemon's descriptors, except files of the plant: journal and history are opened only when needed.
+// Counts the daemon's descriptors, except for plant files: journal and history are opened only when needed.
 const descriptors = () => {
     const folder = `/proc/${plant.daemon.child.pid}/fd`;
     const path = (fd) => {
@@ -54,7 +54,7 @@ const descriptors = () => {
     return readdirSync(folder).filter((fd) => !path(fd).startsWith(plant.folder)).length;
 };
 
-// Opens a raw socket; records what the server sent and when it closed.
+// Opens a raw socket, and records what the server sends and when it closes.
 function raw(port) {
     const socket = connect(port, '127.0.0.1');
     socket.on('error', () => {});
@@ -164,7 +164,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
     assert.equal((await closed(half)).code, 1008);
     assert.match((await closed(mute)).text, /no hello/);
     for (const guess of guesses)
-        // 1008 for the first ten guesses; 1013 for further ones, which are throttled
+        // 1008 for the first ten guesses; 1013 for later ones, which are throttled
         assert.ok([1008, 1013].includes((await closed(guess)).code));
     assert.equal(guesses[0].texts[0].code, 'bad_token');
     flood.close();

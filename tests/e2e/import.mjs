@@ -36,7 +36,7 @@ const rotated = ([x, y, z, w], [a, b, c]) => {
     return [a + w * t[0] + y * t[2] - z * t[1], b + w * t[1] + z * t[0] - x * t[2], c + w * t[2] + x * t[1] - y * t[0]];
 };
 
-// Returns the bounding box and area of each node with triangles, by name.
+// Returns the bounding box and area of each node that has triangles, by name.
 function shapes(path) {
     const { json, numbers } = readGlb(path), found = new Map();
     const walk = (index, place) => {
@@ -224,7 +224,7 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
     assert.equal(run('plantcast', 'import', '-o', out).status, 2);
 }));
 
-// A line has triangles, but no area; plantcast-prep refuses an asset without area.
+// A line yields triangles without area; plantcast-prep refuses an asset without area.
 test('nodes without area do not become assets', { skip: notBuilt }, () => inFolder((folder) => {
     const out = join(folder, 'plant'), line = [0, 0, 0, 1, 0, 0, 3, 0, 0], triangle = [0, 0, 0, 1, 0, 0, 0, 1, 0];
     const bytes = Buffer.from(new Float32Array([...line, ...triangle]).buffer);

@@ -212,7 +212,7 @@ const SECOND = [['a.obj', obj()], ['polygons.obj', polygons], ['mm.dae', dae(0.0
     ['geometric.fbx', fbx(2.54).replace('P: "Lcl Translation", "Lcl Translation", "", "A",0,0,0', (line) => `${line}\n            P: ` +
         '"GeometricTranslation", "Vector3D", "Vector", "",10,20,30\n            P: "Lcl Rotation", "Lcl Rotation", "", "A",0,0,90\n' +
         '            P: "Lcl Scaling", "Lcl Scaling", "", "A",-1,2,1'), { metres: 0.0254 }]];
-// Indented by tabs, without which the second reader does not read FBX.
+// Indented with tabs, without which the second reader cannot read FBX.
 const indented = (text) => Buffer.from(text.replace(/^( {4})+/gm, (blanks) => '\t'.repeat(blanks.length / 4)));
 test('FBX, COLLADA and OBJ: area and size are those of a second reader', { skip }, (t) => withMaterials(async (folder) => {
     const second = await secondMeshReader();

@@ -76,7 +76,7 @@ class Served {
     }
 }
 
-// Returns a model of boxes with these names, in a row, each `size` wide.
+// Returns a model with a row of boxes of these names, each `size` wide.
 function boxes(names, size = 1) {
     const corners = [...Array(8).keys()].flatMap((i) => [i & 1, i >> 1 & 1, i >> 2 & 1].map((bit) => bit * size));
     const faces = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
@@ -104,7 +104,7 @@ V 401/A.LT,0,100,%,Level
 TT-9999,0,90,degC,Another unit
 `;
 
-// Chooses files in the page's file input; files: [{ name, text }] or paths.
+// Selects files in the page's file input; files: [{ name, text }] or paths.
 const choose = (page, files) => page.locator('#import input[type=file]').setInputFiles(files.map((file) => (typeof file === 'string' ? file
     : { name: file.name, mimeType: 'application/octet-stream', buffer: Buffer.from(file.text) })));
 const row = (page, tag) => page.locator('#import .row').filter({ has: page.locator('b', { hasText: new RegExp(`^${tag}$`) }) });
@@ -289,7 +289,8 @@ test('an import that fails or is cancelled once the new models are in place: the
                 await new Promise((done) => setTimeout(done, 10));
             assert.equal((await (await served.api('')).json()).phase, 'preparing');
             assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
-            // No other Plantcast program changes the folder meanwhile; a program that does so without locking loses nothing.
+            // No other Plantcast program changes the folder meanwhile, and a program that changes it without locking loses
+            // nothing.
             const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
             assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using the folder\n$/);
             if (saves)
@@ -305,7 +306,7 @@ test('an import that fails or is cancelled once the new models are in place: the
             else
                 assert.equal(after['matches.csv'], before['matches.csv']);
         }
-        // While another process holds the folder's lock, an import does not begin.
+        // While another process holds the folder's lock, an import does not start.
         const held = spawn('flock', [served.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
         await once(held.stdout, 'data');
         const now = files();
@@ -325,7 +326,7 @@ test('40 % of the rows are there twice, and one tag with control characters', op
     const [model, list] = ['plant.gltf', 't.csv'].map((name) => join(given, name));
     writeFileSync(model, boxes(NAMES));
     writeFileSync(list, [...TAGS.trim().split('\n'), ...lines.slice(0, 5), '"P-201B\u0007_TT",0,1,degC,x'].join('\n'));
-    const served = await Served.start(model, list); // files on the command line are imported like files that are dropped on the page
+    const served = await Served.start(model, list); // files on the command line are imported like files dropped on the page
     try {
         const state = await served.idle();
         assert.equal(state.failed, null, state.failed);
@@ -355,7 +356,7 @@ after(async () => {
 test('an empty plant opens the panel; a model and a tag list make a plant', options, async () => {
     await waitForPicture(page);
     await page.locator('#import.new .drop').waitFor();
-    await page.locator('.drop-zone').waitFor(); // an empty plant shows this instead of a picture, which would show only a person
+    await page.locator('.drop-zone').waitFor(); // an empty plant shows this instead of a picture, which would show only the human figure
     assert.equal(await page.locator('#import .measures').isVisible(), false, 'there is nothing to be measured');
     assert.deepEqual(await assetsOf(page), ['person']);
     await settle(page);
@@ -443,7 +444,7 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     });
     await becomes(async () => (await shown()).isolate, ['E-101']);
     await page.getByRole('button', { name: 'Show all' }).click();
-    // Placed on other equipment than the matched one: reported during the trial, and before saving.
+    // Placed on equipment other than the matched one: reported during the trial and before saving.
     const { min, max } = await page.evaluate(() => {
         const { session: { model }, cameraController } = globalThis.plantcast, { bounds } = model.asset('P-201A');
         cameraController.flyToBox(bounds, 4);
@@ -507,7 +508,7 @@ function namesIn(path) {
 }
 const seenRows = (text, status) => text.split('\n').filter((line) => line.includes(`,${status},`));
 
-const large = sweep(test, () => {}); // only in long runs; walk.mjs does the same with a plant room
+const large = sweep(test, () => {}); // only in long runs, because walk.mjs does the same with a plant room
 large('400,000 triangles and 300 tags: a first picture within 5 minutes of the first command', { skip: noData, timeout: 4e5 }, async () => {
     const models = ['models/duplex_mep.glb', 'models/plm_plant_5parts.glb'].map((name) => join(DATA, name));
     const list = join(mkdtempSync(join(tmpdir(), 'plantcast-list-')), 'tags.csv');
@@ -579,7 +580,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await live('3 of 3 tags have values');
         await arrive(desk);
         await shoot(desk, 'import-13-values');
-        // Imported again in other units: values continue, and a page that connects later knows the units, too.
+        // Imported again in other units: values continue, and a page that connects later knows the new units too.
         await desk.locator('#import .measures summary').click();
         await desk.locator('#import .measures select').first().selectOption('ft');
         await desk.getByRole('button', { name: 'Apply' }).click();
@@ -593,7 +594,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await desk.waitForFunction(() => document.querySelector('#import .measures select')?.value === 'ft');
         for (const query of ['host=a%20b', 'host=--x', 'port=1', 'host=a&port=70000', 'host=a&order=XYZ', 'host=a&unit=256'])
             assert.equal((await own.post(`/source?${query}`)).status, 400, query);
-        // An import without a tag list is refused, because the plant's source would be lost.
+        // An import without a tag list is refused, because it would lose the plant's source.
         assert.equal((await own.post('/remove?name=tags.csv')).status, 200);
         const sources = /^sources:\n(  .*\n)+/m.exec(own.read('plant.yaml'))[0];
         await own.post('/run?what=anew');

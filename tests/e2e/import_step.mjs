@@ -109,7 +109,7 @@ test('IGES without groups, and as Open CASCADE writes an assembly', { skip }, ()
     assert.ok(near(skid[5].size, [0.2, 0.2, 0.3]) && near(skid[5].centre, [0.3, 0.7, 0.15]), JSON.stringify(skid[5]));
 }));
 
-// Imports a file and returns its findings, its triangles' area and size, and what was printed.
+// Imports a file. Returns its findings, the area and size of its triangles, and the output.
 function imported(folder, name) {
     const plant = join(folder, 'imported'), report = join(folder, 'report.json');
     const { status, stdout, stderr } = plantcast('import', join(folder, name), '-o', plant, '--report', report, '--chord', '0.2');
@@ -136,7 +136,7 @@ test('area and size are those of a second reader', { skip }, (t) => withSamples(
     for (const name of files) {
         const { area, size, lost, errors } = imported(folder, name), theirs = second(name, readFileSync(join(folder, name)));
         console.log(`# ${name}: ${area.toFixed(6)} m2 of ${theirs.area.toFixed(6)}, ${size.map((v) => v.toFixed(4)).join(' x ')} m`);
-        // The second reader leaves out instances of subfigures that have another size.
+        // The second reader omits instances of subfigures that have another size.
         const bolt = /tree|inches/.test(name) ? Math.PI * 0.04 * (2 * 0.2 + 2 * 0.04) : 0;
         const good = Math.abs(area / (theirs.area + bolt) - 1) < 0.01 && (bolt || near(size, theirs.size));
         assert.ok(good, JSON.stringify([name, size, theirs]));
@@ -185,7 +185,7 @@ test('broken files are one line each, and leave nothing behind', { skip }, () =>
     const text = step.toString('latin1');
     const ring = text.replace(/NEXT_ASSEMBLY_USAGE_OCCURRENCE\(('[^']*','[^']*','[^']*'),#(\d+),#(\d+)/g,
         (whole, names, a) => `NEXT_ASSEMBLY_USAGE_OCCURRENCE(${names},#${a},#${a}`);
-    // Letters in place of some numbers; and subfigures, instances and groups that contain themselves.
+    // Letters instead of some numbers; and subfigures, instances and groups that contain themselves.
     const points = readFileSync(join(folder, 'tree.igs'), 'latin1');
     const nanIges = points.replace(/\d\.,/g, (number, at) => (at % 3 === 0 ? 'NA,' : number));
     const selfIges = points.split('\n').map((line) => {

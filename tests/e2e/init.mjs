@@ -112,7 +112,7 @@ test('a certificate of init is renewed before it expires, and programs that trus
     assert.equal(init('two', '--plant', plant.folder, '--host', 'plant.example').code, 0);
     assert.deepEqual([mode(tls('ca.key')), mode(tls('privkey.pem')), mode(tls('ca.pem'))], ['600', '640', '640']);
     assert.equal(renew(), '');
-    // replaces the certificate by one for the same names and key, which expires in 20 days
+    // replaces the certificate with one for the same names and key that expires in 20 days
     const copy = ['-copy_extensions', 'copy'], byAuthority = (days) => openssl('x509', '-req', '-in', tls('csr'), ...copy,
         '-CA', tls('ca.pem'), '-CAkey', tls('ca.key'), '-days', days, '-out', tls('leaf.pem'));
     openssl('x509', '-in', tls('fullchain.pem'), '-x509toreq', ...copy, '-signkey', tls('privkey.pem'), '-out', tls('csr'));
@@ -130,7 +130,7 @@ test('a certificate of init is renewed before it expires, and programs that trus
     assert.equal(openssl('x509', '-in', tls('fullchain.pem'), '-noout', '-pubkey').stdout,
         openssl('pkey', '-in', tls('privkey.pem'), '-pubout').stdout);
     assert.equal(renew(), '');
-    // the authority may sign only for this plant: a certificate for another host is refused
+    // the authority may sign only for this plant, so a certificate for another host is refused
     openssl('req', '-new', '-key', tls('privkey.pem'), '-subj', '/CN=bank.example', '-addext', 'subjectAltName=DNS:bank.example',
         '-out', tls('csr'));
     byAuthority('3');
@@ -182,7 +182,7 @@ test('`make run` twice on a machine: the second takes another port, and both are
 const OUT = resolve(process.env.PLANTCAST_OUT ?? 'build/release');
 const notReleased = OUT === join(BIN, 'release') ? false : 'not the release build';
 
-// Returns a plant's processes, found by the plant file in their arguments.
+// Returns a plant's processes, identified by the plant file in their arguments.
 const processesOf = (file) => readdirSync('/proc').filter((pid) => /^\d+$/.test(pid)).map((pid) => {
     try {
         return readFileSync(`/proc/${pid}/cmdline`, 'utf8').split('\0');

@@ -30,7 +30,7 @@ before(async () => {
     browser = await openPage(`http://127.0.0.1:${server.address().port}/?lang=en`);
     page = browser.page;
     await page.waitForFunction(() => globalThis.plantcast);
-    await page.evaluate(async () => { // registers the service worker, as the page does when it was loaded over https
+    await page.evaluate(async () => { // registers the service worker, as a page loaded over https does
         await navigator.serviceWorker.register('service.js');
         await navigator.serviceWorker.ready;
     });
@@ -41,7 +41,7 @@ after(async () => {
     server?.close();
 });
 
-// Returns { version: [path, ...] } of the caches; other caches under their names
+// Returns { version: [path, ...] } for this page's caches; other caches appear under their own names
 const kept = () => page.evaluate(async () => Object.fromEntries(await Promise.all((await caches.keys()).map(async (name) =>
     [name.replace('plantcast-', ''), (await (await caches.open(name)).keys()).map(({ url }) => new URL(url).pathname)]))));
 const reload = async () => {

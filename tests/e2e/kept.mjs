@@ -32,7 +32,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     plant.addAlarms();
-    const tags = readFileSync(path('tags.csv'), 'utf8'); // changes the tag list so that an alarm of PI-1 stays until it is reset
+    const tags = readFileSync(path('tags.csv'), 'utf8'); // changes the tag list so that PI-1's alarm stays until it is reset
     writeFileSync(path('tags.csv'), tags.replace('Stale s,H', 'Stale s,H,Latch').replace(/,1,90$/gm, ',600,90,')
         .replace(/^(PI-1.*,)$/m, '$11'));
     plant.giveDeviceTime();
@@ -40,7 +40,7 @@ before(async () => {
     assert.equal(plant.prepare().code, 0);
     engineer = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'eve']).out.trim();
     chmodSync(path('tokens'), 0o600);
-    // Everything, including the plant file, is on a disk of 24 MB.
+    // Everything, including the plant file, is on a 24 MB disk.
     const aside = `${plant.folder}.aside`;
     cpSync(plant.folder, aside, { recursive: true });
     mounted = spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=24m', 'tmpfs', plant.folder]).status === 0;
@@ -304,7 +304,7 @@ test('while the disk hangs, each action is answered with "not kept", and others 
         assert.equal((await (await fetch(`http://127.0.0.1:${own.port}/api/v1/notes`)).json()).list.length, 0, 'it is not on disk');
         const sent = await fetch(`http://127.0.0.1:${own.port}/api/v1/import/upload?name=part.obj`, { method: 'POST', body: 'v 0 0 0' });
         assert.deepEqual([sent.status, /does not answer/.test((await sent.json()).unaudited)], [200, true], 'the upload is there, no line');
-        // The client closes at once: the audit trail still says that its action is not kept.
+        // The client disconnects at once: the audit trail still says that its action was not kept.
         leaver.say({ ...onAlarm({ ...shelve, reason: 'leaves at once' }), seq: 1 });
         leaver.close();
         const answerTo = (seq) => client.until('alarmed', ({ texts }) => texts.find((one) => one.type === 'alarmed' && one.seq === seq));

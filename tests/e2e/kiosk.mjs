@@ -168,7 +168,7 @@ test('it shows a server whose certificate another authority signed than before',
         (request, response) => server.emit('request', request, response));
     await new Promise((done) => secure.listen(0, '127.0.0.1', done));
     try {
-        // a host trusts its former authority, then the new one, then both
+        // the host trusts first its former authority, then the new one, then both
         for (const pem of [former.ca, present.ca, former.ca + present.ca]) {
             writeFileSync(file, pem);
             const env = { ...display.env, HOME: state };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the page in one browser when something is missing: its own parts, its server, the plant's values.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first subject
+import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first group of tests
 
 describe('lost_pages', { concurrency: 2 }, () => {
     for (const subject of ['weight', 'first_light', 'truth', 'proxy'])

@@ -223,7 +223,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
             (_, i) => `E-10${i % 3}.TT-${i},${400001 + 2 * i},${unit},0,90`)].join('\n');
         mkdirSync(first);
         boxPlant(first, ['E-100', 'E-101', 'E-102']);
-        for (const [count, unit] of [[6, 'degC'], [600, 'bar']]) { // a plant without tags; and one with tags, which gains a group
+        for (const [count, unit] of [[6, 'degC'], [600, 'bar']]) { // a plant without tags, and one with tags, which gains a group
             writeFileSync(list, rows(count, unit));
             cpSync(first, whole, { recursive: true });
             const args = [list, '--modbus', '127.0.0.1:502'];
@@ -238,7 +238,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
                 for (const left of ['tags.csv.4194304.new', 'matches.csv.4194304.3.new', '.trial.4194304.yaml'])
                     writeFileSync(join(plant, left), 'half of a li'); // left by a process that has ended: no process has the number 4194304
                 const others = [`tags.csv.${process.pid}.new`, 'tags.csv.4194304.7.new'], hourAgo = Date.now() / 1000 - 3600;
-                for (const name of others) // files that another process is writing, on this machine or in another container
+                for (const name of others) // files that another process is still writing, on this machine or in another container
                     writeFileSync(join(plant, name), 'half of a li');
                 for (const name of readdirSync(plant).filter((each) => /4194304/.test(each) && each !== others[1]))
                     utimesSync(join(plant, name), hourAgo, hourAgo);
@@ -291,7 +291,7 @@ async function startsWhole(folder, whole, filesOf, what) {
     }
 }
 
-// An import is killed before each of its renames, also where new files replace old ones.
+// An import is killed before each of its renames, including those where new files replace old ones.
 const KILLER = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/kill_at_rename.so');
 const noKiller = notBuilt || (existsSync(KILLER) ? false : 'not built: kill_at_rename.so');
 for (const last of ['import', 'undo'])

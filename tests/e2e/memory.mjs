@@ -64,7 +64,7 @@ test('under its bound, whatever somebody tries', options, async (t) => {
 });
 
 test('when all have gone it keeps no caches, and is as large as at first', options, async (t) => {
-    await one?.leave(); // end the client of the first test, whether that test passed or failed
+    await one?.leave(); // disconnects the client of the first test, whether that test passed or failed
     const isKept = ([name, value]) => !['light', 'models', 'bound'].includes(name) && value > 0;
     let all = await gauges();
     for (; Object.entries(all).some(isKept); all = await gauges())

@@ -121,7 +121,7 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms <= Date.now() - began + 1);
 });
 
-// Kepware's IoT Gateway publishes an array of the changed tags, in any order.
+// Kepware's IoT Gateway publishes an array of the tags that changed, in any order.
 test('a gateway that publishes what has changed: no tag gets the value of another', options, async () => {
     const paths = { A2: 'values[1].v', A3: 'values[2].v', F1: "values[?@.id=='G.A1'].v", F2: "$.values[?id=='G.A2'].v",
         F9: "values[?id=='G.A9'].v" };
@@ -136,7 +136,7 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     let tags = await plant.tags();
     for (const name of ['A1', 'A2', 'A3', 'F1', 'F9'])
         assert.deepEqual([tags[name].quality_name, tags[name].value], ['Bad_NoMatch', null], name);
-    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // one message with all three tags, each at its own index of the array
+    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // one message with all three tags, each at a different index of the array
     for (const [name, value] of [['A3', 24], ['A1', 21], ['F1', 21], ['F2', 23]])
         await until(name, { ...good, value });
     await tell(['G.A3', 34], ['G.A1', 31, false]);
@@ -167,7 +167,7 @@ test('a persistent session brings what was published meanwhile, as old as it is'
     assert.ok((await until('PI-1', { ...good, value: 2 })).age_ms >= 1500);
 });
 
-// A broker that sends topics without subscription: the longest possible topics, each before a reading.
+// A broker that sends topics without a subscription: the longest possible topics, each before a reading.
 test('topics of 64 kB, at a broker that lies: nothing else suffers', options, async () => {
     await broker.kill();
     let sent = 0;

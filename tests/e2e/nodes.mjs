@@ -12,7 +12,7 @@ import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
 
-// Returns a model with a triangle of that size, as a data URI, in the given nodes.
+// Returns a model as a data URI with a triangle of that size in each of the given nodes.
 function model(nodes, size = 1, meshName = 'plate') {
     const bytes = Buffer.from(new Float32Array([0, 0, 0, size, 0, 0, 0, 2 * size, 0]).buffer);
     return {

@@ -225,7 +225,7 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
         const [next] = await until('the next one is told', () => hooks[1].taken.length > 0 && hooks[1].taken);
         assert.deepEqual(next.alarms.map(({ tag, escalation }) => [tag, escalation]), [['TI-1', 1]]);
         await acknowledge(plant, 'TI-1', ['H']);
-        await set(plant, 'TI-2', limits.high); // once the last recipient is due for TI-2, TI-1 would have been due, too
+        await set(plant, 'TI-2', limits.high); // once the last recipient is due for TI-2, TI-1 would have been due too
         const [last] = await until('the last one is told', () => hooks[2].taken.length > 0 && hooks[2].taken);
         assert.deepEqual(last.alarms.map(({ tag }) => tag), ['TI-2']);
     } finally {

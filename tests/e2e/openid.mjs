@@ -48,7 +48,7 @@ class Browser {
 
     at(where, options) { return this.get(`http://127.0.0.1:${port}${where}`, options); }
 
-    // Begins a log-in. Returns the URL to which the provider redirects back.
+    // Begins a login. Returns the URL to which the provider redirects back.
     async begin(to = '/') {
         const response = await this.at(`/login?to=${encodeURIComponent(to)}`);
         assert.equal(response.status, 303);
@@ -89,7 +89,7 @@ before(async () => {
     chmodSync(path('secret'), 0o600);
     token = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'break-glass']).out.trim();
     provider = new IdentityProvider();
-    await provider.listen(await freePort()); // a port that no other program takes while the provider is away
+    await provider.listen(await freePort()); // a port that no other program takes while the provider is down
     port = await freePort();
     writeConfig();
     await start();
@@ -278,7 +278,7 @@ test('without refresh tokens a session ends with its access token; nothing secre
     assert.equal(runProgram('plantcast', ['audit', 'verify', path('audit.log')]).code, 0);
 });
 
-// Sends a request from another address of this machine; resolves with the answer.
+// Sends a request from another address of this machine. Resolves with the answer.
 function askFrom(localAddress, where, headers = {}) {
     return new Promise((done, fail) => {
         const asked = request({ host: '127.0.0.1', port, path: where, localAddress, headers }, (response) => {
@@ -393,7 +393,7 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     };
     let browser;
     const login = await cost(PEOPLE, async (i) => {
-        provider.sub = `s${i % (PEOPLE / 16)}`; // one user (sub) may have 16 sessions at most, so several users are needed
+        provider.sub = `s${i % (PEOPLE / 16)}`; // one user (sub) may have at most 16 sessions, so several users are needed
         assert.equal((await (browser = new Browser()).signIn()).status, 303);
     });
     const asks = (headers) => cost(REQUESTS, async () => (await fetch(`http://127.0.0.1:${port}/api/v1/me`, { headers })).arrayBuffer());
@@ -405,7 +405,7 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     while (refreshed() < from + PEOPLE)
         await sleep(20);
     const check = (loop() - began) / PEOPLE;
-    provider.claims.groups = []; // removes all rights, so that no signed-in user is left for the next tests
+    provider.claims.groups = []; // removes all rights, so that no signed-in user is left for the following tests
     await until('all being revoked', () => provider.live.size === 0);
     t.diagnostic(`a log-in ${login.toFixed(2)} ms of the loop; a request by token ` +
         `${byToken.toFixed(3)}, by cookie ${byCookie.toFixed(3)} ms; a check of rights ${check.toFixed(3)} ms`);
@@ -558,7 +558,7 @@ test('Glewlwyd, as Debian has it: code flow, groups that change and end', {
     assert.equal((await browser.get(`${its}/auth/`, { method: 'POST', headers, body })).status, 200);
     const granted = JSON.stringify({ scope: 'openid' });
     assert.equal((await browser.get(`${its}/auth/grant/plant`, { method: 'PUT', headers, body: granted })).status, 200);
-    // Like its log-in page, after the user has logged in and agreed.
+    // Acts like its login page after the user has logged in and agreed.
     const there = await browser.get(`${(await browser.at('/login')).headers.get('location')}&g_continue`);
     assert.match(there.headers.get('location'), /\/login\/callback\?/);
     const back = await browser.get(there.headers.get('location'));

@@ -43,7 +43,7 @@ for (const { plant, model, format, equipment } of sweep(PLANTS, PLANTS.slice(0, 
         const folder = mkdtempSync(join(tmpdir(), 'plantcast-own-')), out = join(folder, 'plant'), list = join(folder, 'export');
         const walk = new Walk(), programs = [];
         try {
-            // Makes the control system's export: names of the plant's own equipment in various spellings, and foreign ones.
+            // Makes the control system's export: names of the plant's own equipment in various spellings, and foreign names.
             const names = runProgram('plantcast', ['nodes', join(DATA, model), '--json'], 100000).out;
             const named = [...new Set([...names.matchAll(/"name":\s*"([^"\\]{4,60})"/g)].map(([, name]) => name))];
             const wanted = named.filter((name) => (equipment.length > 0 ? /Boiler|Pump|Fan|Valve/.test(name) : /\d{3}/.test(name)));

@@ -117,7 +117,7 @@ test('who looks at now never notices, and who follows comes along', { skip }, as
     follower.say({ type: 'follow', session: client.welcome.session });
     await follower.text('following');
     await live.frameWhere('refined', (p) => p.flags & FLAG.still);
-    await travel(client, at(300), 60); // at this speed it reaches the end of the records after 25 s
+    await travel(client, at(300), 60); // at this speed, playback reaches the end of the records after 25 s
     await follower.frameWhere('of then too', (p) => p.flags & FLAG.past && p.data_time_us >= at(300));
     await follower.until('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 60));
     const ofThen = (m) => m.type === 'tags' && m.time_us >= at(300) && m.time_us < at(3000);
@@ -244,7 +244,7 @@ test('an imported gap, blanks and state words are no data, in pictures, readings
     for (const source of [`${url}/`, plant.file])
         assert.deepEqual([pick(source, 65), pick(source, day)], [12, null], source);
 
-    // A gap that is stated to be none is a line, everywhere.
+    // A gap that --longest-gap allows is drawn as a line everywhere.
     const bring = (name, list, ...more) => {
         writeFileSync(file, `Time,${name}\n${list.map(([s, value]) => `${from + s},${value}`).join('\n')}\n`);
         const brought = runProgram('plantcast', ['history', 'import', plant.file, file, ...more]);

@@ -149,7 +149,7 @@ test('a list is saved: the difference first, then active for all, with the old o
     await engineer.text('tags_diff');
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
 
-    engineer.socket.cork(); // sends both messages at once, so that the second comes while the first one is carried out
+    engineer.socket.cork(); // sends both messages at once, so that the second arrives while the first is being processed
     engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash });
     engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash });
     engineer.socket.uncork();

@@ -89,7 +89,7 @@ async function assertSame(from) {
     const lacks = (all, of) => [...all.keys()].filter((key) => !of.has(key));
     const keyed = (rows) => new Map(rows.map(([tag, us, value, quality]) => [`${tag} ${us} ${quality}`, value]));
     let api, sql, here, there;
-    const isSame = async () => { // repeated, because the database and the files are written at different times
+    const isSame = async () => { // repeats the comparison, because the database and the files are written at different times
         api = [];
         for (const tag of TAGS) {
             const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=${tag}&from=${from / 1e6}&to=${to / 1e6}&points=20000`;
@@ -113,7 +113,7 @@ async function assertSame(from) {
 }
 
 const begin = () => Math.floor(Date.now() / 1000) * 1e6;
-// Starts a daemon and waits until it has sent points; returns since when.
+// Starts a daemon and waits until it has sent points. Returns since when.
 async function startSending() {
     const from = begin();
     await plant.startDaemon();
@@ -163,7 +163,7 @@ test('a gap and a Bad sample of an import are there, and a later import removes 
     await until('the gap is gone', async () => rows().some(([s, value]) => s === 40.000001 && value === '10'));
     assert.deepEqual(rows().filter(([, , quality]) => quality === none), [[86410.000001, '', none]]);
 
-    // The Stale s of TI-2, 1 s: the 3.5 s after 4.5 s are no data.
+    // TI-2 has a Stale s of 1 s, so the 3.5 s after 4.5 s count as no data.
     writeFileSync(file, `Time,TI-2\n${Array.from({ length: 20 }, (_, i) => `${from + i / 2 + (i > 9 ? 3 : 0)},50`).join('\n')}\n`);
     bring();
     const without = () => server.ask(`SELECT extract(epoch FROM time)::numeric(20, 6) - ${from} FROM plantcast.history
@@ -172,7 +172,7 @@ test('a gap and a Bad sample of an import are there, and a later import removes 
     assert.deepEqual(without(), [4.500001, 12.500001]);
 });
 
-// Replaces Grafana's macros and variables, with these plants, tags and units chosen.
+// Replaces Grafana's macros and variables, with these plants, tags and units selected.
 function expanded(sql, from, chosen) {
     const time = (at) => `${at} BETWEEN to_timestamp(${from / 1e6}) AND now()`;
     const text = (name) => [chosen[name]].flat().map((one) => `'${one.replaceAll("'", "''")}'`).join(',');
@@ -358,7 +358,7 @@ test('a machine that is replaced gets the past of its plant, and goes on with it
     await sent(200);
     const to = Date.now() / 1000;
     await assertSame(from);
-    // The newest samples are sent every 5 s: until then the database's lines end earlier.
+    // The newest samples are sent only every 5 s; until then, lines in the database end earlier.
     const ends = `SELECT count(*) FROM plantcast.newest WHERE t > to_timestamp(${to})`;
     await until('the lines are that long there', () => Number(server.ask(ends)[0][0]) === TAGS.length);
     const url = (to) => `http://127.0.0.1:${plant.port}/api/v1/history?tags=${TAGS}&from=${from / 1e6}&to=${to}&points=20000`;
@@ -378,7 +378,7 @@ test('a machine that is replaced gets the past of its plant, and goes on with it
     await assertSame(from);
 });
 
-// The extension is not in Debian: the test shows only that and how it is used.
+// The extension is not in Debian: the test shows only that, and how it is used.
 test('a database with TimescaleDB: the points are a hypertable of weeks', options, async () => {
     configure();
     server.ask(`SET allow_system_table_mods = on; INSERT INTO pg_extension(oid, extname, extowner, extnamespace, extrelocatable, extversion)

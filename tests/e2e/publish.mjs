@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readings and alarms published to Debian's mosquitto, and from there into another Plantcast.
+// Readings and alarms are published to Debian's mosquitto, and from there reach another Plantcast.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

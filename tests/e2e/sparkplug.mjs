@@ -159,7 +159,7 @@ test('a lost message leaves no value Good; the node is asked for its birth only 
         await plant.daemon.stop();
         const closed = new Promise((done) => node.client.once('close', done));
         node.stop();
-        await closed; // the death certificate of this node must not come after the birth of the next
+        await closed; // this node's death certificate must not arrive after the next node's birth
     }
 });
 
@@ -205,7 +205,7 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.from([0xff, 0xff, 0xff, 0xff, 0x0f, 1, 2, 3]));
     await plant.daemon.line(/NDATA\/edge: a message of 8 bytes was refused: not a Sparkplug B payload/);
     await stranger.tell(`spBv1.0/U100/DDATA/edge/${'x'.repeat(65000)}`, encode({ metrics: [] }));
-    await refused(2); // the log has at most one line a minute about refused messages
+    await refused(2); // the log has at most one line per minute about refused messages
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.alloc(5 << 20)).catch(() => {});
     await stranger.leave();
     node.bear();

@@ -146,7 +146,7 @@ function isOfRest(points, us, value, quality) {
     return [all[next - 1], all[next]].every((one) => one && one[1] === value && one[2] === quality);
 }
 
-const FEW = 50; // points that may wait to be sent: there are always new ones
+const FEW = 50; // limit on points waiting to be sent: there are always new ones
 
 // Only make test-long runs this test, because two cores, a device and a database each run at their own pace. historian_test
 // covers points that arise from the passing of time alone.
@@ -231,7 +231,7 @@ test('a standby that is loading its plant takes over as fast', options, async (t
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
     assert.doesNotMatch(other.program.said, /reload:/);
     renameSync(`${list}.kept`, list);
-    writeFileSync(`${list}.fifo`, ''); // lets the waiting reload continue and find that the list is no regular file
+    writeFileSync(`${list}.fifo`, ''); // lets the waiting reload continue, which then finds that the list is not a regular file
     await other.program.line(/reload:/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);

@@ -82,7 +82,7 @@ for (const reloads of [false, true])
                     return;
                 await until('acknowledged at the leader', async () => (await alarm(core.node)).state === 'acknowledged');
                 core.program.child.kill('SIGHUP');
-                // Without the database, the leader ends if reloading takes longer than its lease.
+                // Without the database, the leader ends if a reload takes longer than its lease.
                 await Promise.race([core.program.line(/reload: configuration/), core.program.ended]).catch(() => core.program.ended);
             });
             const isConfirmed = confirms() > 1, { state } = await alarm(other.node);

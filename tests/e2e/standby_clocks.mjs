@@ -32,7 +32,7 @@ const sent = () => server.ask(`SELECT (extract(epoch FROM s.t) * 1000000)::bigin
     JOIN plantcast.tag g ON g.id = s.tag WHERE g.name = 'TI-2' AND s.q = 0 AND s.v IS NOT NULL ORDER BY s.t`)
     .map(([us, value]) => [Number(us), Number(value)]);
 
-// Changes TI-2 twenty times, each time once the leader has read it.
+// Changes TI-2 twenty times, each time after the leader has read the previous value.
 async function move(two, leader) {
     for (let i = 0; i < 20; i++) {
         const value = 20 + i % 7;
@@ -41,7 +41,7 @@ async function move(two, leader) {
     }
 }
 
-// Allows late answers of the device on a busy machine: otherwise the journal would list Bad readings.
+// Allows late answers of the device on a busy machine; otherwise the journal would list Bad readings.
 function allowLateAnswers({ file, plant }) {
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(file, readFileSync(file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000'));
@@ -102,7 +102,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await all('one', () => recorded(one.node), [30, 0]);
             await all('the database', sent, [30, 15]);
             const { rows } = await json(one.node, '/api/v1/alarms/journal?tag=TI-1');
-            // BAD comes and goes where a busy machine delays readings by more than `Stale s`.
+            // BAD comes and goes on a busy machine that delays readings by more than `Stale s`.
             const events = rows.filter(({ kind }) => kind === 'H').map(({ event }) => event);
             assert.ok(events.includes('raise') && new Set(events).size === events.length, `each once: ${events}`);
         } finally {

@@ -53,7 +53,7 @@ async function changes(core) {
     return rows.filter(({ kind }) => kind === 'H').map(({ time_us, event, state }) => `${time_us} ${event} ${state}`).sort();
 }
 
-// Measures the longest time without usable readings at a renderer: { end() } returns milliseconds.
+// Measures the longest time without usable readings at a renderer: { end() } returns it in milliseconds.
 function watch(renderer) {
     let going = true, longest = 0, seen = performance.now();
     const done = (async () => {
@@ -86,7 +86,7 @@ test('each change of an alarm is written once, whoever leads, and the standby le
     const core = await two.leader();
     await two.followed(core);
     await stopFeeding();
-    await two.plant.tell('set TI-1 51'); // not a value of feed(): once read, no change is on its way
+    await two.plant.tell('set TI-1 51'); // a value that feed() does not use: once it is read, no change is under way
     await until('the last value', async () => (await core.node.tags())['TI-1'].value === 51);
     // The journal is written in order: once a later alarm of another tag is in it, so are all changes of TI-1's alarm.
     await two.plant.tell('set TI-2 95');

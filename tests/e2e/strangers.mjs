@@ -85,13 +85,13 @@ test('through a proxy that nobody told of: 403, on every way to listen', { skip 
             for (const Host of args.includes('--host') ? ['localhost', 'plant.example'] : ['localhost'])
                 for (const [path, headers] of [['/api/v1/tags', {}], ['/metrics', bearer(tokens.viewer)], ['/stream', UPGRADE]])
                     assert.equal((await ask(path, { ...headers, Host, [name]: value }, secure)).status, 403, `${what}: ${name} ${path}`);
-        // a client that uses a host name open to others has no rights, either
+        // nor does a client that uses a host name open to others have any rights
         if (args.includes('--host') && !args.includes('--trust-local'))
             assert.ok([401, 403].includes((await ask('/api/v1/tags', { Host: 'plant.example' }, secure)).status), what);
     }
 });
 
-// Tag names appear in what an engineer saves, writes and checks; session numbers must not be guessable.
+// Tag names appear in what an engineer saves, writes and checks. Session numbers must not be guessable.
 test('anyone who looks on is told of no reading, tag or person, and follows nobody by counting', { skip }, async () => {
     await plant.startSim();
     await serve('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--tokens', tokensFile);
@@ -150,7 +150,7 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     assert.doesNotMatch(all, /TI-\d|PI-\d|Kim|engineer-1|8[12]\.\d|20\.5|61\.5/);
     const picture = (headers = {}) => ask('/snapshot.png?width=320&height=200', { Host: 'plant.example', ...headers });
     assert.equal((await picture()).status, 200);
-    // An existing tag's name gets the same answer as an unknown name, wherever a name may appear.
+    // Wherever a name may appear, an existing tag's name gets the same answer as an unknown one.
     const hidden = (text, name) => text.replaceAll(name, 'NAME');
     for (const [i, names] of [['TI-1', 'TI-9'], ['PI-1', 'PI-9']].entries()) {
         const answers = [];
@@ -238,7 +238,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     const engineer = await PlainClient.open(plant.port);
     assert.equal((await engineer.hello({ token: tokens.engineer })).role, 'engineer');
     engineer.close();
-    await plant.daemon.line(/token engineer-1/); // waits for this log line: the earlier ones exist by then, too
+    await plant.daemon.line(/token engineer-1/); // waits for this log line; the earlier ones exist by then
     assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, the token is unknown \(\d/g).length, 6);
     assert.equal(lines(/by HTTP: token operator-1, role operator: refused, the token has expired/g).length, 1);
     assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);
@@ -307,7 +307,7 @@ test(ENDING, { skip, timeout: 200000 }, async () => {
 
 test('over TLS, too; a connection that has asked for nothing yet stays open', { skip, timeout: 200000 }, async () => {
     await serve(...tls, '--limit', 'patience=60');
-    // twice the 2 s after which an incomplete request head is ended
+    // twice the 2 s after which the server ends an incomplete request head
     const head = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n', idleMs = 4000;
     const [stuck, idle] = await Promise.all([speak(`${head}Acc: 1\r\n\r\n`, true), speak(`${head}\r\n`, true, idleMs)]);
     assert.match(stuck, /^HTTP\/1\.[01] 408 /);

@@ -70,7 +70,7 @@ test('the picture itself', { skip }, () => {
     assert.ok(share > 0.9 && held > 0.97 && error < 0.4 && width < 6);
 });
 
-for (const quality of [3, 8]) { // ffmpeg's quality scale: these are about 90 and 70 in other programs
+for (const quality of [3, 8]) { // in ffmpeg's quality scale, these are about 90 and 70 of other programs
     test(`JPEG, ${quality}`, { skip }, () => {
         ffmpeg('whole.png', 'whole.jpg', '-q:v', String(quality));
         const { read: share, held, error, width } = judge('whole.jpg');

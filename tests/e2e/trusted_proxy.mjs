@@ -15,7 +15,7 @@ import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { notBuilt } from './support/tiny_plant.mjs';
 
-// The daemons see connections from this address as from another machine, because it is no loopback address.
+// The daemons treat connections from this address as coming from another machine, because it is not a loopback address.
 const HOST = Object.values(networkInterfaces()).flat().find(({ family, internal }) => family === 'IPv4' && !internal)?.address;
 const options = { timeout: 200000, skip: notBuilt() || (missingHaproxy() ?? (HOST ? false : 'no network interface but loopback')) };
 const SESSIONS = 80, CLIENTS = 20, WRONG = 'x'.repeat(43);
@@ -26,7 +26,7 @@ const served = (name) => ['--listen', '0.0.0.0', '--tls-cert', path('cert.pem'),
     '--audit', path(`${name}.audit`)];
 // Returns the complete lines of a daemon's audit trail.
 const audited = (name) => linesOf(path(`${name}.audit`)).map((line) => JSON.parse(line));
-// The trail is written by another thread: waits for a line. Returns the first one.
+// The trail is written by another thread, so this waits for a matching line. Returns the first one.
 const recorded = (name, is) => until(`a line in the trail of ${name}`, () => audited(name).find(is));
 const isRefused = ({ event, result, from }) => event === 'login' && result === 'refused' && from;
 const bearer = (token, more = '') => `Authorization: Bearer ${token}\r\n${more}`;

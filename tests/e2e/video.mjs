@@ -43,7 +43,7 @@ class Reader {
         this.frames = [];
         this.said = '';
         let rest = Buffer.alloc(0);
-        // video filter that takes the pixel in the middle of each block
+        // video filter that extracts the pixel in the middle of each block
         const row = `format=gray,crop=iw:1:0:ih-3,scale=${BLOCKS}:1:flags=neighbor`;
         this.child = spawn('ffmpeg', ['-v', 'error', '-fflags', 'nobuffer', ...args, '-i', url, '-vf', row, '-fps_mode', 'passthrough',
             '-f', 'rawvideo', 'pipe:1'], { stdio: ['ignore', 'pipe', 'pipe'] });
@@ -156,7 +156,7 @@ test('a server that dies or hangs: a card within 3 s, and pictures again by them
         const port = plant.port, begun = Date.now();
         plant.daemon.child.kill(signal);
         const { at } = await reader.until(({ card }) => card);
-        // limit: 3 s, and the reader's own buffers on a loaded machine
+        // limit: 3 s, plus the reader's own buffers on a loaded machine
         promise(t, `${signal}: to the card on the reader's screen`, at - begun, 3400);
         if (signal === 'SIGSTOP') {
             plant.daemon.child.kill('SIGCONT');
@@ -208,7 +208,7 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     const begun = Date.now();
     assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'video']).code, 0);
     const { at } = await reader.until(({ card }) => card);
-    promise(t, 'to the card', at - begun, 5400); // limit: 3 s for the server's message, 1 s to the next picture, and the reader's buffers
+    promise(t, 'to the card', at - begun, 5400); // limit: 3 s for the server's message, 1 s to the next picture, plus the reader's buffers
     assert.match(program.said, /rejects this token/);
     await reader.stop();
     await program.stop();

@@ -69,7 +69,7 @@ test('each pane shows what it is for', options, async () => {
         const { clientWidth, clientHeight } = document.querySelector('.pane.views iframe').contentDocument.getElementById('viewport');
         return clientWidth > 400 && clientHeight > 300;
     });
-    await page.waitForFunction(() => { // waits for a picture from the home camera with the pane's final shape
+    await page.waitForFunction(() => { // waits for a picture from the home camera in the pane's final shape
         const { session } = document.querySelector('.pane.views iframe').contentWindow.plantcast, { width, height } = session.size;
         const { eye } = session.homeIn(width, height);
         return session.picture?.camera.eye.every((m, i) => Math.abs(m - eye[i]) < 0.01);
@@ -123,7 +123,7 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
     await shoot(page, 'wall-display-alarm');
     await plant.ask('set TI-1 95');
     await plant.ask('set TI-2 95');
-    await page.waitForFunction(() => { // alarms without room for their long rows have short ones, and the others are counted
+    await page.waitForFunction(() => { // alarms that lack room for long rows get short ones, and the rest are counted
         const { alarms } = globalThis.wall.session.model, rows = [...document.querySelectorAll('.pane.alarms li.brief')];
         const more = document.querySelector('.pane.alarms .more'), count = more.hidden ? 0 : Number(/\d+/.exec(more.textContent)[0]);
         return alarms.list().length >= 3 && rows.length > 0 && rows.length + count === alarms.list().length &&
@@ -141,7 +141,7 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
 });
 
 test('another display has its own panes', options, async () => {
-    let answer; // holds back the module of trends, so that the pane stays without a trend for a while
+    let answer; // holds back the module for trends, so that the pane has no trend for a while
     const held = new Promise((done) => { answer = done; });
     const arrange = (one) => one.route(/app\/trends\/trends\.js/, async (route) => { await held; await route.continue(); });
     const other = await openPage(`${plant.url}?wall=room&display=2&lang=ko`, { viewport: { width: 960, height: 540 } }, null, arrange);
@@ -207,7 +207,7 @@ test('a heading names the view in the picture, not one that is still loading', o
     await slow.close();
 });
 
-// The page must show no other picture instead: people would take it for the requested view.
+// The page must not show another picture instead: people would take it for the requested view.
 test('a view that names what the plant does not have is not shown, and said', options, async () => {
     const { list } = await (await fetch(new URL('api/v1/views', plant.url))).json();
     const wrong = Object.fromEntries(list.map(({ id, wrong: why }) => [id, why]));

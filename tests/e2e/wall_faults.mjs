@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that is a tile and whose clock is 5 s ahead.
+// A display that is a tile of a wall and whose clock is 5 s ahead.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

@@ -143,7 +143,7 @@ test('what a server does instead of sending its picture is said', options, async
         const settled = list.every(({ id, why, picture: number }) => why === EXPECTED[id] && (number > 0) === (EXPECTED[id] === ''));
         return settled || (options.last = JSON.stringify(list), false);
     }, 'each', 60000).catch((error) => assert.fail(`${error.message}\n${options.last}`));
-    // The server requests the picture every 2 s: asked again where another one has come meanwhile.
+    // The server requests the picture every 2 s; repeated if another one has arrived meanwhile.
     const [good, shown] = await until(async () => {
         const state = await stateOf('good'), answer = await get(`api/v1/other_plants/picture?id=good&picture=${state.picture}`);
         return answer.status === 200 && [state, answer.body];
@@ -169,7 +169,7 @@ test('a paired display asks for what it shows, and for nothing else', options, a
 test('its picture, its name and the age of its readings; a server that is gone and since when; and back', options, async (t) => {
     const screen = { viewport: { width: SIZE[0], height: SIZE[1] } };
     const { page, close, errors } = await openPage(`http://127.0.0.1:${plant.port}/wall.html?wall=room`, screen,
-        // only in the top window, because frames in the page are sandboxed
+        // only in the top window, because frames within the page are sandboxed
         `top === window && sessionStorage.setItem('plantcast.token', '${tokens.display}')`);
     const image = page.locator('.pane.snapshot img').first(), card = page.locator('.pane.snapshot .gone').first();
     const title = page.locator('.pane.snapshot h2').first();

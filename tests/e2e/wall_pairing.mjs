@@ -148,7 +148,7 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     await wall.page.locator('.pane.alarms').waitFor();
 });
 
-// Opens a client of that display; pairs: the desk approves its digits first.
+// Connects a client of that display; pairs: the desk first approves its digits.
 async function displayClient(display, secret, pairs) {
     if (pairs) {
         const { digits } = await (await get(`api/v1/pair?wall=room&display=${display}`, `Pairing ${secret}`)).json();
@@ -205,9 +205,9 @@ test('its secret reads nothing but its display, before it has said a word', opti
         assert.match((await tiles.text('error')).text, /this token belongs to display 2 of wall room/, message.type);
     }
     await pictures.hello({ width: 640, height: 480 });
-    // all tags, because an alarm may move the camera to any place of the plant
+    // all tags, because an alarm may move the camera to any part of the plant
     assert.equal((await pictures.text('tags', 20000)).values.length, 3);
-    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // the display uses picks to find a side from which that place is visible
+    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // the display uses picks to find a side from which that point is visible
     assert.equal((await pictures.text('picked', 20000)).seq, 1);
     assert.deepEqual((await pictures.text('views', 20000)).list.map(({ id: view }) => view), ['whole']);
     pictures.close();
@@ -222,7 +222,7 @@ test('its secret reads nothing but its display, before it has said a word', opti
     await reload(PICTURE, TILES);
 });
 
-// Opens the page of a display, with a secret or token stored before.
+// Opens the page of a display that has stored a secret or token before.
 async function wallPage(display, key, token) {
     const screen = await openPage(`${plant.url}healthz`, { viewport: { width: 1280, height: 720 } });
     await screen.page.evaluate(([name, text]) => localStorage.setItem(name, text), [key, token]);
@@ -262,7 +262,7 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
         await page.evaluate(([messages, of]) => messages.forEach((message) => globalThis[of].session.post(message)), [asked, name]);
     };
     await post(wall.page, 'wall');
-    // three were refused: a note, a view that is sent, and a pointer
+    // three were refused: a note, a view sent to the wall, and a pointer
     await recorded(/refused.*room\.1\.1.*to write or remove notes: this needs the role operator/);
     await recorded(/(refused.*room\.1\.1.*to send views or a pointer to a wall: this needs the role operator[^]*){2}/);
     await post(desk.page, 'plantcast');

@@ -110,7 +110,7 @@ for (const wall of ['overview', 'six']) {
     }
 }
 
-// The browsers' windows represent screens next to each other, with bezels in between.
+// The browsers' windows represent adjacent screens with bezels in between.
 for (const size of SIZES) {
     test(`tiles at ${size.join('x')}`, more, async () => {
         const each = [size[0] / COLUMNS, size[1] / ROWS];

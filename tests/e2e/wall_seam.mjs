@@ -36,7 +36,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Returns the whole picture as one client of that size gets it: { width, at(x, y) }.
+// Returns the whole picture as a single client of that size gets it: { width, at(x, y) }.
 async function wholePicture() {
     const client = await PlainClient.open(plant.port), width = 2 * WIDTH + 2 * MARGIN, height = HEIGHT + 2 * MARGIN;
     await client.hello({ width, height, codecs: ['png'] });
@@ -49,7 +49,7 @@ async function wholePicture() {
 }
 
 const pictureOf = ({ width, height, rgb }) => ({ width, height, at: (x, y) => [0, 1, 2].map((i) => rgb[3 * (y * width + x) + i]) });
-// colours may differ a little, because pictures are sent as JPEG or H.264
+// colours may differ slightly, because pictures are sent as JPEG or H.264
 const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) < 40);
 
 // Returns the smallest share of pixels on two displays that equal the large picture: along the seam, at the lower edge between
@@ -75,7 +75,7 @@ function agreement(screens, large, [x0, y0]) {
     return Math.min(...Object.values(parts).map(([same, all]) => same / all));
 }
 
-// Waits for refined pictures; a burn-in shift, every 3 minutes, is waited for.
+// Waits for refined pictures and, if one is due, for the burn-in shift that happens every 3 minutes.
 async function expectOnePicture(grab, name) {
     const large = await wholePicture();
     let share = 0, screens;

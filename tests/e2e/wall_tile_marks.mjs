@@ -26,7 +26,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     plant.addAlarms();
-    // prevents stale and Bad readings, so that there is no other alarm, however busy the machine is
+    // prevents stale and Bad readings, so that no other alarm is raised on a busy machine
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',600,90'));
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000') + WALLS);
@@ -85,7 +85,7 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
         const { top, bottom } = legend.getBoundingClientRect();
         return [top < 0, bottom > innerHeight + 4, legend.scrollHeight > legend.clientHeight + 1];
     });
-    assert.deepEqual(cut, [false, false, false]); // nothing is cut off, although burn-in shifts move all displays by up to 3 pixels
+    assert.deepEqual(cut, [false, false, false]); // nothing is cut off, although the burn-in shift moves all displays by up to 3 pixels
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-marks-${i + 1}`);
     said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H']], name: 'kim' });

@@ -116,7 +116,7 @@ async function whole(width, height, still) {
     return canvas;
 }
 
-// The burn-in shift moves all tiles within the large picture, by the clock.
+// The burn-in shift moves all tiles within the large picture; it depends only on the clock.
 const MARGIN = 3, shiftNow = () => burnShift(Date.now() * 1000), margins = (size) => size + 2 * MARGIN;
 
 // Returns the shift of newly started pictures; waits if one with the previous shift may still be under way.
@@ -126,7 +126,7 @@ async function shiftHeld() {
     return shiftNow();
 }
 
-// Compares while readings and shift stand still. Smaller previews of a loaded machine are not compared.
+// Compares while readings and shift stand still, and only full-size pictures, not the smaller previews of a loaded machine.
 async function compare(wall, columns, rows, [across, down]) {
     const width = columns * WIDTH + (columns - 1) * across, height = rows * HEIGHT + (rows - 1) * down;
     for (const still of [false, true]) {
@@ -154,7 +154,7 @@ async function compare(wall, columns, rows, [across, down]) {
     return undefined;
 }
 
-// Once a preview differed while other programs ran, so only make test-long runs this case.
+// A preview once differed while other programs ran, so only make test-long runs this case.
 test('six tiles are the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
     () => compare('seamless', 3, 2, [0, 0]));
 test('behind bezels the picture goes on', options, async () => {

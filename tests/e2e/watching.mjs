@@ -27,7 +27,7 @@ test('every rule is one to promtool, fires when it should, and has its place in 
     assert.deepEqual([...runbook.matchAll(/^## (\w+)$/gm)].map(([, name]) => name), alerts);
 });
 
-// Metrics that are empty for a plant of one daemon without notifications, certificate, backup and clients.
+// Metrics that are empty for a plant with one daemon and without notifications, certificate, backup and clients.
 const EMPTY = /plantcast_core|plantcast_renderers|notify|certificate|backup|histogram_quantile|\[1d|predict_linear/;
 
 test('Prometheus reads a daemon, takes the rules, and every panel asks for what there is',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Accessibility: axe-core finds nothing on any panel, and the keyboard reaches everything with a visible focus.
+// Accessibility: axe-core finds nothing on any panel, and the keyboard reaches every control with a visible focus.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -41,7 +41,7 @@ after(async () => {
     await browser?.close();
 });
 
-// Returns axe-core's findings. within: check only elements that match; null: the whole page.
+// Returns axe-core's findings. within: checks only matching elements; null: the whole page.
 async function findings(on, rules = RULES, within = null) {
     if (!await on.evaluate(() => globalThis.axe !== undefined))
         await on.evaluate(readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
@@ -174,7 +174,7 @@ for (const [row, theme] of Object.keys(THEMES).entries()) {
     });
 }
 
-// Parts of the page that keys open: [key, part, further button to press in it].
+// Parts of the page that a key opens: [key, part, further button to press in it].
 const OPENED = [['e', '#alarms'], ['e', '#alarms', '#journal-tab'], ['v', '#views'], ['p', '#picture-panel'], ['y', '#timeline'],
     ['b', '#assets'], ['k', '#share'], ['?', '#help']];
 test('on a phone every control, table and dialog is announced by its name; alarms are in a live region', options, async () => {
@@ -244,7 +244,7 @@ test('a dialog keeps the focus within, lets go of it by Escape, and gives it bac
     await shoot(page, 'focus-help');
     for (let n = 0; n < 4; n++) {
         const where = await page.evaluate(() => document.activeElement.closest('dialog, body').id || document.activeElement.tagName);
-        // between the last and the first element the focus is in the browser's own interface
+        // between the last and the first element, the focus is in the browser's own interface
         assert.ok(['help', 'BODY'].includes(where), where);
         await page.keyboard.press('Tab');
     }

@@ -20,7 +20,7 @@ const SCREENS = {
     phone: PHONE,
     'phone across': { ...PHONE, viewport: { width: 844, height: 390 } },
 };
-// Screens on which all panels are opened: by default only those with little room.
+// Screens on which all panels are opened; by default only those with little room.
 const WALKED = sweep(Object.keys(SCREENS), ['tablet upright', 'phone across']);
 let url;
 
@@ -60,7 +60,7 @@ const amiss = (page) => page.evaluate(() => {
     return found;
 });
 
-// Returns the faults of a tag's marker, which must be in the picture with nothing in front.
+// Returns the faults of a tag's marker, which must lie in the picture with nothing in front of it.
 const inSight = (page, name) => page.evaluate((tag) => {
     const { overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(tag));
     if (!marker)
@@ -104,7 +104,7 @@ for (const name of WALKED) {
             await press('#engineer-toggle');
             await page.locator('#engineer').waitFor();
             await page.locator('#alarms').waitFor({ state: 'hidden' }); // one of both is open
-            if (listed) { // switching between alarms and the engineer's panel and back must also work
+            if (listed) { // switching from alarms to the engineer's panel and back must also work
                 await press('#alarm-strip');
                 await page.locator('#engineer').waitFor({ state: 'hidden' });
                 await press('#engineer-toggle');
@@ -196,7 +196,7 @@ test('what says that the picture is old lies over no legend', options, async () 
                 const [a, b] = ['banner', 'legend'].map((id) => document.getElementById(id).getBoundingClientRect());
                 return b.width === 0 || a.bottom <= b.top || a.right <= b.left;
             }).catch(() => assert.fail(name));
-            if (name !== 'phone across') // the phone's screen has no room for both texts, so one is cut off
+            if (name !== 'phone across') // the phone's screen has no room for both texts, so one of them is cut off there
                 await becomes(() => amiss(page), [], name);
             await shoot(page, `old-${name.replace(' ', '-')}`);
         } finally {
@@ -332,7 +332,7 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
             await press('y');
             await call('showTrend');
             await page.locator('#trend-chart canvas').waitFor();
-            await page.waitForFunction(() => { // the chart is above the time bar, whole, and has room for its curve
+            await page.waitForFunction(() => { // the chart lies above the time bar, complete and with room for its curve
                 const box = (of) => document.querySelector(of).getBoundingClientRect(), chart = box('#trend-chart canvas');
                 return box('#trend-chart .u-over').height >= 40 && box('#timeline').height > 0 && chart.bottom <= box('#timeline').top + 1;
             });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page in its languages: all texts come from the word files, and none is cut off.
+// The page in its languages: all texts come from the word files, and no text is cut off.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';

@@ -60,9 +60,9 @@ const tooSmall = (page) => page.evaluate(() => [...document.querySelectorAll(
     .filter(({ box }) => box.height < 43.5 || box.width < 43.5)
     .map(({ what, box }) => `${what}: ${box.width}x${box.height}`));
 
-// Returns parts of the page that leave the screen, and texts that leave their button.
+// Returns parts of the page that extend beyond the screen, and texts that extend beyond their button.
 const sticksOut = (page) => page.evaluate(() => [
-    // The row of quantities may stick out, because it can be dragged.
+    // The row of quantities may extend beyond the screen, because it can be dragged.
     ...[...document.querySelectorAll('header, header *:not(#groups .row *), main, footer, .legend, .card, .assets')].filter((e) => {
         const box = e.getBoundingClientRect();
         return box.width > 0 && (box.right > window.innerWidth + 0.5 || box.left < -0.5 || box.bottom > window.innerHeight + 0.5);
@@ -90,7 +90,7 @@ test('tablet: one finger turns, two pan and zoom', options, () => withPage(TABLE
     await settle(page);
     let tries = 0;
     await until('home again', async () => {
-        if (tries++ % 60 === 0) // chromium may take a tap right after three fingers for the end of their gesture
+        if (tries++ % 60 === 0) // Chromium may take a tap right after a three-finger gesture for the end of that gesture
             await page.locator('#home').tap();
         return isHome(await view(page));
     });
@@ -443,7 +443,7 @@ test('phone: pinch, twist and two fingers that pan', options, () => withPage(PHO
     assert.notDeepEqual(panned.camera.target, twisted.camera.target);
 }));
 
-// [width, height]: a phone upright, one on its side, a small one, a folded one.
+// [width, height] of a phone held upright, one held sideways, a small one, and a folded one.
 const HELD = [[390, 844], [844, 390], [360, 740], [280, 653]];
 
 test('phones: name and state are read, nothing is cut off, all is as large as a finger', options, () => withPage(PHONE, async (page) => {
@@ -455,7 +455,7 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
         const words = await page.evaluate(() => ['plant-name', 'health'].map((id) => document.getElementById(id))
             .filter((e) => e.clientWidth < 30 || e.scrollWidth > e.clientWidth + 1).map((e) => e.id));
         assert.deepEqual(words, [], name);
-        const isOver = await page.evaluate(() => { // a long state of the plant does not lie over the words of the alarm strip
+        const isOver = await page.evaluate(() => { // the plant's state, even if long, does not cover the words of the alarm strip
             const state = document.querySelector('#health .words'), { textContent } = state;
             state.textContent = 'Keine Verbindung zum Server';
             const strip = document.getElementById('alarm-strip'), [a, b] = [strip, document.querySelector('.identity')]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarms in the browser: counted and marked in every view, listed, acknowledged, shelved, flown to.
+// Alarms in the browser: counted and marked in every view, listed, acknowledged, shelved, and reached by a flight.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -406,7 +406,7 @@ test('the moment before an alarm: half a minute earlier, there, and the alarm is
     const row = page.locator('#alarms-list tr').first(), name = await row.locator('td[data-col=tag]').textContent();
     const raisedUs = await page.evaluate((of) =>
         globalThis.plantcast.session.model.alarms.list().find(({ tag }) => tag.name === of).raisedUs, name);
-    // history of an instant is complete after 3 s; until then the server shows an earlier one
+    // the history of an instant is complete only after 3 s; until then the server shows an earlier one
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 4e6, raisedUs);
     await row.locator('.moment-go').click();
     await page.waitForFunction(() => globalThis.plantcast.session.time.atUs !== null);

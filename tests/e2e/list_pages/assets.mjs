@@ -158,7 +158,7 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     const middle = (list, part = 0.5) => list[Math.floor(list.length * part)];
     t.diagnostic(`pictures every ${middle(frames).toFixed(1)} ms (95 %: ${middle(frames, 0.95).toFixed(1)}), of which the list takes ` +
         `${middle(work).toFixed(2)} ms (95 %: ${middle(work, 0.95).toFixed(2)}); ${rows} rows in the page`);
-    // 20 % quantile: in slower frames the page waited for the processor
+    // 20 % quantile: in slower frames the page was waiting for the processor
     assert.ok(middle(work, 0.2) < 16, `more than a picture has: ${middle(work, 0.2)} ms`);
     assert.ok(rows < 80, `${rows} rows`);
     await shoot(page, 'assets-20000');
@@ -182,7 +182,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         const { assets, session, modules, selectTag, showTrend } = globalThis.plantcast, { root } = assets.list;
         const search = document.getElementById('assets-search');
         const press = (key) => document.getElementById('viewport').dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
-        // Every panel that opens and closes, trends of some tags and their cards.
+        // Opens and closes every panel, trends of some tags, and their cards.
         const panels = ['e', 'v', 'p', 'm', 'b', 'b', 'm', 'p', 'v', 'e'];
         for (let n = 0, end = performance.now() + long; performance.now() < end || n < each * panels.length; n++) {
             if (n % each === 0) {
@@ -204,7 +204,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
     }, [ms, EACH]);
     await use(sweep(3000, 500)); // first use, which creates everything that is created only once
     let before = await heap(), after;
-    // A busy machine creates part of that later. A leak grows every time.
+    // A busy machine may create some objects only later; a real leak grows each time.
     for (let times = 0; times < 4 && !(after && isSteady(before, after)); times++) {
         before = after ?? before;
         await use(USE_S * 1000);

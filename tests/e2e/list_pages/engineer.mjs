@@ -102,7 +102,7 @@ test('gaps are told', options, async () => {
     await shoot(page, 'engineer-gaps');
 });
 
-// Pictures of a past instant: only the loop checks make a difference.
+// Pictures of a past instant, which differ only by the loop checks.
 let instant, plain;
 const snapshot = async () => {
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=640&height=400&look=flat&at=${instant}`);
@@ -130,7 +130,7 @@ test('the list is saved: what changes is shown, then the list is active', option
     await ready(page);
     instant = new Date().toISOString();
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 3e6, Date.now() * 1000);
-    plain = await until('equal pictures', async () => { // history of an instant may be complete later than that on a busy machine
+    plain = await until('equal pictures', async () => { // the history of an instant may take longer to be complete on a busy machine
         const one = await snapshot();
         return one.equals(await snapshot()) && one;
     });
@@ -204,7 +204,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     const tablet = await openPage(`http://127.0.0.1:${plant.port}/`, TABLET), on = tablet.page;
     await ready(on);
     await on.locator('#engineer-toggle').tap();
-    // the camera would fly to a tag that is not in sight
+    // the camera would fly to a tag that is not visible
     await on.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag, occluded }) => tag.name === 'TI-1' && !occluded));
     await on.locator('#engineer .tags button', { hasText: 'TI-1' }).tap();
     await look(on, [2.6, -2.2, 1.6]);

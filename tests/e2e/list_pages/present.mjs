@@ -17,7 +17,7 @@ before(async () => {
     if (options.skip)
         return;
     plant = await TinyPlant.create();
-    // on a busy machine answers may take longer than the device is given, which raises an alarm
+    // on a busy machine, answers may exceed the device's timeout, which would raise an alarm
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 2000'));
     appendFileSync(plant.file, `alarms: local
 views:

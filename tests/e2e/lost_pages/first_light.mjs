@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A value from a PLC's register appears in a browser's pixels; and recovery after the daemon died.
+// A value in a PLC's register appears in a browser's pixels; and recovery after the daemon died.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { isDeepStrictEqual } from 'node:util';
@@ -30,7 +30,7 @@ after(async () => {
     await plant?.stop();
 });
 
-// Returns the asset's bounding box in the picture, with a margin for blurred encoded edges.
+// Returns the asset's bounding box in the picture, with a margin because encoding blurs edges.
 const assetBox = (id) => page.evaluate(async (asset) => {
     const { projector } = await import('/core/camera.js');
     const { session } = globalThis.plantcast;
@@ -133,7 +133,7 @@ const waitForMeasured = (count) => page.waitForFunction((least) =>
     globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count);
 
 test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
-    // probes codecs now; otherwise the page does so at some later picture
+    // probes codecs now; otherwise the page would do so at some later picture
     await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs());
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
     await settle(page, QUIET_MS);

@@ -28,7 +28,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Starts nginx with the plant under /plantcast/; more: further lines of that location.
+// Starts nginx with the plant under /plantcast/; more: further lines for that location.
 async function startNginx(port, more, host = '$http_host') {
     const path = (name) => join(plant.folder, name);
     const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((name) => `${name}_temp_path ${path(name)};`).join('\n');
@@ -81,7 +81,7 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
         }
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${plant.port}/`]).code, 0);
         await stop();
-        // the proxy passes the handshake on with a host name that is not the page's
+        // the proxy passes the handshake on with a host name other than the page's
         stop = await startNginx(port, PASSES, `127.0.0.1:${plant.port}`);
         await shown(desk.page, /his origin is not allowed/);
         await stop();
@@ -145,7 +145,7 @@ for (const [name, answer, headers, words] of OTHERS)
 test('ready fails where /stream does, over http:// and https://, and names the proxy that keeps WebSockets out', options, async () => {
     makeCertificate(plant.folder);
     const secure = { key: readFileSync(join(plant.folder, 'mail.key')), cert: readFileSync(join(plant.folder, 'mail.pem')) };
-    const ready = async (proxy) => { // run as a child process, because the proxy runs in this one
+    const ready = async (proxy) => { // runs as a child process, because the proxy runs in this one
         const program = new Program('plantcast', ['ready', proxy.url, '--ca', join(plant.folder, 'mail.pem')]);
         const code = await new Promise((done) => program.child.once('close', done));
         return { code, err: program.said };

@@ -58,7 +58,7 @@ const letters = (page) => page.evaluate(() => {
     return found;
 });
 
-// Height of a capital letter (0.72 of the font size) in minutes of arc for the viewer.
+// Returns the height of a capital letter (0.72 of the font size) in minutes of arc, as the viewer sees it.
 function letterMinutes(px, { inches, metres }, screen) {
     const millimetres = (0.72 * px * inches * 25.4) / Math.hypot(screen.width, screen.height);
     return (Math.atan2(millimetres, metres * 1000) * 180 * 60) / Math.PI;
@@ -159,7 +159,7 @@ test('a tablet whose date is wrong tells ages and the plant\'s time all the same
         };
     }));
 
-// Returns colours of the picture on the screen at the points of a grid.
+// Returns the colours of the picture on the screen at the points of a grid.
 const samples = (page) => page.evaluate(() => {
     const canvas = document.getElementById('picture'), c = canvas.getContext('2d');
     return [...Array(64).keys()].map((n) => [...c.getImageData(Math.floor(((n % 8) + 0.5) * canvas.width / 8),
@@ -204,7 +204,7 @@ test('legend and markers are of the picture that is seen, however late the one c
     const relay = await Relay.open(plant.port, { bytesPerS: 1e8, delayMs: 0 });
     await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
-        await page.evaluate(() => { // another camera than at home, which the page would fit to the shape of the halves
+        await page.evaluate(() => { // a camera other than home, which the page would fit to the shape of the halves
             const { session } = globalThis.plantcast, { camera } = session;
             session.setCamera({ ...camera, eye: camera.eye.map((m) => 1.1 * m) });
         });

@@ -23,7 +23,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Records when a picture was first on the screen, in milliseconds since the page was requested.
+// Records when a picture was first on the screen, in milliseconds after the page was requested.
 const watchFirst = () => {
     new MutationObserver((_, observer) => {
         if (!document.getElementById('waiting')?.hidden)
@@ -123,7 +123,7 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
                 await page.locator(opened).waitFor();
                 await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page still works
             }
-        }, (page) => all === words && away(page, all[0][1])); // block the file before the page opens, because an alarm's ring loads it
+        }, (page) => all === words && away(page, all[0][1])); // blocks the file before the page opens, because an alarm ring loads it
 });
 
 test('no part says anything before the words of parts are there', options, () => {

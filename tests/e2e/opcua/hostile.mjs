@@ -148,7 +148,7 @@ test('a server whose clock is before its certificate is read, and said; a certif
     await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
     assert.equal((await server.tell({})).sessions, 0);
     await plant.daemon.stop();
-    await server.restart({ ahead_s: -3600, certificate: 'today' }); // the certificate became valid half an hour ago by the daemon's clock
+    await server.restart({ ahead_s: -3600, certificate: 'today' }); // by the daemon's clock, the certificate became valid half an hour ago
     await plant.run(server.security('', 'us'), ROWS);
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });

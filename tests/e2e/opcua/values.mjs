@@ -50,7 +50,7 @@ test('values, status codes and times come as they are, and nothing is ever writt
         await server.set('TI-1', 42, { status });
         await until('TI-1', { quality_name: name, value: status >= 0x80000000 ? null : 42 });
     }
-    await sleep(Math.max(0, first + 1600 - performance.now())); // wait, because a value older than the tag's last one would be ignored
+    await sleep(Math.max(0, first + 1600 - performance.now())); // waits, because a value older than the tag's last one would be ignored
     await server.set('TI-2', 43, { at: Date.now() - 1500 });
     const old = await until('TI-2', { ...good, value: 43 });
     assert.ok(old.age_ms >= 1500 && old.age_ms < 9000, `${old.age_ms} ms`);

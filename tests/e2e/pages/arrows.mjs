@@ -249,7 +249,7 @@ test('on a phone no choice of Display is cut; legends have units, and nothing th
             assert.equal(found.below, show === 'value' ? 1 : 0, what);
             assert.equal(found.why.length > 20, show !== 'value', what);
             keys ||= found.keys;
-            // without a value there is no uncertainty, so the legend has one key less
+            // without a value there is no uncertainty, so the legend has one key fewer
             assert.equal(found.keys, show === 'value' ? keys : keys - 1, what);
         }
         await shoot(page, `display-phone-${language}`);

@@ -13,7 +13,7 @@ const options = { skip: why, timeout: 200000 };
 const MOST = 3; // largest number of clicks that a task may take
 let plant, browser, page, clicks = 0;
 
-// Records nine hours: a new trend shows the last eight hours only if that much is recorded.
+// Records nine hours: a new trend shows the last eight hours only if that much history exists.
 function remember({ folder, file }) {
     const now = Math.floor(Date.now() / 1000), path = join(folder, 'series.csv'), lines = ['Tag,Time,Value,Quality'];
     for (let s = 9 * 3600; s > 60; s -= 60)

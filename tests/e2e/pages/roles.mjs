@@ -159,7 +159,7 @@ for (const mode of ['display', 'mirror']) {
             await waitForMode(page, mode);
             await page.waitForFunction((words) => document.getElementById('alarm-mode').textContent === words,
                 mode === 'display' ? 'View only: acknowledge in the control system' : 'Mirrored from the control system');
-            if (mode === 'display') // `display` mode has alarms from limits; `mirror` only those of the control system
+            if (mode === 'display') // `display` mode also has alarms from limits, `mirror` only those of the control system
                 await offers(page, [], role);
             await becomes(() => page.locator('#alarms [data-action]').count(), 0, role);
         });

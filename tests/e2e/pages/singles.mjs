@@ -50,7 +50,7 @@ test('paper and distances of a single sensor are refused, until the plant file h
         await ask({ group: 'temperature', interpolation: 'paper' });
         await shown('temperature', 'paper');
 
-        // Refined, the view is shown; unrefined again, viewers return to the former view.
+        // Once refined, the view is shown; without refinement, viewers return to their former view.
         await reload(whole.replace('unit: bar,', 'unit: bar, singles: cut,'));
         assert.equal((await picture('interpolation=paper'))[0], 200);
         assert.equal((await picture('show=distance&sensor=PI-1'))[0], 200);

@@ -8,7 +8,7 @@ import { BIN } from './tiny_plant.mjs';
 
 const TOP = resolve('.'), NEEDED = ['unshare', 'chroot', 'setpriv'];
 
-// Returns why there can be no bare root on this machine, or null.
+// Returns why a bare root is impossible on this machine, or null.
 export function missingBareRoot() {
     if (process.getuid() !== 0)
         return 'a bare root needs root';

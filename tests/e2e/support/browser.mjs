@@ -36,7 +36,7 @@ export const PHONE = { viewport: { width: 390, height: 844 }, ...DENSITY, hasTou
 export const FLYING = { reducedMotion: 'no-preference' };
 const MOTION = sweep(FLYING, { reducedMotion: 'reduce' });
 
-// One browser for all pages of a test program, per set of browser arguments.
+// One browser for all pages of a test program, for each set of browser arguments.
 const browsers = new Map();
 
 export async function browserWith(args) {
@@ -74,7 +74,7 @@ async function profileWith(args, shape) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const whole = { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] };
     const context = await playwright().chromium.launchPersistentContext(folder, whole);
-    process.once('exit', () => { // removed at exit, because a closed browser still writes files for a while
+    process.once('exit', () => { // removed only at exit, because a closed browser still writes files for a while
         try {
             rmSync(folder, { recursive: true, force: true });
         } catch {

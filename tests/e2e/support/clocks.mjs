@@ -8,7 +8,7 @@ export const missingClocks = () => (existsSync(LIBRARY) ? null : 'not built: clo
 
 const variables = (by) => ({ LD_PRELOAD: LIBRARY, ...by, ASAN_OPTIONS: 'verify_asan_link_order=0' });
 const starter = (by) => ['env', ...Object.entries(variables(by)).map(([name, value]) => `${name}=${value}`)];
-// Returns the command prefix that starts a program with its clock that many seconds ahead.
+// Returns the command prefix that starts a program with its clock this many seconds ahead.
 export const withClockOff = (seconds) => starter({ CLOCK_OFF_S: String(seconds) });
 
 // A clock that the test sets while programs use it.

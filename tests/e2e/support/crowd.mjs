@@ -22,7 +22,7 @@ export function openFiles(pid) {
 
 export const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 
-// Returns the named counters and gauges of /metrics, summed over their labels.
+// Returns the named counters and gauges from /metrics, summed over their labels.
 export async function metrics(port, ...names) {
     const text = (await get(port, '/metrics')).body.toString();
     const values = (name) => [...text.matchAll(new RegExp(`^${name}(?:\\{[^}]*\\})? (\\d+)`, 'gm'))].map((m) => Number(m[1]));

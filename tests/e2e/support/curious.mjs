@@ -9,7 +9,7 @@ const PATIENCE_MS = 120000, QUIET_MS = 10000;
 const REFINED_MS = 30000; // maximum wait for a refined picture: a busy machine may for a while show only previews of new readings
 const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
-// Returns a generator of numbers 0 <= x < 1, the same for the same seed (mulberry32).
+// Returns a generator of numbers 0 <= x < 1 that repeats for the same seed (mulberry32).
 export function dice(seed) {
     let a = seed >>> 0;
     return () => {
@@ -78,7 +78,7 @@ export class Curious {
             Math.max(1, target[2] + z * zoom + rise)];
     }
 
-    // Drags; waits for each picture, so that as many are drawn as a person would see.
+    // Drags, and waits for each picture, so that as many are drawn as a person would see.
     async drag(pictures) {
         const turn = this.between(-0.08, 0.08), rise = this.between(-0.4, 0.4);
         for (let n = 0; n < pictures; n++) {

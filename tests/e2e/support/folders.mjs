@@ -10,7 +10,7 @@ export const DATA = fileURLToPath(new URL('../../../../shared/data', import.meta
 
 const make = () => mkdtempSync(join(tmpdir(), 'plantcast-test-')), remove = (folder) => rmSync(folder, { recursive: true, force: true });
 
-// Calls f with a new folder, and removes the folder afterwards. Returns what f returns.
+// Calls f with a new folder and removes the folder afterwards. Returns the result of f.
 export async function inFolder(f) {
     const folder = make();
     try {

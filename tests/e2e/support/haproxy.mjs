@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debian's HAProxy with the configuration that Plantcast ships, except for addresses, TLS and paths.
+// Debian's HAProxy with the configuration shipped with Plantcast, except for addresses, TLS and paths.
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -20,7 +20,7 @@ export function headsetScript() {
 
 const isNear = () => globalThis.plantcast.modules.there('enterVr')?.headset?.isNear;
 
-// Presses the page's button, and waits until the eyes show a picture.
+// Presses the page's button and waits until the eyes show a picture.
 export async function enterVr(page) {
     await page.locator('#enter-vr').click();
     await page.waitForFunction(isNear, null, { polling: 50 });
@@ -105,7 +105,7 @@ export async function seen(page, yaw = null) {
             all.copy(rgba, 4 * y * width, 4 * ((height - 1 - y) * 2 * width + left), 4 * ((height - 1 - y) * 2 * width + left + width));
         let undrawn = 0;
         for (let i = 0; i < rgba.length; i += 4)
-            // one of the two greys that the page draws where no picture reaches
+            // one of the two greys that the page draws where there is no picture
             undrawn += [140, 120].includes(rgba[i]) && rgba[i + 1] === rgba[i] && rgba[i + 2] === rgba[i] ? 1 : 0;
         return { width, rgba, undrawn: undrawn / (width * height) };
     };

@@ -17,7 +17,7 @@ export class IdentityProvider {
         this.delay_ms = 0;      // delay of the token endpoint
         this.codesWait = null;  // a promise: codes are answered that long after it is fulfilled
         this.keysStatus = 200;
-        this.fault = null;      // [status, JSON] of all answers of the token endpoint; null: normal answers
+        this.fault = null;      // [status, JSON] that the token endpoint always answers; null: normal answers
         this.live = new Map();  // valid refresh tokens and their users
         this.codes = new Map();
         this.asked = [];
@@ -42,7 +42,7 @@ export class IdentityProvider {
         return `${text}.${signature}`;
     }
 
-    // Performs a log-in; returns the URL to which the browser is redirected.
+    // Performs a login. Returns the URL to which the browser is redirected.
     login(url) {
         const { searchParams: asked } = new URL(url), code = randomUUID(), back = new URL(asked.get('redirect_uri'));
         this.codes.set(code, { challenge: asked.get('code_challenge'), nonce: asked.get('nonce'),
@@ -108,7 +108,7 @@ export class IdentityProvider {
                 }
                 const [status, json] = this.answer(request.url, new URLSearchParams(body), request.headers.authorization);
                 const say = () => response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
-                response.once('close', () => { // the answer was not delivered: the client that gave up waiting does not have the new token
+                response.once('close', () => { // the answer was not delivered: the client that stopped waiting does not have the new token
                     if (!response.writableFinished)
                         this.live.delete(json.refresh_token);
                 });

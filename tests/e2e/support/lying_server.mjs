@@ -25,7 +25,7 @@ export const LIES = {
 
 const end = (listener, sockets) => new Promise((done) => { sockets.forEach((socket) => socket.destroy()); listener.close(done); });
 
-// Listens on the port; lies: buffers, sent once data has arrived. Returns { stop, seen() }.
+// Listens on the port. lies: buffers, sent once data has arrived. Returns { stop, seen() }.
 export async function tellLies(port, lies) {
     let seen = 0;
     const sockets = new Set();

@@ -45,7 +45,8 @@ function patched(path, at, hex) {
 const TRAK = 'moov/trak', STBL = `${TRAK}/mdia/minf/stbl`, AVC1 = `${STBL}/stsd/avc1`;
 const else_ = (type) => `box ${type} differs`, none = (type) => `unexpected box ${type}`;
 
-// Returns [what, bytes, why] for each alteration. Sample offsets are not adjusted: verification refuses the boxes first.
+// Returns [what, bytes, why] for each alteration. Sample offsets are not adjusted, because verification refuses the boxes
+// first.
 export function alteredFilms(film) {
     const alter = (change) => rewrite(film, change);
     return [

@@ -63,7 +63,7 @@ export class Network {
     }
     tap(port, devicePort) { return this.ask('tap', port, devicePort); }
 
-    // Returns for how many milliseconds two pollers overlapped, per pair; expected: [].
+    // Returns for how many milliseconds two pollers overlapped, for each such pair; expected: [].
     async overlaps() {
         const pollers = await this.ask('pollers'), found = [];
         for (let i = 1; i < pollers.length; i++)
@@ -72,7 +72,7 @@ export class Network {
                     found.push(pollers[k].last - pollers[i].first);
         return found;
     }
-    // Returns the longest time without polling that ended since then, in milliseconds.
+    // Returns the longest pause in polling that ended since then, in milliseconds.
     async longestPause(since) {
         const turns = await this.ask('pollers');
         return Math.max(0, ...turns.slice(1).map(({ first }, i) => (first >= since ? first - turns[i].last : 0)));

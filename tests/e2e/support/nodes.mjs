@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several daemons of one plant on this machine: a core, and renderers that take readings from it.
+// Several daemons of one plant on this machine: a core, and renderers that get readings from it.
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openFiles } from './crowd.mjs';
@@ -22,7 +22,7 @@ function sockets(pid) {
 }
 
 export class Node {
-    // before: command prefix that starts the daemon; it gets the daemon's path and arguments.
+    // before: command prefix that starts the daemon; the daemon's path and arguments are appended.
     constructor(plant, args, file = plant.file, before = []) {
         this.program = new Program('plantcastd', [file, ...args], {}, before);
     }
@@ -94,7 +94,7 @@ export class Nodes {
         return node.ready();
     }
 
-    // Starts the core at a port that stays reserved while the core is away.
+    // Starts the core on a port that stays reserved while the core is down.
     async core(port = 0, ...more) {
         return this.start(['--role', 'core', '--port', String(port || await freePort()), ...more]);
     }

@@ -20,7 +20,7 @@ function missingOpcua() {
     return existsSync(join(HERE, '../node_modules/node-opcua-server')) ? null : 'no node-opcua-server';
 }
 
-// Returns a test's options, with a reason to skip it if it cannot run.
+// Returns a test's options, including a reason to skip it if it cannot run.
 export function opcuaOptions(timeout) {
     const absent = missing();
     return { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout };
@@ -75,7 +75,7 @@ export class OpcuaServer {
             spawnSync('openssl', ['x509', '-in', `${name}.crt`, '-out', `trusted/${name}.pem`], { cwd: this.folder });
     }
 
-    // Resets the server to its state after a start with these settings.
+    // Resets the server to its state after starting with these settings.
     async reset(settings = this.settings ?? {}) {
         if (this.runs && isDeepStrictEqual(settings, this.settings))
             await this.tell({ reset: true });

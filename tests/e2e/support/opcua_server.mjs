@@ -86,7 +86,7 @@ function set({ name, value, status = 0, at }) {
         status ? coerceStatusCode(status) : StatusCodes.Good, at ? new Date(at) : undefined);
 }
 
-// Loses the next notification of any subscription: its sequence number is skipped.
+// Loses the next notification of any subscription by skipping its sequence number.
 function lose() {
     const { prototype } = opcua.Subscription, send = prototype._publish_pending_notifications;
     prototype._publish_pending_notifications = function () {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant with alarms, and a tour of everything on the page that opens.
+// A plant with alarms, and a tour of everything that opens on the page.
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { drawnAt, land } from './browser.mjs';
@@ -46,7 +46,7 @@ export async function everyPanel(page, f) {
     await page.locator('#card').waitFor();
     await f('card');
     await page.mouse.click(at[1].x - 6, at[1].y + 30);
-    // clicks again, because a card or a label appeared meanwhile and covered the place
+    // clicks again, because a card or label may have appeared meanwhile and covered the point
     await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => {
         await page.keyboard.press('Escape');
         await page.mouse.click(at[1].x - 6, at[1].y + 30);
@@ -89,7 +89,7 @@ export async function everyPanel(page, f) {
     await page.keyboard.press('Escape');
 }
 
-// Returns texts that do not fit into their element, and parts of the page beyond the screen.
+// Returns texts that do not fit into their element, and parts of the page that extend beyond the screen.
 export const cutOff = (page) => page.evaluate(() => {
     const seen = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
     const tight = [...document.querySelectorAll('button, label > span, legend, h2, th, td, dt, dd, .state, .choice > span, output')]

@@ -13,7 +13,7 @@ export function difference(a, b) {
     return { width: a.width, height: a.height, at: out };
 }
 
-// Returns the mean over a square around a position, as far as it is inside the picture.
+// Returns the mean over the part of a square around a position that lies inside the picture.
 export function meanAround({ width, height, at }, x, y, radius) {
     let sum = 0, count = 0;
     for (let j = Math.max(0, y - radius); j <= Math.min(height - 1, y + radius); j++) {
@@ -25,7 +25,7 @@ export function meanAround({ width, height, at }, x, y, radius) {
     return count > 0 ? sum / count : 0;
 }
 
-// Counts pixels outside of a box that differ by more than `least`.
+// Counts pixels outside a box that differ by more than `least`.
 export function countOutside({ width, height, at }, least, box) {
     let count = 0;
     for (let y = 0; y < height; y++) {

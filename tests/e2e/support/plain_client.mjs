@@ -65,7 +65,7 @@ function readFrame(bytes) {
     };
 }
 
-// Parses the header of a depth grid, with the names of PROTOCOL.md.
+// Parses the header of a depth grid, using the names of PROTOCOL.md.
 function readDepth(bytes) {
     const u32 = (at) => bytes.readUInt32LE(at), u16 = (at) => bytes.readUInt16LE(at);
     return {
@@ -160,7 +160,7 @@ export class PlainClient {
             if (frame.payload.length < frame.payload_bytes)
                 return; // the server gave this frame up
             this.frames.push({ ...frame, at: performance.now() });
-            // a picture in parts is acknowledged with its last part, as the rest may be given up
+            // a picture in parts is acknowledged with its last part, because the rest may be given up
             if (this.acknowledge && !(frame.flags & FLAG.more))
                 this.say({ type: 'ack', seq: frame.seq });
         }
@@ -203,7 +203,7 @@ export class PlainClient {
         this.write(encodeFrame(OPCODE.text, typeof message === 'string' ? message : JSON.stringify(message)));
     }
 
-    // Waits until question(this) is neither null nor false nor undefined; returns that.
+    // Waits until question(this) is neither null, false nor undefined, and returns that.
     async until(what, question, timeoutMs = 60000) {
         const end = performance.now() + timeoutMs;
         for (;;) {
@@ -219,7 +219,7 @@ export class PlainClient {
         }
     }
 
-    // Waits for the first message of that type that was not taken yet, and takes it.
+    // Waits for the first message of that type that has not been taken yet, and takes it.
     text(type, timeoutMs) {
         return this.until(`a message of type ${type}`, () => {
             const i = this.texts.findIndex((message) => message.type === type);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The demo plant running on free ports: its simulated PLC with a control port, and the daemon.
+// The demo plant on free ports: its simulated PLC with a control port, and the daemon.
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
@@ -74,7 +74,7 @@ function ask(port, line) {
     });
 }
 
-// Writes a plant file with a port of its own; everything else is the demo's.
+// Writes a plant file with its own port; everything else is the demo's.
 function copyPlant(folder, modbusPort, more) {
     for (const name of readdirSync(DEMO)) {
         if (name !== 'plant.yaml' && !name.endsWith('.history')) // recorded history is not copied

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pixels of 8-bit PNG files, and of pictures that are sent in parts.
+// Pixels of 8-bit PNG files, and of pictures sent in parts.
 import { inflateSync } from 'node:zlib';
 import { chunksOf } from './png_chunks.mjs';
 
@@ -32,7 +32,7 @@ export function pixelsOf(png) {
     return { width, height, rgb };
 }
 
-// The picture that a client of codec "png" shows after all of these frames.
+// The picture that a client with the codec "png" shows after all of these frames.
 export class Canvas {
     constructor() {
         Object.assign(this, { width: 0, height: 0, rgb: Buffer.alloc(0) });
@@ -47,7 +47,7 @@ export class Canvas {
             rgb.copy(this.rgb, ((frame.y + y) * this.width + frame.x) * 3, y * width * 3, (y + 1) * width * 3);
     }
 
-    // Compares this picture with the part of `whole` at (x, y); returns how many pixels differ.
+    // Compares this picture with the part of `whole` at (x, y). Returns how many pixels differ.
     differsFrom(whole, x, y) {
         let count = 0;
         for (let row = 0; row < this.height; row++) {

@@ -42,13 +42,13 @@ export class PostgresServer {
             chownSync(path, as.uid, as.gid);
     }
 
-    // Ends the server as a power failure would, if it runs, and starts it.
+    // Ends the server as a power failure would, if it runs, and starts it again.
     async restart() {
         await this.kill();
         rmSync(join(this.data, 'postmaster.pid'), { force: true });
         this.child = spawn(join(FOLDER, 'postgres'), ['-D', this.data, '-p', String(this.port), '-h', '127.0.0.1', '-k', this.folder,
             '-c', 'shared_buffers=16MB', '-c', 'max_connections=20',
-            '-c', 'fsync=off', // a slow disk would delay a renewal of the lease by more than a leader may act
+            '-c', 'fsync=off', // a slow disk would delay a lease renewal beyond the time that a leader may act
         ], { stdio: ['ignore', 'pipe', 'pipe'], cwd: this.folder, ...as });
         this.said = '';
         for (const pipe of [this.child.stdout, this.child.stderr])
@@ -59,7 +59,7 @@ export class PostgresServer {
                 throw new Error(`PostgreSQL does not start:\n${this.said}`);
     }
 
-    // SIGQUIT ends all of its processes at once, and the next start recovers from its log.
+    // SIGQUIT ends all of the server's processes at once, and the next start recovers from its log.
     async kill() {
         if (this.child && this.child.exitCode === null && this.child.signalCode === null) {
             this.child.kill('SIGQUIT');
@@ -128,7 +128,7 @@ export class PostgresServer {
     }
     get login() { return `plantcast\n${PASSWORD}\n`; }
 
-    // Makes a tablespace on a disk of that many megabytes; null: this user may not mount one.
+    // Makes a tablespace on a disk of that many megabytes; null: this user may not mount a disk.
     smallDisk(megabytes) {
         const path = join(this.folder, 'disk');
         mkdirSync(path);
@@ -175,7 +175,7 @@ export class CuttableLink {
             far.on('data', (bytes) => near.write(bytes));
             near.on('data', (bytes) => {
                 count += bytes.length;
-                if (link.cutAfter && count >= link.cutAfter) { // cuts the link after the server has received a part of the message
+                if (link.cutAfter && count >= link.cutAfter) { // cuts the link after the server has received part of the message
                     far.write(bytes.subarray(0, bytes.length / 2), () => link.cut());
                     link.cutAfter = 0;
                 } else {

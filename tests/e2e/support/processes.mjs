@@ -2,7 +2,7 @@
 // Processor time, shared memory and descendants of a process.
 import { readdirSync, readFileSync } from 'node:fs';
 
-// Returns the processor time of all threads in milliseconds, in steps of ten.
+// Returns the processor time of all threads in milliseconds, with a resolution of 10 ms.
 export function cpuMs(pid) {
     const [, user, system] = readFileSync(`/proc/${pid}/stat`, 'utf8').match(/\) .(?: \S+){10} (\d+) (\d+)/);
     return 10 * (Number(user) + Number(system));

@@ -8,7 +8,7 @@ export const long = process.env.PLANTCAST_LONG === '1' ? false : 'make test-long
 
 const isHeld = process.env.PLANTCAST_TIMES === '1';
 
-// Prints how long `what` took; if limits are enforced, fails at mostMs or more.
+// Prints how long `what` took. Fails if that is mostMs or more and limits are enforced.
 export function promise(t, what, ms, mostMs) {
     const text = `${what}: ${Math.round(ms)} ms, promised ${mostMs} ms`;
     t.diagnostic(text);

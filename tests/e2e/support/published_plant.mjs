@@ -49,7 +49,7 @@ tags: tags.csv
         return this.daemon.line(pattern, ms);
     }
 
-    // Writes and prepares the plant, and starts a daemon; waits until it has subscribed.
+    // Writes and prepares the plant, starts a daemon, and waits until it has subscribed.
     async run(keys, rows, more = '') {
         this.write(keys, rows, more);
         const prepared = this.plant.prepare();
@@ -67,7 +67,7 @@ tags: tags.csv
         return Object.fromEntries((await this.get('/api/v1/tags?count=5000')).tags.map((tag) => [tag.name, tag]));
     }
 
-    // Waits until the tag has these properties; returns it. seconds: only a limit on the wait.
+    // Waits until the tag has these properties, and returns it. seconds: limits only the wait.
     async until(name, wanted, seconds = 90) {
         for (const end = performance.now() + seconds * 1000; ; await sleep(20)) {
             const tag = (await this.tags())[name];

@@ -10,7 +10,7 @@ import { join } from 'node:path';
 import { createSecureContext, TLSSocket } from 'node:tls';
 import { freePort } from './ports.mjs';
 
-// Makes FOLDER/mail.pem and .key, for localhost; the .pem is its own authority.
+// Makes FOLDER/mail.pem and .key for localhost; the .pem is its own authority.
 export function makeCertificate(folder, name = 'mail') {
     const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
         '-keyout', join(folder, `${name}.key`), '-out', join(folder, `${name}.pem`), '-days', '30', '-subj', '/CN=localhost',
@@ -131,7 +131,7 @@ function readMail(text) {
     return { headers, subject: words(headers.subject), body: Buffer.from(rest.join(''), 'base64').toString() };
 }
 
-// Accepts JSON by POST. status: status of its answers; 0: never answers.
+// Accepts JSON by POST. status: HTTP status of its answers; 0: it never answers.
 export class HookServer {
     constructor() {
         Object.assign(this, { posts: [], status: 200 });

@@ -81,7 +81,7 @@ export function findGroup(above, name) {
     return undefined;
 }
 
-// Returns a copy of a group with its descendants, `by` metres away, with changed names.
+// Returns a copy of a group and its descendants, moved by `by` metres, with changed names.
 export function copyGroup(group, by = [0, 0, 0], rename = (name) => name) {
     return { name: rename(group.name), rest: group.rest, items: group.items.map((item) => {
         if (isGroup(item))

@@ -84,7 +84,7 @@ export function makeTagList(equipment, { seed, count = 5000, foreign = 0.15, rep
             return [`${letters}${pick(['_', '-'])}${slips(name)}${attribute}`, { variable, end, named: chance(0.5) ? id : null }];
         if (style < 0.8 && number.length > 1) // the equipment's number, and a description that names the equipment
             return [`${letters}${separator()}${number}${suffix}${attribute}`, { variable, end, named: chance(0.85) ? id : null }];
-        if (style < 0.9)         // a number of the instrument's own, and a description that names the equipment
+        if (style < 0.9)         // an instrument number of its own, and a description that names the equipment
             return [`${letters}-${otherNumber()}${suffix}${attribute}`, { variable, end, named: id }];
         return [`${letters}${separator()}${sequence}${suffix}`,
             { variable, end, named: chance(0.5) ? id : null, path: `Site/${slips(name)}` }];

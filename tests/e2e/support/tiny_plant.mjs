@@ -154,7 +154,7 @@ export class TinyPlant {
         return plant;
     }
 
-    // Prepares the plant, and starts its simulator and its daemon with these arguments.
+    // Prepares the plant, then starts its simulator, and its daemon with these arguments.
     async start(...args) {
         const { code, err } = this.prepare();
         if (code !== 0)
@@ -243,7 +243,7 @@ export class TinyPlant {
             chownSync(join(this.folder, name), NOBODY, NOBODY);
     }
 
-    // Starts the daemon by another program from now on, which gets the daemon's path and arguments.
+    // From now on starts the daemon through another program, which gets the daemon's path and arguments.
     confine(...before) {
         this.before = before;
     }

@@ -67,7 +67,7 @@ ${more}`);
         other.toOther = await this.network.link(one.port, { from: STANDBY_HOST });
     }
 
-    // Makes a core with a history, a port and a connection to the database of its own.
+    // Makes a core with its own history, port and connection to the database.
     async makeCore(name, host) {
         const { plant } = this.nodes;
         mkdirSync(join(plant.folder, name));
@@ -140,7 +140,7 @@ ${more}`);
             (await this.other(core).node.tags())['TI-1'].quality_name === 'Good');
     }
 
-    // Kills or stops the leader; returns the new leader, and for how long no core polled.
+    // Kills or stops the leader. Returns the new leader, and for how long no core polled.
     async takeOver(t, core, how) {
         const other = this.other(core), since = this.network.now();
         core.program.stopped = true;
@@ -159,7 +159,7 @@ ${more}`);
         await core.program.ended;
         await this.start(core.name);
     }
-    // Asserts that during this time the leader polls and the other core does not.
+    // Asserts that during these seconds the leader polls and the other core does not.
     async goesOn(t, core, seconds) {
         const since = this.network.now(), other = this.other(core), before = terms(other);
         await sleep(seconds * 1000);

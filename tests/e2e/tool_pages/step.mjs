@@ -16,7 +16,7 @@ const LEAST_VIEWS = 10, LEAST_RUN_PX = 12, FRAME_MS = 1000 / 60;
 const MARK_PX = 1.5, PICTURE_PX = 5; // encoded edges bleed a little, more so while the picture moves
 // JPEG codes colour in blocks of 16 pixels, which in a few rows extend some pixels beyond the box. A mesh that stretches over a
 // step in depth would colour whole areas beyond the box.
-const WARPED_PX = 8, WARPED_SHARE = 0.002; // WARPED_SHARE: most coloured pixels farther than WARPED_PX beyond the box, of all coloured ones
+const WARPED_PX = 8, WARPED_SHARE = 0.002; // WARPED_SHARE: maximum share of coloured pixels that lie farther than WARPED_PX beyond the box
 let plant, relay;
 
 before(async () => {
@@ -41,7 +41,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
     const minus = (a, b) => a.map((v, i) => v - b[i]), dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
     const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d], unit = (a) => a.map((v) => v / Math.hypot(...a));
-    // returns a function that projects a point; in multiples of the picture's height, from the picture's centre
+    // returns a function that projects a point, in multiples of the picture's height from the picture's centre
     const seenFrom = ({ eye, target, up, fov }) => (point) => {
         const forward = unit(minus(target, eye)), right = unit(cross(forward, up)), d = minus(point, eye);
         const far = 2 * Math.tan((fov * Math.PI) / 360) * dot(d, forward);
@@ -68,7 +68,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
             }
         return ends.length > 100 ? bounds(ends.map(([x, y]) => [(x * viewport.width) / width, (y * viewport.height) / height])) : null;
     };
-    const whiteAt = ([x, y]) => { // whether the disc of a marker is drawn at a position: the disc is white
+    const whiteAt = ([x, y]) => { // whether a marker's white disc is drawn at a position
         const { data } = marks.getContext('2d').getImageData(Math.round(x * ratio), Math.round(y * ratio), 1, 1);
         return Math.min(...data) > 200;
     };
@@ -136,7 +136,7 @@ const middle = async (page) => {
     return [box.x + box.width / 2, box.y + box.height / 2];
 };
 
-// Without WebGL 2, the page shows the server's pictures as they come.
+// Without WebGL 2, the page shows the server's pictures as they arrive.
 const withoutWarp = () => { delete globalThis.WebGL2RenderingContext; };
 
 test('by the mouse: turned, moved and zoomed', options, async (t) => {
@@ -233,7 +233,7 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
         const { canvas } = viewport.warp;
         warpedPixels = pixelsOf(canvas, canvas.width, canvas.height);
         const asked = cameras.find(({ camera }) => camera === session.picture.camera);
-        const isFirst = asked && !asked.isSeen; // a newer picture is also drawn from a camera that was drawn before
+        const isFirst = asked && !asked.isSeen; // a newer picture may be drawn again from a camera that was used before
         if (asked)
             asked.isSeen = true;
         globalThis.warped.push({ frames: isFirst ? frame - asked.frame : 0, isNewest: session.picture.camera === session.camera,
@@ -271,7 +271,7 @@ const still = (page) => page.evaluate(() => new Promise((done) => {
     };
 })));
 
-// Returns which part of the coloured pixels lies farther than WARPED_PX beyond the box around these places.
+// Returns the share of coloured pixels that lie farther than WARPED_PX beyond the box around these points.
 function partBeyond(runs, places) {
     const [[left, top], [right, bottom]] = [[Math.min, -WARPED_PX], [Math.max, WARPED_PX]]
         .map(([most, by]) => [0, 1].map((axis) => most(...places.map((place) => place[axis])) + by));
@@ -283,7 +283,7 @@ function partBeyond(runs, places) {
     return 1 - within / all;
 }
 
-// Hides that the browser emulates WebGL, so that the page draws by it.
+// Hides that the browser emulates WebGL, so that the page uses it for drawing.
 const asGpu = () => {
     const { getParameter } = WebGL2RenderingContext.prototype;
     WebGL2RenderingContext.prototype.getParameter = function renamed(name) {
@@ -360,7 +360,7 @@ const followsHand = (painter, ...script) => async (t) => {
         let rest;
         do
             rest = await still(page);
-        while (rest.news > 0); // repeat if a message came, for example of a reading that a busy machine read late
+        while (rest.news > 0); // repeats if a message arrived, for example about a reading that a busy machine read late
         assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view costs nothing');
         if (painter === 'GlPainter')
             await loseContext(page);

@@ -13,7 +13,7 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const BEGIN_S = Math.floor(Date.now() / 1000) - 3000;
 let plant, browser, page;
 
-// A slow wave, and a fault of TI-1 from minute 20 to 25.
+// A slow wave, in which TI-1 is faulty from minute 20 to 25.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let s = 0; s <= 2900; s += 5) {
@@ -32,7 +32,7 @@ before(async () => {
     plant.giveDeviceTime();
     const tags = join(plant.folder, 'tags.csv'), [head, ...rows] = readFileSync(tags, 'utf8').trim().split('\n');
     const limits = { 'TI-1': '90,95', 'TI-2': '85,90' };
-    // stale after 5 s instead of 1 s: a busy machine may read later than that
+    // stale after 5 s instead of 1 s, because a busy machine may read that late
     const limited = rows.map((row) => `${row.replace(/,1$/, ',5')},${limits[row.split(',')[0]] ?? ','}`);
     writeFileSync(tags, `${[`${head},H,HH`, ...limited].join('\n')}\n`);
     assert.equal(plant.prepare().code, 0);
@@ -40,7 +40,7 @@ before(async () => {
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
     assert.equal(imported.code, 0, imported.err);
     await plant.startSim();
-    // sets normal values, so that there is only the alarm that a test raises
+    // sets normal values, so that the only alarm is the one that a test raises
     await plant.set({ 'TI-1': 50, 'TI-2': 40, 'PI-1': 5 });
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
@@ -147,7 +147,7 @@ const drawn = ([from, to]) => page.waitForFunction((span) => { // Waits until th
 test('a drag zooms, the wheel zooms about the pointer, a drag of the axis pans, and each is undone', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3 && globalThis.plantcast.trends.chart);
     await drawn(await rangeOf());
-    await settle(page); // wait until the axes of all three tags have their final widths
+    await settle(page); // waits until the axes of all three tags have their final widths
     const box = await page.locator('#trend-chart .u-over').boundingBox(), y = box.y + box.height / 2;
     const [from, to] = await rangeOf(), at = (x) => from + ((to - from) * (x - box.x)) / box.width;
     const [a, b] = [0.3, 0.7].map((part) => Math.round(box.x + part * box.width));
@@ -317,7 +317,7 @@ test('in the dark theme the chart is dark, and its lines and limits are read', o
     const rgbOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
     const { ground, lines, limit, grave, ink } = await page.evaluate(() => globalThis.plantcast.trends.look);
     await page.waitForFunction((is) => getComputedStyle(document.getElementById('trends')).backgroundColor === is,
-        `rgb(${rgbOf(ground).join(', ')})`); // the panel has the colour `ground`, too, once its style sheet is loaded
+        `rgb(${rgbOf(ground).join(', ')})`); // once its style sheet is loaded, the panel has the colour `ground` too
     assert.ok(Math.max(...rgbOf(ground)) < 90, ground);
     for (const colour of [...lines, limit, grave, ink])
         assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `${colour} on ${ground}`);
@@ -362,18 +362,18 @@ test('a gap is a gap in the picture too', options, async () => {
 test('it plays, pauses, and goes back to live', options, async () => {
     await travel(page, (BEGIN_S + 100) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
-    // at this speed playback reaches the present after 48 s, on a busy machine before another picture
+    // at this speed playback reaches the present after 48 s; on a busy machine before another picture arrives
     await page.locator('#time-speed').selectOption('60');
     await page.locator('#time-play').click();
     await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs > us, (BEGIN_S + 160) * 1e6);
     assert.match(await page.locator('#banner .detail').textContent(), /playing 60×/);
     assert.equal(await page.locator('#time-play').getAttribute('aria-label'), 'Pause');
     await page.locator('#time-play').click();
-    await page.waitForFunction(() => { // the picture of the instant at which it was paused arrives a little later
+    await page.waitForFunction(() => { // the picture of the instant at which playback was paused arrives a little later
         const { time, picture } = globalThis.plantcast.session;
         return time.speed === 0 && Math.abs(picture.dataTimeUs - time.atUs) < 1e6;
     });
-    await page.waitForFunction(() => { // the instant stays for 800 ms, 48 s at that speed, also after the server's answer
+    await page.waitForFunction(() => { // the instant stays for 800 ms (48 s at that speed) even after the server's answer
         const { atUs } = globalThis.plantcast.session.time, now = performance.now();
         if (!(Math.abs(globalThis.paused?.atUs - atUs) < 1e6))
             globalThis.paused = { atUs, now };
@@ -467,7 +467,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
     await page.locator('#time-span').selectOption('2592000');
     await page.locator('#time-slider').focus();
     await page.keyboard.press('ArrowRight');
-    await instantOf(us + 60e6); // a step of one minute, although a step of the 2000-step slider would be 21 minutes
+    await instantOf(us + 60e6); // a step of one minute, although one of the slider's 2000 steps would be 21 minutes
     await page.locator('#time-span').selectOption('3600');
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');

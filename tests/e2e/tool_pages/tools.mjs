@@ -225,7 +225,7 @@ test('the legend says that values are not to be read from a glossy look', option
     await page.locator('#legend .note').waitFor({ state: 'detached' });
 });
 
-// Returns the text that a camera reads from the QR code on the screen.
+// Returns the text that a camera would read from the QR code on the screen.
 async function scan(where) {
     // The element around the code stays when the page replaces the code with that of a shorter link.
     const { width, height, rgba } = await readPng(where, await where.locator('#share-code').screenshot());
@@ -431,7 +431,7 @@ test('others follow; the lead is handed over, and what is shown stays', options,
         await page.locator('#following', { hasText: 'Following the view of another user' }).waitFor();
         await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
         await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
-        await second.page.waitForFunction(() => { // the second session may have received the lead before its first picture
+        await second.page.waitForFunction(() => { // the second session may become the leader before its first picture
             const { picture, paramsSeq } = globalThis.plantcast.session;
             return picture?.paramsSeq === paramsSeq;
         });
