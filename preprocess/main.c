@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-prep`: converts CAD models to the files that plantcastd maps into memory. */
+/* `plantcast-prep`: converts CAD models to files that plantcastd maps into memory. */
 #include <getopt.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -18,10 +18,10 @@
 #include "preprocess/report/report.h"
 
 enum {
-    /* seconds that the current asset may still take after a signal; service managers and container runtimes kill the process after 10 s or
-     * more */
+    /* seconds that the current asset may still take after a signal; service managers and container runtimes kill a process
+     * after 10 s or more */
     GRACE_S = 5,
-    ASSET_LIMIT_S = 3600, /* seconds after which an asset, or the reading of the models, counts as hung */
+    ASSET_LIMIT_S = 3600, /* seconds after which an asset, or reading the models, counts as hung */
 };
 
 static const char usage[] =
@@ -63,13 +63,14 @@ struct prep_options {
     bool distances, json, all, debug_view, diff, help;
     const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: plant to compare with */
     double tolerance_m;
-    size_t memory_bytes; /* memory in bytes of the machine that will serve the plant; 0: the memory of this machine */
+    size_t memory_bytes; /* memory of the machine that will serve the plant, bytes; 0: this machine's memory */
 };
 
-static atomic_bool interrupted; /* global, because a signal handler gets no argument */
+static atomic_bool interrupted; /* global, because a signal handler takes no argument */
 
-/* Handles the first signal: the current asset is finished if that takes no longer than GRACE_S, and the next run continues after it. The
- * second signal ends the program immediately. That is safe at any time, because prepared files get their names only when complete. */
+/* Handles the first signal: the current asset is finished if that takes at most GRACE_S; the next run continues from there. The
+ * second signal ends the program immediately, which is always safe, because prepared files get their names only when complete.
+ * */
 static void on_signal(int signal)
 {
     (void)signal;
@@ -101,7 +102,7 @@ static int wrong_use(const char *what, const char *about)
     return 2;
 }
 
-/* Parses the command line's options. Returns 0, or the exit status with which the program should end. */
+/* Parses the command line's options. Returns 0, or the exit status to end with. */
 static int read_options(int argc, char **argv, struct prep_options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },
@@ -189,9 +190,9 @@ static bool run_distances(const struct prep_options *options, struct log *log, s
     return good;
 }
 
-/* Checks the plant's models and nodes by reading only the headers of model files, and prints errors long before the models are read
- * completely. Assets without errors are prepared anyway. Errors of assets whose preparation is tried are printed again at the end. Returns
- * false if the plant is too large for the memory. */
+/* Checks the plant's models and nodes by reading only the headers of model files, so that errors are printed long before the
+ * models are read completely. Assets without errors are prepared anyway; the errors of assets whose preparation is tried are
+ * printed again at the end. Returns false if the plant is too large for the memory. */
 static bool say_early(const struct plant *plant, size_t memory_bytes)
 {
     struct diag diag = { 0 }, errors = { 0 };
@@ -249,15 +250,15 @@ static bool run_diff(const struct prep_options *options, struct diag *diag)
     return good;
 }
 
-/* Confines this process, because models are untrusted files: it may read the plant's files and write the prepared ones, but not read keys
- * and tokens. */
+/* Confines this process, because models are untrusted files: it may read the plant's files and write the prepared ones, but
+ * cannot read keys and tokens. */
 static bool confine_self(const struct plant *plant, const char *folder, char **argv, struct diag *diag)
 {
     static const char beside[] = ".yaml .yml .csv .glb .gltf .bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga "
                                  ".tif .tiff .exr .hdr";
     struct child_paths paths = { 0 };
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
-    mkdir(folder, 0777); /* a failure to create the folder of prepared files is ignored here: writing the first file will report it */
+    mkdir(folder, 0777); /* ignore a failure to create the folder of prepared files: writing the first file will report it */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);
@@ -271,7 +272,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     for (size_t i = 0; i < plant->group_count; i++)
         child_paths_add(&paths, plant->groups[i].gp.fit, CONFINE_READ);
     if (notifies)
-        child_paths_add(&paths, "/proc", CONFINE_READ); /* service_patience needs /proc to check whether other processes are active */
+        child_paths_add(&paths, "/proc", CONFINE_READ); /* service_patience reads /proc to see whether other processes are active */
     int status = child_self_confine(&paths, notifies, argv);
     child_paths_finish(&paths);
     if (status != 0)
@@ -284,7 +285,7 @@ static bool run_plant(const struct prep_options *options, char **argv, struct di
     struct plant *plant = plant_load(options->plant, diag);
     if (!plant)
         return false;
-    /* ask the service manager for more time, in case it waits for this preparation before it starts the daemon */
+    /* ask the service manager for more time, in case the daemon's start waits for this preparation */
     struct service_patience *patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S);
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
     bool confined = child_self_confined(), good = confined || convert_run(plant, folder, stderr, diag);

@@ -16,10 +16,10 @@
 #define CONTACT 1e5
 /* added to the diagonal, as a share of the body's area, so that rounding does not make the matrix singular */
 #define REGULARISATION 1e-9
-/* minimum number of right-hand sides per solve; with more per solve, the sparse factor is read from memory less often */
+/* minimum number of right-hand sides per solve; a larger number means that the sparse factor is read from memory less often */
 #define MIN_BLOCK 8
 #define MAX_BLOCK BEND_WIDTH
-/* memory limit in bytes of a block of right-hand sides that is larger than MIN_BLOCK; each thread has three such blocks */
+/* bytes; memory limit for a block of more than MIN_BLOCK right-hand sides; each thread has three such blocks */
 #define BLOCK_BYTES (64 << 20)
 
 struct conduct {
@@ -29,11 +29,11 @@ struct conduct {
     struct influence_bend *bend;
     struct laplacian laplacian;
     cholmod_factor *factor;
-    size_t block; /* number of sensors (right-hand sides) that are solved at a time */
+    size_t block; /* number of sensors (right-hand sides) solved at a time */
     atomic_bool failed;
 };
 
-/* Returns the diagonal of the linear system: heat loss of the wall, plus the conductance of the contacts with the sensors' discs. */
+/* Returns the diagonal of the linear system: heat loss of the wall plus the contact conductance of the sensors' discs. */
 static double *diagonal_of(const struct conduct *conduct, double decay_m)
 {
     const struct laplacian *laplacian = &conduct->laplacian;
@@ -52,7 +52,7 @@ static double *diagonal_of(const struct conduct *conduct, double decay_m)
             diagonal[laplacian->row_of[disc->points[i]]] += CONTACT * disc->shares[i];
         touched[component[disc->points[0]]] = 1;
     }
-    /* the temperature of a body without a sensor is undetermined and not shown; any positive diagonal makes the matrix regular */
+    /* a body without a sensor has an undetermined temperature, which is not shown; any positive diagonal makes the matrix regular */
     for (size_t p = 0; p < points; p++)
         if (laplacian->row_of[p] != TRIMESH_NONE)
             diagonal[laplacian->row_of[p]] +=
@@ -108,8 +108,8 @@ static void add_bend(const struct conduct *conduct, const double *u, size_t coun
     influence_bend_add(conduct->bend, at_points, count, count);
 }
 
-/* Returns how many sensors are solved at a time: limited by memory, and by the number of sensors per thread so that all threads have
- * work. */
+/* Returns the number of sensors solved at a time, which is limited by memory, and by the number of sensors per thread so that
+ * all threads have work. */
 static size_t block_of(const struct conduct *conduct, const struct workers *workers)
 {
     const size_t threads = workers ? (size_t)workers_count(workers) : 1, each = (conduct->influence->count + threads - 1) / threads;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clips the triangles of the solved mesh against each drawn triangle, in the drawn triangle's plane. The first pass takes mesh triangles
- * lying in that plane. Further passes take mesh triangles near the plane, for the area that is still uncovered. */
+/* Clips the triangles of the solved mesh against each drawn triangle, in the drawn triangle's plane. The first pass uses the
+ * mesh triangles in that plane. Later passes use mesh triangles near the plane for the area that is still uncovered. */
 #include "preprocess/influence/influence_bend.h"
 
 #include <math.h>
@@ -12,18 +12,18 @@
 #include "preprocess/influence/polygons.h"
 #include "surface/mesh/bvh.h"
 
-/* tolerance of the distance from the plane of a drawn triangle (triangle of the asset file), relative to the surface's size: drawn corners
- * are stored in single precision */
+/* tolerance for the distance from a drawn triangle's plane, relative to the surface's size; needed because drawn corners are
+ * stored in single precision */
 #define OFF_PLANE 1e-5
-/* overlaps of a drawn and a mesh triangle with at most this area, as a share of the drawn triangle's squared size, are ignored */
+/* overlaps of a drawn and a mesh triangle are ignored up to this area, as a share of the drawn triangle's squared size */
 #define LEAST 1e-7
-/* share of the area of a drawn triangle (triangle of the asset file) that may stay uncovered without counting as unknown, because small
- * overlaps are ignored */
+/* share of a drawn triangle's area (triangle of the asset file) that may stay uncovered without counting as unknown, because
+ * small overlaps are ignored */
 #define COVERED 1e-3
-#define SAME 1e-7 /* places (corners of overlaps) closer than this share of a triangle's size count as equal */
+#define SAME 1e-7 /* as a share of a triangle's size; places (corners of overlaps) closer than this are duplicates */
 #define LEAST_FACING 0.5
-/* number of recent places (corners of overlaps) that a new place is compared with to find duplicates, which come from mesh triangles
- * visited shortly after each other */
+/* number of recent places (corners of overlaps) that a new place is compared with; duplicates come from mesh triangles visited
+ * shortly after each other */
 enum { LOOK_BACK = 64 };
 
 struct finding {
@@ -32,18 +32,18 @@ struct finding {
     double in_plane_m, near_m;
     const struct trimesh *visible, *hidden;
     struct bvh *visible_bvh, *hidden_bvh;
-    /* State for the triangle of the asset file ("drawn triangle") that is being processed: */
+    /* state for the current triangle of the asset file ("drawn triangle"): */
     uint32_t tri;
-    /* origin: of the plane's coordinates; axes: two vectors in the plane of the drawn triangle, and its normal */
+    /* origin of the plane's coordinates; two axes in the drawn triangle's plane, and its normal */
     double origin[3], axes[3][3];
     double corners[3][2], size_m;
     struct extent extent;
     size_t first; /* index of the drawn triangle's first place (corner of an overlap) */
-    /* by mesh point: 1 + index of the last drawn triangle for which a place (corner of an overlap) was added at this point; 0: none */
+    /* by mesh point: 1 + index of the last drawn triangle with a place (corner of an overlap) at this point; 0: none */
     uint32_t *taken_by;
     /* polygons; left: area not yet covered before the current pass; cut: the part of `left` that the current pass has not covered */
     struct polygons left, cut;
-    /* The following members are the state of the current pass: */
+    /* state of the current pass: */
     const struct trimesh *mesh;
     double off_m;
     bool full;
@@ -60,7 +60,7 @@ static void flatten(const struct finding *finding, const double point[3], double
     *off_m = fabs(vec_dot(from, finding->axes[2]));
 }
 
-/* Computes the barycentric weights of point `at`; they are not negative and sum to 1; rounding noise becomes 0. */
+/* Computes the barycentric weights of point `at`; they sum to 1 and are not negative: rounding noise becomes 0. */
 static void weights_in(const double corners[3][2], const double at[2], float weights[3])
 {
     double sum = 0, w[3], whole = polygon_cross(corners[0], corners[1], corners[2]);
@@ -73,8 +73,8 @@ static void weights_in(const double corners[3][2], const double at[2], float wei
         weights[i] = (float)(w[i] / sum);
 }
 
-/* Normalises an anchor (three mesh points and their weights): replaces points of zero weight by the point of largest weight. So a position
- * on an edge or corner gets the same anchor from each of the triangles there. */
+/* Normalises an anchor (three mesh points and their weights): replaces points of zero weight by the point of largest weight. A
+ * position on an edge or corner thus gets the same anchor from every adjacent triangle. */
 static void tidy(struct influence_anchor *anchor)
 {
     int heaviest = 0;
@@ -103,8 +103,8 @@ static bool is_single(const struct influence_anchor *anchor)
     return anchor->points[0] == anchor->points[1] && anchor->points[0] == anchor->points[2];
 }
 
-/* A place is a corner of the overlap of a mesh triangle and a drawn triangle. Returns whether it is at a corner of the drawn triangle whose
- * value is that of the mesh point there. The solved field and the drawn field are then equal at the place, so it needs no check. */
+/* Returns whether the place (corner of an overlap) is at a corner of the drawn triangle that has the value of a mesh point at
+ * the same position. The solved field and the drawn field are then equal there, so the place needs no check. */
 static bool is_corner(const struct finding *finding, const struct bend_place *place)
 {
     const struct bend_drawn *drawn = &finding->bend->drawn;
@@ -116,8 +116,8 @@ static bool is_corner(const struct finding *finding, const struct bend_place *pl
     return false;
 }
 
-/* Returns whether the place (corner of an overlap) needs no check: both fields are equal there (is_corner()), or the drawn triangle already
- * has an equal place. May miss a duplicate, which costs only time. */
+/* Returns whether the place (corner of an overlap) needs no check: both fields are equal there (is_corner()), or it duplicates
+ * another place of the drawn triangle. May miss a duplicate, which only costs time. */
 static bool is_known(struct finding *finding, const struct bend_place *place)
 {
     const struct influence_bend *bend = finding->bend;
@@ -156,9 +156,9 @@ static void add_place(struct finding *finding, const double at[2], const double 
 
 /* --- passes -------------------------------------------------------------------------------------------------------------------- */
 
-/* Processes a mesh triangle whose box is near the drawn triangle: removes the area that it covers from finding->cut. If the triangle
- * belongs to the solved mesh (not to the hidden triangles) and overlaps finding->left, adds the corners of the overlap as places (points at
- * which the error is measured). */
+/* Processes a mesh triangle whose box is near the drawn triangle: removes the area it covers from finding->cut. If the triangle
+ * belongs to the solved mesh (not to the hidden triangles) and overlaps finding->left, adds the corners of the overlap as
+ * places (points at which the error is measured). */
 static void visit(void *arg, uint32_t tri)
 {
     struct finding *finding = arg;
@@ -168,8 +168,7 @@ static void visit(void *arg, uint32_t tri)
     double piece[3][2], normal[3], off_m;
     vec_normal(at[points[0]], at[points[1]], at[points[2]], normal);
     double facing = vec_dot(normal, finding->axes[2]), least = LEAST_FACING * vec_length(normal);
-    /* triangles of the solved mesh must face the same way as the drawn triangle (of the asset file); hidden triangles may face either
-     * way */
+    /* triangles of the solved mesh must face the same way as the drawn triangle; hidden triangles may face either way */
     if (finding->full || !((solved ? facing : fabs(facing)) > least))
         return;
     uint32_t order[3] = { points[0], points[facing > 0 ? 1 : 2], points[facing > 0 ? 2 : 1] };
@@ -201,8 +200,8 @@ static void visit(void *arg, uint32_t tri)
     memmove(finding->cut.of, finding->cut.of + before, finding->cut.count * sizeof(*finding->cut.of));
 }
 
-/* Makes one pass over the current drawn triangle: clips its uncovered area finding->left by all mesh triangles within off_m of the drawn
- * triangle's plane. Returns the area that they cover. */
+/* Makes one pass over the current drawn triangle: clips its uncovered area finding->left against all mesh triangles within
+ * off_m of its plane. Returns the area they cover. */
 static double cover(struct finding *finding, const struct trimesh *mesh, const struct bvh *bvh, double off_m)
 {
     double before_m2 = polygons_area(&finding->left);
@@ -225,7 +224,7 @@ static size_t finest_count(const struct bend_drawn *drawn)
     return drawn->level_count > 0 ? drawn->levels[0].triangle_count : drawn->triangle_count;
 }
 
-/* Makes a triangle of the asset file the current drawn triangle. Returns its area; 0: it has no area. */
+/* Makes a triangle of the asset file the current drawn triangle. Returns its area, or 0 if it is degenerate. */
 static double take_triangle(struct finding *finding, const double p[3][3])
 {
     double along[3], off_m;
@@ -280,13 +279,13 @@ static void find_places(struct finding *finding)
 
 /* --- coarser levels ------------------------------------------------------------------------------------------------------------ */
 
-/* Barycentric weights (times 3) of the points of a triangle at which the bend is measured: two on each side, at its thirds, and the
- * centre. */
+/* barycentric weights (times 3) of the points of a triangle at which the bend is measured: two on each side, at its thirds, and
+ * the centre */
 enum { SAMPLES = 7 };
 static const double samples[SAMPLES][3] = { { 2, 1, 0 }, { 1, 2, 0 }, { 0, 2, 1 }, { 0, 1, 2 }, { 1, 0, 2 }, { 2, 0, 1 }, { 1, 1, 1 } };
 
-/* Adds sample points of a coarse level's triangle as places (points at which the error is measured). Counts of sample points replace the
- * areas that are recorded for the finest level. */
+/* Adds sample points of a coarse level's triangle as places (points at which the error is measured). Where the finest level
+ * records areas, a coarse level records numbers of sample points. */
 static void sample_triangle(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface, size_t tri,
                             double within_m)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the bend: the largest difference between the solved field, which bends, and the field that is drawn, which is linear between the
- * corners of each triangle of the asset file.
- * Both fields are piecewise linear, on different triangulations, so their difference is largest at corners of the overlaps of mesh and
- * drawn triangles. All these corners ("places") are found, and the rest of each drawn triangle's area is recorded as not covered. The field
- * is not solved where a part lies inside or against another part. Where crack bridging has moved mesh corners off the drawn triangle, the
- * mesh is projected perpendicularly onto it. */
+/* Measures the bend: the largest difference between the solved field, which bends, and the drawn field, which is linear between
+ * the corners of each triangle of the asset file. The two fields are piecewise linear on different triangulations, so their
+ * difference is largest at corners of the overlaps of mesh and drawn triangles. All these corners ("places") are found, and the
+ * rest of each drawn triangle's area is recorded as not covered. The field is not solved where a part lies inside or against
+ * another part. Where crack bridging has moved mesh corners off the drawn triangle, the mesh is projected perpendicularly onto
+ * it. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_BEND_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_BEND_H
 #include <stdatomic.h>
@@ -20,17 +20,17 @@ struct bend_place {
 
 struct bend_level { /* one level of detail */
     size_t triangle_count;
-    double error_m; /* largest distance in metres of the triangles of this level of detail from the surface */
+    double error_m; /* largest distance of this level's triangles from the surface, metres */
 };
 
-struct bend_drawn { /* the triangles of the asset file, which are drawn */
+struct bend_drawn { /* the drawn triangles: the triangles of the asset file */
     const float (*positions_m)[3];
-    /* vertex indices of the drawn triangles (triangles of the asset file), 3 each; levels of detail one after the other, finest first */
+    /* vertex indices of the drawn triangles, 3 each; levels of detail one after the other, finest first */
     const uint32_t *triangles;
     size_t vertex_count, triangle_count;
     const struct influence_anchor *anchors; /* by drawn vertex: its position on the finite-element mesh */
-    /* All overlap corners are found for the finest level of detail. Triangles of coarser levels do not lie on the surface: the bend is
-     * measured at a few points of each. */
+    /* levels of detail; all overlap corners are found for the finest level; triangles of coarser levels do not lie on the
+     * surface, so the bend is measured at a few points of each */
     const struct bend_level *levels;
     size_t level_count; /* number of elements of `levels`; 0: all triangles belong to the finest level */
 };
@@ -39,45 +39,45 @@ struct influence_bend {
     struct bend_drawn drawn;
     struct bend_place *places; /* points at which the bend is measured, grouped by drawn triangle */
     size_t count, capacity;
-    /* by drawn triangle: its area; the area hidden inside other parts; the area where the bend (see the top) is unknown. For coarse levels:
-     * counts of samples instead of areas */
+    /* by drawn triangle: its area; the area hidden inside other parts; the area where the bend (see the top) is unknown. For
+     * coarse levels: numbers of samples instead of areas */
     double *area_m2, *hidden_m2, *unknown_m2;
-    /* by place (corner of an overlap): sums over sensors of the positive and of the negative errors of their weights, in fixed point */
+    /* by place (corner of an overlap): sums of the sensors' positive and negative weight errors, in fixed point */
     _Atomic int64_t *plus, *minus;
-    struct mesh_error *mesh_error; /* sums from which the discretisation error of the finite-element solution is computed (mesh_error.h) */
+    struct mesh_error *mesh_error; /* sums that give the discretisation error of the finite-element solution (mesh_error.h) */
     size_t point_count;            /* number of points of the finite-element mesh */
 };
 
-/* Finds the places of the drawn triangles: the points at which the bend is measured. The mesh, `drawn` and its arrays must outlive *bend.
- * surface: the surface that the mesh was made from. Returns false if there are more than `most` places, or out of memory. Call
- * influence_bend_finish() in both cases. Thread: one. */
+/* Finds the places of the drawn triangles: the points at which the bend is measured. The mesh, `drawn` and its arrays must
+ * outlive *bend. surface: the surface that the mesh was made from. Returns false if there are more than `most` places, or if
+ * out of memory. In either case, call influence_bend_finish(). Thread: one. */
 bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const struct surface *surface,
                          const struct bend_drawn *drawn, size_t most);
 void influence_bend_finish(struct influence_bend *bend);
 
-/* Adds the interpolation errors of the weights ("shares") of `width` sensors, at most BEND_WIDTH. at_points: `stride` numbers for each
- * point of the mesh, of which the first `width` are weights. The sums do not depend on the order of calls. Thread: any number of concurrent
- * calls. */
+/* Adds the interpolation errors of the weights ("shares") of `width` sensors, at most BEND_WIDTH. at_points: `stride` numbers
+ * per mesh point, of which the first `width` are weights. The order of calls does not affect the sums. Thread: any number of
+ * concurrent calls. */
 void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width);
 
-struct bend_report { /* results of the measurement of the bend (interpolation error in drawn triangles); all zero: no bend was measured */
-    /* numbers of pairs (group, interpolation). measured: those whose bend was measured; unmeasured: those with too many places (corners of
-     * overlaps) */
+struct bend_report { /* measured bend (interpolation error in drawn triangles); all zero: no bend was measured */
+    /* numbers of (group, interpolation) pairs. measured: with measured bend; unmeasured: with too many places (corners of
+     * overlaps) to measure it */
     size_t measured, unmeasured;
     /* bound of the field's deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
     double steps;
-    double over_share;   /* share of the area covered by triangles in which the bend (interpolation error) may exceed one step */
-    double hidden_share; /* share of the asset's area inside or against another part, where the field is not computed */
-    /* share of the asset's area that is not on the surface on which the field was computed; this area and the hidden area are excluded from
-     * `steps` and `over_share` */
+    double over_share;   /* share of the area in triangles whose bend (interpolation error) may exceed one step */
+    double hidden_share; /* share of the asset's area inside or against another part; the field is not computed there */
+    /* share of the asset's area that is not on the surface on which the field was computed; like the hidden area, not included
+     * in `steps` and `over_share` */
     double unknown_share;
 };
-/* Computes the error of one interpolation after the shares of all sensors were added, and resets the sums for the next one. Merges the
- * finest level's result into the report, which keeps the maximum of each number. steps (may be NULL): receives the bend of each drawn
- * triangle in colour steps. errors (may be NULL): receives, for each vertex, the largest difference to the exact solution in the triangles
- * around it: bend plus discretisation error, as a share of the spread of readings (fin: spread of readings and ambient); 1 where it is
- * unknown. around: the field's value far from all sensors, as (value - MIN) / (MAX - MIN); 0 for interpolations whose weights sum to 1.
- * Thread: one. */
+/* Computes the error of one interpolation after the shares of all sensors were added, and resets the sums for the next one.
+ * Merges the finest level's result into the report, which keeps the maximum of each number. steps (may be NULL): receives the
+ * bend of each drawn triangle in colour steps. errors (may be NULL): receives, by vertex, the largest difference from the exact
+ * solution in the adjacent triangles: bend plus discretisation error, as a share of the spread of readings (fin: spread of
+ * readings and ambient); 1 where it is unknown. around: the field's value far from all sensors, as (value - MIN) / (MAX - MIN);
+ * 0 for interpolations whose weights sum to 1. Thread: one. */
 void influence_bend_measure(struct influence_bend *bend, double around, float *steps, float *errors, struct bend_report *report);
 
 #endif

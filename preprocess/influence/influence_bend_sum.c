@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sums the interpolation errors of all sensors' weights at each place (corner of an overlap, influence_bend.h), and finds the largest error
- * for any readings. */
+/* Sums the interpolation errors of all sensors' weights at each place (corner of an overlap, influence_bend.h), and finds the
+ * largest error that any readings can cause. */
 #include <math.h>
 #include <string.h>
 
@@ -10,11 +10,11 @@
 #include "preprocess/influence/influence_bend.h"
 
 #define STEPS 255.0
-#define FIXED 0x1p40 /* fixed-point scale of weights: integer sums do not depend on the order of addition */
+#define FIXED 0x1p40 /* fixed-point scale of weights; unlike floating point, integer sums do not depend on the order of addition */
 
 typedef float shares_of[BEND_WIDTH];
 
-/* Interpolates the weights of `width` sensors at an anchor (three mesh points and their weights). Sets the remaining elements of the
+/* Interpolates the weights of `width` sensors at an anchor (three mesh points and their weights). Sets the rest of the
  * BEND_WIDTH results to 0. */
 SIMD_BODY void gather(const struct influence_anchor *anchor, const float *at_points, size_t stride, size_t width, shares_of out)
 {
@@ -59,9 +59,9 @@ void influence_bend_add(struct influence_bend *bend, const float *at_points, siz
     }
 }
 
-/* Returns the largest error of the field for any readings, in colour steps. The worst readings are MAX for all sensors whose weight error
- * is positive and MIN for the others, or vice versa. plus, minus: sums of the positive and of the negative weight errors. around: see
- * influence_bend_measure(). */
+/* Returns the largest error of the field that any readings can cause, in colour steps. The worst readings are MAX for all
+ * sensors with a positive weight error and MIN for the others, or vice versa. plus, minus: sums of the positive and negative
+ * weight errors. around: see influence_bend_measure(). */
 static double worst_of(double plus, double minus, double around)
 {
     double level = around * (plus + minus);
@@ -70,11 +70,11 @@ static double worst_of(double plus, double minus, double around)
 
 /* --- vertex errors ----------------------------------------------------------------------------------------------------------- */
 
-/* states of the error of a drawn triangle (of the asset file): bounded, hidden (does not count), unknown */
+/* a drawn triangle's error is bounded, hidden (does not count) or unknown */
 enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
-/* a triangle with more than this share of its area hidden counts as wholly hidden; below 1 because of rounding */
+/* a triangle counts as wholly hidden if more than this share of its area is hidden; below 1 because of rounding */
 #define ALL_OF_IT 0.999
-/* share of sample points of a coarse level's triangle whose error may be unknown, because such a triangle does not lie on the surface */
+/* largest share of sample points per coarse triangle with unknown error; coarse triangles do not lie on the surface */
 #define COARSE_UNKNOWN 0.5
 
 static enum triangle_state state_of(const struct influence_bend *bend, size_t tri)
@@ -94,8 +94,9 @@ static float mesh_error_at(const struct influence_anchor *anchor, const float *b
     return most;
 }
 
-/* Writes the interpolation error of each vertex. bends: bend of each triangle as a share of the spread of readings. Triangles hidden inside
- * other parts are visible only in sections and do not count. A vertex that only hidden triangles use gets the error 1 (unknown). */
+/* Writes the interpolation error of each vertex. bends: bend of each triangle as a share of the spread of readings. Triangles
+ * hidden inside other parts are visible only in sections and do not count. A vertex used only by hidden triangles gets the
+ * error 1 (unknown). */
 static void write_errors(struct influence_bend *bend, const float *bends, float *errors)
 {
     const struct bend_drawn *drawn = &bend->drawn;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the interpolations that each group requests, and writes all results to one influence file. */
+/* Computes the interpolations that each group requests, and writes all results to an influence file. */
 #include "preprocess/influence/influence_file.h"
 
 #include <math.h>
@@ -18,14 +18,14 @@
 #include "preprocess/influence/transport.h"
 #include "protocol/influence_format.h"
 
-#define EDGES 5.0     /* number of mesh edges along one correlation range for which the mesh is made; more make no visible difference */
-/* minimum number of mesh edges along one correlation range; fewer would make the field seem more certain than it is */
+#define EDGES 5.0     /* number of mesh edges per correlation range that the mesh is made with; more make no visible difference */
+/* minimum number of mesh edges per correlation range; with fewer, the field would seem more certain than it is */
 #define MIN_EDGES 2.0
 #define LONGEST 10.0  /* maximum correlation range, in multiples of the surface's size; longer ranges look the same */
 #define FIT_MIN 0.05  /* smallest correlation range that is fitted, in multiples of the surface's size */
 #define FIT_MAX 3.0
-/* maximum number of points at which the bend (interpolation error, influence_bend.h) is measured; with more, nothing is measured, because
- * it would take too long */
+/* maximum number of points at which the bend (interpolation error, influence_bend.h) is measured; with more, it is not measured
+ * at all, because that would take too long */
 enum { BEND_PLACES = 8000000 };
 
 struct influence_making {
@@ -36,11 +36,11 @@ struct influence_making {
     struct cloud_heat *cloud; /* point cloud for distances by heat, created for the first group that requests them; NULL: not created yet */
     struct influence_header header;
     struct influence_entry *entries;
-    struct influence *found; /* by entry: the influence that was computed for it */
+    struct influence *found; /* by entry: the influence computed for it */
     size_t capacity, found_capacity;
 };
 
-/* Lists the sensors of a group that have a position on the asset. Returns the number of these sensors; *places_m receives their positions,
+/* Finds the sensors of a group that have a position on the asset. Returns their number; *places_m receives their positions,
  * which the caller frees (mem_free). */
 static size_t places_of(const struct influence_input *input, int group, double (**places_m)[3])
 {
@@ -67,7 +67,7 @@ static const struct plant_asset *asset_of(const struct influence_input *input)
     return &input->plant->assets[input->plant->tags[input->sensors[0].tag].asset];
 }
 
-/* Returns the names of the sensors that places_of() lists, in the same order. The caller frees the list (mem_free). */
+/* Returns the names of the sensors that places_of() finds, in the same order. The caller frees the list (mem_free). */
 static const char **names_of(const struct influence_input *input, int group)
 {
     const char **names = mem_array(input->sensor_count, sizeof(*names));
@@ -79,8 +79,8 @@ static const char **names_of(const struct influence_input *input, int group)
     return names;
 }
 
-/* Sets those parameters of the Gaussian process that the plant file does not state to their defaults, for an asset with fewer sensors than
- * a fit needs (PLANT_GP_FITTED). */
+/* Sets the Gaussian process parameters that the plant file omits to defaults, for an asset with too few sensors for a fit
+ * (PLANT_GP_FITTED). */
 static void take_defaults(const struct influence_making *making, const struct plant_group *of, size_t count, struct gaussian_params *gp)
 {
     const double range = of->max - of->min;
@@ -94,8 +94,8 @@ static void take_defaults(const struct influence_making *making, const struct pl
              asset_of(making->input)->id, of->id, count, PLANT_GP_FITTED, gp->range_m, gp->noise, gp->deviation, of->unit);
 }
 
-/* Determines the parameters of a group's Gaussian process: those stated in the plant file, the others fitted to the readings file that it
- * names. */
+/* Determines the parameters of a group's Gaussian process: takes them from the plant file, and fits those that it omits to the
+ * readings file it names. */
 static bool find_params(struct influence_making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
 {
     const struct influence_input *input = making->input;
@@ -138,7 +138,7 @@ static bool find_params(struct influence_making *making, int group, const double
     return good;
 }
 
-/* Returns whether the mesh has at least MIN_EDGES edges along one correlation range; otherwise logs an error. */
+/* Returns whether the mesh has at least MIN_EDGES edges per correlation range; otherwise logs an error. */
 static bool range_good(const struct influence_making *making, int group, const struct influence_mesh *mesh,
                        const struct gaussian_params *gp)
 {
@@ -160,13 +160,13 @@ static bool solve(struct influence_making *making, struct influence *found, enum
     return interpolation == INTERPOLATION_GP ? gaussian_solve(found, task, &taken) : influence_conduct(found, task, decay_m);
 }
 
-/* Computes found->errors (interpolation errors by vertex). Writes 1 (unknown) for all vertices if they were not measured. Returns false if
- * out of memory. */
+/* Computes found->errors (interpolation errors by vertex), or sets them all to 1 (unknown) if they were not measured. Returns
+ * false if out of memory. */
 static bool bound_errors(const struct influence_making *making, const struct plant_group *group, enum interpolation interpolation,
                          struct influence_bend *bend, struct influence *found)
 {
     double around = interpolation == INTERPOLATION_FIN ? (group->ambient - group->min) / (group->max - group->min) : 0;
-    /* one extra element, because the file pads the array to a multiple of 8 bytes */
+    /* one extra element: the file pads the array to a multiple of 8 bytes */
     found->errors = mem_try_array(making->input->vertex_count + 1, sizeof(*found->errors));
     if (!found->errors)
         return false;
@@ -179,8 +179,8 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* Computes one interpolation of a group and adds it to the entries of the influence file. task->bend: measures the interpolation errors;
- * NULL: they are not measured, because there are too many places (corners of overlaps). */
+/* Computes one interpolation of a group and adds it to the influence file's entries. task->bend: measures the interpolation
+ * errors; NULL: there are too many places (corners of overlaps) to measure them. */
 static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_task *task,
                       const struct gaussian_params *gp)
 {
@@ -259,8 +259,8 @@ static void find_by_heat(void *arg, size_t begin, size_t end)
             work->failed = true;
 }
 
-/* Computes distances by heat on a point cloud for a group. For the report, compares the distances of the first CLOUD_CHECKED sensors with
- * our mesh distances. */
+/* Computes distances by heat on a point cloud for a group. For the report, compares those of the first CLOUD_CHECKED sensors
+ * with our mesh distances. */
 static bool add_heat(struct influence_making *making, int group, const double (*places_m)[3], size_t count)
 {
     const struct influence_input *input = making->input;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the influence of an asset's sensors and writes the file KEY.influence (protocol/ASSET.md). Each function is called by one thread
- * at a time, and distributes its work to the threads of the `struct workers` that it is given. */
+/* Computes the influence of an asset's sensors and writes the file KEY.influence (protocol/ASSET.md). Thread: one at a time,
+ * which uses the threads of the `struct workers` passed in. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #include "base/files/cache_file.h"
@@ -10,14 +10,14 @@
 #include "preprocess/influence/influence_bend.h"
 #include "surface/surface.h"
 
-/* Differences between point-cloud heat distances and our mesh distances, as shares of the largest distance, at all vertices for
+/* Differences between point-cloud heat distances and our mesh distances at all vertices, as shares of the largest distance, for
  * CLOUD_CHECKED sensors. */
 struct cloud_report {
     size_t points;
     int k;
     double spacing_m, mean, worst;
-    /* reached: number of vertices that only the point cloud reaches, through thin walls; unreached: number of vertices that only our
-     * distances reach */
+    /* reached: number of vertices that only heat distances reach, through thin walls; unreached: number of vertices that only
+     * our distances reach */
     size_t reached, unreached;
 };
 enum { CLOUD_CHECKED = 4 };
@@ -36,16 +36,16 @@ struct influence_input {
     size_t level_count;
     const char *folder;
     uint64_t key;               /* key of the asset file */
-    struct cloud_report *cloud; /* receives a comparison of heat distances with mesh distances if a group requests distances by heat */
+    struct cloud_report *cloud; /* receives a comparison of heat distances with mesh distances if a group requests heat distances */
     struct bend_report *bend;   /* receives the measured interpolation errors if a group requests harmonic, fin or gp */
 };
 
-/* Returns whether a group with at least one of these sensors requests an interpolation that is prepared in the influence file, other than
- * distances. */
+/* Returns whether any group with at least one of these sensors requests an interpolation that the influence file contains (any
+ * but distances). */
 bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 /* Computes the interpolations that the groups request and writes the file. Returns false with the reason in why. */
 bool influence_file_make(struct log *log, struct workers *workers, const struct influence_input *input, char why[200]);
-/* Returns whether the influence file of the asset with this key exists and is complete; if not, why receives the reason. */
+/* Returns whether this asset's influence file exists and is complete; if not, why receives the reason. */
 bool influence_file_good(const char *folder, uint64_t key, char why[CACHE_FILE_WHY_BYTES]);
 
 #endif

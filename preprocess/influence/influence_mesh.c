@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits mesh edges near sensors in halves until they are short enough, and finds the mesh points that each sensor's disc covers. */
+/* Splits mesh edges near sensors in half until they are short enough, and finds the mesh points that each sensor's disc covers. */
 #include "preprocess/influence/influence_mesh.h"
 
 #include <math.h>
@@ -10,13 +10,13 @@
 
 /* a mesh edge at distance D from the nearest sensor may be GRADING * D long, or half the disc's radius if that is longer */
 #define GRADING 0.7
-/* maximum number of mesh points added per sensor; if the disc's radius is so small that more would be needed, edges stay longer than
+/* maximum number of mesh points added per sensor; if the disc's radius is so small that it takes more, edges stay longer than
  * GRADING allows */
 #define MAX_ADDED 1000
-/* Mesh edges are split where they cross the rim of a disc, so that the disc's points reach its rim. Points whose distance from the rim is
- * below this share of the radius count as on it, which avoids very short edges. */
+/* Mesh edges are split where they cross the rim of a disc, so that the disc's points reach its rim. To avoid very short edges,
+ * points whose distance from the rim is below this share of the radius count as on it. */
 #define RIM_SLACK 0.02
-#define MAX_ADDED_EVENLY 400000 /* maximum number of mesh points added to make edges short everywhere (edge_m below INFINITY) */
+#define MAX_ADDED_EVENLY 400000 /* maximum number of mesh points added to shorten edges everywhere (edge_m below INFINITY) */
 
 /* --- refinement near sensors ------------------------------------------------------------------------------------------------- */
 
@@ -33,8 +33,8 @@ struct halving {
     /* radius_m: radius of a sensor's disc; edge_m: maximum edge length everywhere; near_m: by mesh point, distance to the nearest sensor */
     double radius_m, edge_m, *near_m;
     size_t near_capacity, limit;
-    struct edge_table edges; /* edges of the mesh that must be split */
-    uint32_t *middle;        /* by edge to split: index of the mesh point that divides it */
+    struct edge_table edges; /* mesh edges to be split */
+    uint32_t *middle;        /* by edge to split: index of the mesh point at which it is split */
     size_t middle_capacity;
 };
 
@@ -84,7 +84,7 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
     if (cut == 0)
         return;
-    for (int i = 0; i < 3; i++) /* rotate the corners so that the one split edge of three, or the one unsplit edge, comes first */
+    for (int i = 0; i < 3; i++) /* rotate the corners so that the only split edge, or the only unsplit edge, comes first */
         if ((m[i] != TRIMESH_NONE) == (cut == 1))
             at = i;
     const uint32_t a = p[at], b = p[(at + 1) % 3], c = p[(at + 2) % 3];
@@ -105,7 +105,7 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
 }
 
-/* Writes the point between a (inside a disc) and b (outside) where the edge crosses the disc's rim. */
+/* Writes the point at which the edge from a (inside a disc) to b (outside) crosses the disc's rim. */
 static void find_crossing(const struct influence_mesh *mesh, const double a[3], const double b[3], double radius_m, double out[3])
 {
     double low = 0, high = 1;
@@ -117,7 +117,7 @@ static void find_crossing(const struct influence_mesh *mesh, const double a[3], 
     }
 }
 
-/* Marks the edges that cross the rim of a disc, to be split where they cross it. */
+/* Marks the edges that cross the rim of a disc, which are then split at the crossing. */
 static void mark_rims(struct halving *halving)
 {
     const struct trimesh *mesh = &halving->of->mesh;
@@ -214,8 +214,8 @@ static void barycentric(const struct trimesh *mesh, const uint32_t corners[3], c
     weights[0] = 1 - weights[1] - weights[2];
 }
 
-/* Returns the mesh triangle ("piece") of surface triangle `tri` that contains the point or is nearest to it. weights: barycentric, not
- * negative. */
+/* Returns the mesh triangle ("piece") of surface triangle `tri` that contains the point or is nearest to it. weights: the
+ * point's barycentric weights, not negative. */
 static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const double point[3], double weights[3])
 {
     double best = -INFINITY, sum = 0;
@@ -239,8 +239,8 @@ static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const 
 
 /* --- discs ------------------------------------------------------------------------------------------------------------------- */
 
-/* Collects the mesh points of a sensor's disc by a search along the surface from the nearest corner, so that the other side of a thin wall
- * stays out. */
+/* Collects the mesh points of a sensor's disc: searches along the surface from the nearest corner, so as not to include the
+ * other side of a thin wall. */
 static void spread_disc(struct influence_mesh *mesh, size_t sensor, double radius_m, char *seen)
 {
     const struct trimesh *from = &mesh->mesh;

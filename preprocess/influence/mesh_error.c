@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the flux imbalance at each mesh edge from the field's values at mesh points, between which it is linear, and sums the imbalance
+/* Computes the flux imbalance at each mesh edge from the values at mesh points, between which the field is linear, and sums it
  * over sensors. */
 #include "preprocess/influence/mesh_error.h"
 
@@ -10,15 +10,15 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* safety factor of the estimated error: 2, because the values at mesh points have an error about as large as the error between points */
+/* safety factor on the estimated error; 2 because the values at mesh points have an error about as large as the error between points */
 #define SAFETY 2.0
-#define FIXED 0x1p40 /* fixed-point scale of a flux imbalance: integer sums do not depend on the order of addition */
+#define FIXED 0x1p40 /* fixed-point scale of a flux imbalance; unlike floating point, integer sums do not depend on the order of addition */
 
-/* Linear form whose value is the flux imbalance of an edge times the height of its lowest triangle. That is how far the field at this
- * triangle's tip (the corner opposite the edge) differs from a linear continuation of the other triangles at the edge. */
+/* Linear form whose value is an edge's flux imbalance times the height of its lowest triangle: how far the field at that
+ * triangle's tip (the corner opposite the edge) differs from a linear continuation of the edge's other triangles. */
 struct edge_form {
-    uint32_t first, count; /* index of the form's first term, and number of its terms */
-    float low_m, sum_m;    /* heights above the edge of the triangles at it: the smallest height, and the sum of all heights */
+    uint32_t first, count; /* index of the form's first term; number of terms */
+    float low_m, sum_m;    /* heights of the adjacent triangles above the edge: the smallest, and the sum */
 };
 struct edge_term {
     uint32_t point;
@@ -31,13 +31,13 @@ struct mesh_error {
     struct edge_term *terms;
     size_t edge_count;
     uint32_t (*edges_of)[3];       /* by triangle: index of the edge from each corner to the next */
-    float (*heights_m)[3];         /* by triangle: its height above each of its edges; 0: the triangle has no area */
-    _Atomic int64_t *plus, *minus; /* by edge: sums over sensors of the positive and of the negative flux imbalances, fixed point */
+    float (*heights_m)[3];         /* by triangle: its height above each of its edges; 0: the triangle is degenerate */
+    _Atomic int64_t *plus, *minus; /* by edge: sums of the sensors' positive and negative flux imbalances, in fixed point */
 };
 
 /* --- the mesh ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the height of a triangle's tip above the edge a-b. *foot receives where the tip projects onto the edge: 0 at a, 1 at b. */
+/* Returns the height of a triangle's tip above the edge a-b. *foot: position of the tip's projection on the edge, 0 at a, 1 at b. */
 static double height_m(const double a[3], const double b[3], const double tip[3], double *foot)
 {
     double along[3], to[3];
@@ -66,7 +66,7 @@ static void measure_heights(struct mesh_error *error)
     edge_table_finish(&table);
 }
 
-/* Returns an array by edge: 1 if both ends are in the disc of one sensor, else 0. The caller frees the array (mem_free). */
+/* Returns an array by edge: 1 if its ends are in the same sensor's disc, else 0. The caller frees the array (mem_free). */
 static char *find_discs(const struct mesh_error *error)
 {
     const struct trimesh *mesh = &error->mesh->mesh;
@@ -99,8 +99,8 @@ static void add_term(struct mesh_error *error, struct edge_form *edge, uint32_t 
     error->terms[edge->first + edge->count++] = (struct edge_term){ point, (float)factor };
 }
 
-/* Reserves space for the terms of each edge's linear form: one for each end of the edge, and one for each adjacent triangle's corner
- * opposite the edge. */
+/* Reserves space for the terms of each edge's linear form: one for each end of the edge, and one for the opposite corner of
+ * each adjacent triangle. */
 static bool reserve_terms(struct mesh_error *error)
 {
     uint32_t *faces = mem_array(error->edge_count, sizeof(*faces)), next = 0;
@@ -202,8 +202,8 @@ void mesh_error_add(struct mesh_error *error, const float *at_points, size_t str
     }
 }
 
-/* Returns the discretisation error in triangle `tri` that its edge i causes: at most the deviation at the tip of the edge's lowest triangle
- * (struct edge_form). */
+/* Returns the discretisation error in triangle `tri` due to its edge i: at most the deviation at the tip of the edge's lowest
+ * triangle (struct edge_form). */
 static double across(const struct mesh_error *error, size_t tri, int i)
 {
     const struct edge_form *edge = &error->edges[error->edges_of[tri][i]];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clips polygons by half planes, one after the other. */
+/* Clips polygons against half planes, one after the other. */
 #include "preprocess/influence/polygons.h"
 
 #include <string.h>
@@ -22,8 +22,8 @@ double polygons_area(const struct polygons *polygons)
     return sum;
 }
 
-/* Writes the part of the polygon to the left of the line from a to b (side 1), or to its right (side -1). Returns false with an empty
- * result if the part could have more than POLYGON_CORNERS corners. */
+/* Writes the part of the polygon to the left (side 1) or right (side -1) of the line from a to b. Returns false with an empty
+ * result if that part could have more than POLYGON_CORNERS corners. */
 static bool half_of(const struct polygon *polygon, const double a[2], const double b[2], double side, struct polygon *out)
 {
     out->count = 0;
@@ -76,7 +76,7 @@ void polygons_add_outside(struct polygons *polygons, const struct polygon *polyg
                half_of(&inside, triangle[i], triangle[(i + 1) % 3], 1, &next);
         inside = next;
     }
-    /* keep the polygon whole instead of splitting it if the overlap has at most the area least_m2 */
+    /* the overlap has at most the area least_m2: keep the whole polygon instead of splitting it */
     if (!good || !(polygon_area(&inside) > least_m2)) {
         polygons_add(polygons, polygon);
         return;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clips convex, counter-clockwise polygons in a plane by triangles (Sutherland & Hodgman, Reentrant polygon clipping, 1974). Thread:
- * one. */
+/* Clips convex, counter-clockwise polygons in a plane against triangles (Sutherland & Hodgman, Reentrant polygon clipping,
+ * 1974). Thread: one. */
 #ifndef PREPROCESS_INFLUENCE_POLYGONS_H
 #define PREPROCESS_INFLUENCE_POLYGONS_H
 #include <stdbool.h>
@@ -29,7 +29,7 @@ double polygons_area(const struct polygons *polygons);
 /* Writes the intersection of the polygon and the triangle. Returns false with an empty result if it would have more than POLYGON_CORNERS
  * corners. */
 bool polygon_in_triangle(const struct polygon *polygon, const double triangle[3][2], struct polygon *out);
-/* Appends to `polygons` the part of the polygon outside the triangle, as convex polygons. Drops those of at most the area least_m2. */
+/* Appends the part of the polygon outside the triangle to `polygons`, as convex polygons. Drops those with at most the area least_m2. */
 void polygons_add_outside(struct polygons *polygons, const struct polygon *polygon, const double triangle[3][2], double least_m2);
 void polygons_add(struct polygons *polygons, const struct polygon *polygon);
 /* Frees the list. */

@@ -11,10 +11,10 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* the diffusion length sqrt(t) is at least the surface's size divided by this number, because heat underflows at e^-709 */
+/* minimum diffusion length sqrt(t), as the surface's size divided by this number; heat underflows at e^-709 */
 #define LENGTHS 150.0
-/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this number, because heat underflows; paths on
- * folded parts are much longer than the surface's size */
+/* minimum diffusion length sqrt(t), as the longest path along the surface divided by this number, because heat underflows; on
+ * folded parts, paths are much longer than the surface's size */
 #define LONGEST 400.0
 #define LEAST 1e-280 /* minimum length of a solved vector; a shorter one has lost its direction to rounding */
 
@@ -61,15 +61,15 @@ static void find_normals(struct vector_heat *transport)
     mem_free(spare);
 }
 
-/* Adjacency lists: for each point, the mesh edges that end at it. */
+/* Adjacency lists: by point, the mesh edges that end there. */
 struct ways {
-    size_t *first; /* by point: index in `at` of its first edge; one extra element at the end */
+    size_t *first; /* by point: index in `at` of its first edge; plus one element at the end */
     struct transport_edge {
         uint32_t to;
         double length_m;
     } * at;
     uint32_t *queue;
-    double *gone_m; /* by point: length of the path from the start to the point, metres; < 0: not reached yet */
+    double *gone_m; /* by point: length of the path from the start, metres; < 0: not reached yet */
 };
 
 static void find_ways(const struct intrinsic *in, size_t point_count, struct ways *ways)
@@ -95,8 +95,8 @@ static void find_ways(const struct intrinsic *in, size_t point_count, struct way
     mem_free(next);
 }
 
-/* Breadth-first search along mesh edges from point `from`. Returns the number of connected points, listed in queue[]. *farthest: the point
- * with the longest path. */
+/* Breadth-first search along mesh edges from point `from`. Returns the number of points reached, which queue[] lists.
+ * *farthest: the point with the longest path. */
 static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
 {
     size_t count = 1;
@@ -115,8 +115,8 @@ static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
     return count;
 }
 
-/* Returns the approximate length of the longest path within any connected component: finds the point farthest from an arbitrary one, then
- * the longest path from that point. */
+/* Returns the approximate length of the longest path within any connected component: finds the point farthest from an arbitrary
+ * one, then the longest path from there. */
 static double longest_way_m(const struct intrinsic *in, size_t point_count)
 {
     struct ways ways;
@@ -166,7 +166,7 @@ static void put(struct triplets *triplets, uint32_t row, uint32_t column, double
     ((double *)triplets->list->x)[triplets->count++] = value;
 }
 
-/* Adds to the matrix the block of two points: weight times the rotation from the tangent plane of b to that of a. Swaps a and b if a has
+/* Adds the block of two points to the matrix: weight times the rotation from b's tangent plane to a's. Swaps a and b if a has
  * the lower row. */
 static void put_pair(const struct vector_heat *transport, struct triplets *triplets, uint32_t a, uint32_t b, double weight)
 {
@@ -206,9 +206,9 @@ static void put_edges(const struct vector_heat *transport, const cholmod_sparse 
         put(triplets, i, i, laplacian->mass_m2[i / 2] + diagonal[i / 2]);
 }
 
-/* Assembles the connection Laplacian: the scalar Laplacian with a rotation at each edge. Edges of negative weight, possible at a rim
- * opposite an obtuse angle, are dropped: with rotations that do not close around a triangle the matrix is positive definite only if all
- * weights are positive. */
+/* Assembles the connection Laplacian: the scalar Laplacian with a rotation at each edge. Drops edges of negative weight, which
+ * are possible at a rim opposite an obtuse angle: if rotations around a triangle do not cancel out, the matrix is only positive
+ * definite if all weights are positive. */
 static cholmod_sparse *assemble(const struct vector_heat *transport, double time_m2, cholmod_common *common)
 {
     const struct laplacian *laplacian = &transport->laplacian;
@@ -243,7 +243,7 @@ static bool factorize(struct vector_heat *transport, cholmod_common *common)
 
 /* --- one sensor ------------------------------------------------------------------------------------------------------------- */
 
-/* Sets the right-hand side for a sensor: a tangent vector at the mesh point nearest to the sensor, and its copies, rotated into the tangent
+/* Sets the right-hand side for a sensor: a tangent vector at the mesh point nearest to it, and copies rotated into the tangent
  * planes of all other points in the sensor's disc. */
 static void start_from(const struct vector_heat *transport, size_t sensor, double *b)
 {

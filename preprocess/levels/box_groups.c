@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups overlapping boxes by recursive halving of space. The recursion ends in a cell with few boxes, with boxes that are one group
- * already, or with a box that fills the cell and so overlaps all others. A sweep along one axis, the usual method, would compare all pairs
- * of boxes along a plate perpendicular to that axis. */
+/* Groups overlapping boxes by recursively halving space. The recursion ends in a cell with few boxes, in one whose boxes
+ * already form one group, or in one that a box fills, which therefore overlaps all others. A sweep along one axis, the usual
+ * method, would compare all pairs of boxes along a plate perpendicular to that axis. */
 #include "preprocess/levels/box_groups.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "surface/mesh/trimesh.h"
 
 #define FEW 24       /* maximum number of boxes in a cell for which all pairs are compared */
-#define MAX_DEPTH 96 /* maximum depth of halving space: 24 bits of precision on each of three axes, plus a margin */
+#define MAX_DEPTH 96 /* maximum recursion depth: 24 bits of precision on each of three axes, plus a margin */
 
 struct box_cell {
     float low_m[3], high_m[3];
@@ -43,7 +43,7 @@ static bool are_one_group(const struct part_box *boxes, const uint32_t *list, si
     return true;
 }
 
-/* Shrinks the cell to the bounding box of the boxes in it. */
+/* Shrinks the cell to the bounding box of its boxes. */
 static void tighten(const struct part_box *boxes, const uint32_t *list, size_t count, struct box_cell *cell)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -84,8 +84,7 @@ static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t
     return filler < count;
 }
 
-/* Returns the axis along which a cell of space should be halved: the one with the fewest boxes that lie in both halves; -1: no halving
- * helps. */
+/* Returns the axis along which to halve the cell: the one with the fewest boxes in both halves; -1: halving along no axis helps. */
 static int best_axis(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell)
 {
     int best = -1;
@@ -119,8 +118,8 @@ static void join_half(const struct part_box *boxes, const uint32_t *list, size_t
     mem_free(inside);
 }
 
-/* Groups the overlapping boxes of a cell by recursive halving of the cell. Two overlapping boxes have a common point, so both are in the
- * half that contains this point, and are found there. */
+/* Groups the overlapping boxes of a cell by recursively halving the cell. Two overlapping boxes have a common point, so the
+ * half that contains this point has both boxes, and the overlap is found there. */
 static void join_in(const struct part_box *boxes, uint32_t *list, size_t count, struct box_cell cell, int depth, uint32_t *parent)
 {
     if (count < 2 || are_one_group(boxes, list, count, parent))

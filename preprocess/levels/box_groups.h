@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups axis-aligned boxes: boxes that overlap or touch are in one group, also if they only do so through other boxes. Thread: any. */
+/* Groups axis-aligned boxes: boxes that overlap or touch, directly or through other boxes, are in one group. Thread: any. */
 #ifndef PREPROCESS_LEVELS_BOX_GROUPS_H
 #define PREPROCESS_LEVELS_BOX_GROUPS_H
 #include <stddef.h>
@@ -10,8 +10,8 @@ struct part_box {
     uint32_t part;
 };
 
-/* Merges the parts (connected components of a model) of all boxes that overlap or touch, in the union-find forest `parent`
- * (trimesh_join()). Run time is nearly linear in the number of boxes, however they are placed. */
+/* Merges the parts (connected components of a model) whose boxes overlap or touch, in the union-find forest `parent`
+ * (trimesh_join()). Run time is nearly linear in the number of boxes, whatever their arrangement. */
 void box_groups_join(const struct part_box *boxes, size_t count, uint32_t *parent);
 
 #endif

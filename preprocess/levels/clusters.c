@@ -9,19 +9,19 @@
 #include "base/mem.h"
 
 #define MAX_VERTICES 255 /* meshoptimizer's limit of vertices per meshlet */
-#define CONE_WEIGHT 0.5f /* weight by which meshoptimizer prefers flat clusters to compact ones */
+#define CONE_WEIGHT 0.5f /* how strongly meshoptimizer prefers flat clusters to compact ones */
 
 struct clusters_making {
     struct workers_task *task;
-    struct level level; /* the level of detail that is partitioned; its arrays belong to the caller */
+    struct level level; /* the level of detail being partitioned; its arrays belong to the caller */
     float (*positions_m)[3];
     uint32_t vertex_count;
     struct clusters made; /* clusters of the level of detail; their index offsets are relative to the level's first index */
 };
 
-/* A primitive whose vertices are renumbered from 0, because meshoptimizer's run time depends on the number of vertices it is given. */
+/* A primitive whose vertices are renumbered from 0, because meshoptimizer's run time depends on the number of vertices passed in. */
 struct local {
-    uint32_t *of; /* by vertex of the geometry: its index in the current primitive + 1; 0: the primitive does not use the vertex */
+    uint32_t *of; /* by vertex of the geometry: 1 + its index in the current primitive; 0: not used by the primitive */
     uint32_t *indices, *vertices;
     float (*positions_m)[3];
     uint32_t count;

@@ -15,13 +15,13 @@ struct clusters {
 };
 
 struct clusters_making;
-/* Starts partitioning the primitives of a level of detail into clusters on an idle worker. The job sorts the indices of each primitive by
- * cluster, and within a cluster in an order that suits the GPU's vertex cache. Positions are copied; the level's arrays must stay in place
- * until clusters_end(). workers NULL: does the work before it returns. Returns the job for clusters_end(). */
+/* Starts partitioning a level of detail's primitives into clusters on an idle worker. The job sorts each primitive's indices by
+ * cluster, and within a cluster in an order that suits the GPU's vertex cache. Positions are copied; the level's arrays must
+ * stay in place until clusters_end(). workers NULL: does the work before returning. Returns the job for clusters_end(). */
 struct clusters_making *clusters_begin(struct workers *workers, const struct level *level, const float (*positions_m)[3],
                                        uint32_t vertex_count);
-/* Waits for the job of clusters_begin() and appends its clusters to *clusters. first_index: index in the asset file's index array at which
- * the level's indices begin, added to each cluster's index offset. Frees the job and sets *making to NULL. */
+/* Waits for the job of clusters_begin() and appends its clusters to *clusters. first_index: where the level's indices begin in
+ * the asset file's index array; added to each cluster's index offset. Frees the job and sets *making to NULL. */
 void clusters_end(struct clusters_making **making, uint32_t first_index, struct clusters *clusters);
 /* Frees the array. */
 void clusters_finish(struct clusters *clusters);

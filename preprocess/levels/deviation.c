@@ -10,15 +10,15 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* in multiples of the expected distance; a triangle whose longest edge is at most this long is probed only at its centre */
+/* in multiples of the expected distance: triangles whose longest edge is at most this long are probed only at the centre */
 #define SMALL 4.0
-/* in multiples of the expected distance; a triangle whose longest edge is longer is probed at twelve inner points, and one between SMALL
- * and LARGE at the midpoints of its edges */
+/* in multiples of the expected distance: triangles with a longer edge than this are probed at twelve inner points, and those
+ * between SMALL and LARGE at the midpoints of their edges */
 #define LARGE 16.0
 
-#define GRAIN 1024 /* number of measured points per unit of work of a thread */
+#define GRAIN 1024 /* number of points that a thread measures per unit of work */
 
-/* Returns a hash of the three vertex indices that does not depend on their order and is never 0. */
+/* Returns a hash of three vertex indices that does not depend on their order and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
 {
     uint32_t low = v[0], middle = v[1], high = v[2], swap;
@@ -48,7 +48,7 @@ static void make_room_to_know(struct deviation *surface, size_t triangle_count)
     surface->known = mem_array(surface->known_mask + 1, sizeof(*surface->known));
 }
 
-/* Adds a triangle to the surface's hash set of triangles. Returns false if a triangle with the same corners is already in the set. */
+/* Adds a triangle to the surface's hash set of triangles. Returns false if the set already has one with the same corners. */
 static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 {
     uint64_t hash = triangle_hash(v), *slot = &surface->known[slot_of(surface, hash)];
@@ -58,10 +58,9 @@ static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 }
 
 struct deviation_part {
-    /* triangles of one part (connected component), in the arrays of the whole surface; tri_count 0: this surface has no triangle of the
-     * part */
+    /* triangles of one part (connected component), in the whole surface's arrays; tri_count 0: this surface has no triangle of the part */
     struct trimesh mesh;
-    struct bvh *bvh; /* bounding volume hierarchy of the triangles of the part (connected component); NULL: the part is not measured */
+    struct bvh *bvh; /* bounding volume hierarchy of the part's triangles; NULL: the part is not measured */
 };
 
 /* Returns the triangle indices grouped by part (connected component). The caller frees them with mem_free. */
@@ -169,9 +168,9 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 
 struct probing {
     const struct deviation *from, *to;
-    /* by part (connected component): nonzero if it is probed (distances of its points are measured); NULL: all parts are */
+    /* by part (connected component): nonzero: measure the distances of its points; NULL: measure all parts */
     const char *only;
-    bool anywhere; /* true: measure the distance from any part of `to`; false: from the same part (connected component) of `to` */
+    bool anywhere; /* true: measure the distance from any part of `to`; false: from the same part (connected component) */
     double expected_m;
     const float *known_m; /* by part (connected component): largest distance found before this pass; smaller distances need not be exact */
     float *found_m;       /* by vertex, or by triangle in the second pass: its measured distance */
@@ -182,11 +181,11 @@ struct near { /* cache of one thread: the triangles that were nearest to recent 
     /* indices of the triangles of part `part` of surface `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty
      * entry */
     uint32_t part, tris[RECENT];
-    double known_m; /* largest distance of the part (connected component) that this thread has found so far */
+    double known_m; /* largest distance of the part (connected component) found so far by this thread */
 };
 
 struct deviation_probe {   /* state of one distance measurement ("probe"): a point, and the surface from which its distance is measured */
-    const struct bvh *bvh; /* bounding volume hierarchy of the surface; NULL: `to` has no triangle of the part */
+    const struct bvh *bvh; /* bounding volume hierarchy to search; NULL: `to` has no triangle of the part */
     const struct trimesh *mesh;
     double point[3];
     struct near *near;
@@ -217,8 +216,8 @@ static void keep_first(struct near *near, int place, uint32_t tri)
     near->tris[0] = tri;
 }
 
-/* Returns whether one of the recently nearest triangles (near->tris) is closer to the probed point than the largest known distance, so that
- * no search is needed. Neighbouring points often have the same nearest triangle. */
+/* Returns whether one of the recently nearest triangles (near->tris) is closer to the probed point than the largest known
+ * distance, which makes a search unnecessary. Neighbouring points often have the same nearest triangle. */
 static bool is_known(const struct deviation_probe *probe)
 {
     struct near *near = probe->near;
@@ -242,8 +241,8 @@ static void forget(struct near *near)
         near->tris[i] = TRIMESH_NONE;
 }
 
-/* Returns the distance of the probed point from the other surface, or 0 if it is not larger than the largest distance found so far.
- * Searches within the expected distance first, which is enough for most points. */
+/* Returns the distance of the probed point from the other surface, or 0 if it is not larger than the largest distance found so
+ * far. First searches within the expected distance, which is enough for most points. */
 static double distance_of(const struct deviation_probe *probe, double expected_m)
 {
     struct bvh_place place;
@@ -299,8 +298,9 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
     return distance_of(&probe, probing->expected_m);
 }
 
-/* Returns whether all of triangle t is within the largest known distance of one of the recently nearest triangles (near->tris), so that t
- * needs no measurement. The distance from a triangle is a convex function, so its maximum over t is at a corner of t. */
+/* Returns whether all of triangle t is within the largest known distance of one of the recently nearest triangles (near->tris),
+ * so that t need not be measured. The distance from a triangle is a convex function, so its maximum over t is at a corner of t.
+ * */
 static bool is_covered(const struct probing *probing, size_t t, struct near *near)
 {
     const struct trimesh *mesh = &probing->from->mesh;
@@ -330,9 +330,9 @@ static double probe_inside(const struct probing *probing, size_t t, int cuts, st
     return most_m;
 }
 
-/* Measures the distance of points inside a triangle from the other surface; its corners are measured separately. A triangle whose longest
- * edge is at most the expected distance is skipped, because no inner point can be much farther away than the corners. A triangle that both
- * surfaces contain is skipped too. */
+/* Measures the distance of points inside a triangle from the other surface; its corners are measured separately. Skips a
+ * triangle whose longest edge is at most the expected distance, because its inner points cannot be much farther away than its
+ * corners. Also skips a triangle that is part of both surfaces. */
 static void probe_triangle(const struct probing *probing, size_t t, struct near *near)
 {
     const struct deviation *from = probing->from;
@@ -370,8 +370,8 @@ static void raise_to(float *most_m, float found_m)
     *most_m = *most_m < found_m ? found_m : *most_m;
 }
 
-/* Measures the distances of surface `from` from surface `to`: the corners of all triangles first, so that a triangle can be skipped if its
- * corners show that its inside cannot raise the result. */
+/* Measures the distances of surface `from` to surface `to`. Measures the corners of all triangles first, because they can show
+ * that a triangle's inside cannot raise the result. */
 static void measure(const struct deviation *from, const struct deviation *to, const char *only, bool anywhere, double expected_m,
                     float *apart_m, struct workers *workers)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assembles levels of detail from versions (successively simplified copies of the asset). A level contains each part (connected component)
- * in the coarsest version that the level's error allows. Near levels are for assets drawn large. Far levels are for assets drawn small,
- * often with many instances in one picture. */
+/* Assembles levels of detail from versions (successively simplified copies of the asset). Each level contains, of each part
+ * (connected component), the coarsest version that the level's error allows. Near levels are for assets drawn large. Far levels
+ * are for assets drawn small, often with many instances in one picture. */
 #include "preprocess/levels/levels.h"
 
 #include <math.h>
@@ -12,23 +12,23 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-/* a near level (for an asset drawn large) is made only if it has at most this share of the previous level's triangles */
+/* a near level (for assets drawn large) must have at most this share of the previous level's triangles, otherwise it is not made */
 #define NEAR_WORTH 0.5
-#define FAR LEVELS_FILLING /* minimum error of a far level (for an asset drawn small), relative to the asset's size */
-/* maximum triangle count of a far level; far levels may have similar triangle counts (FAR_WORTH), because many instances are drawn in one
- * picture */
+#define FAR LEVELS_FILLING /* minimum error of a far level (for assets drawn small), relative to the asset's size */
+/* maximum triangle count of a far level; consecutive far levels may have similar counts (FAR_WORTH), because many instances are
+ * drawn in one picture */
 #define FAR_TRIANGLES 16000
-/* a far level (for an asset drawn small) is made only if it has at most this share of the previous level's triangles */
+/* a far level (for assets drawn small) must have at most this share of the previous level's triangles, otherwise it is not made */
 #define FAR_WORTH 0.9
 #define STEP 1.4       /* minimum factor by which the error grows from one level to the next coarser one */
-#define STEP_SMALL 1.7 /* minimum factor by which the error grows from a level whose error is above LEVELS_SMALL to the next coarser one */
-/* factor on a level's error. A near level also includes events (changes of parts) with errors up to this product, so that the next level
- * differs more. After a rejected level, the next attempt has at least this error. */
+#define STEP_SMALL 1.7 /* the same factor after a level whose error is above LEVELS_SMALL */
+/* factor on a level's error. Events (changes of parts) with errors up to this product are included in a near level too, so that
+ * the next level differs more. After a rejected level, the next attempt has at least this error. */
 #define WAIT 1.1
-/* maximum error that omitting a part may cause, as a multiple of the level's error; a part whose omission causes more is restored */
+/* maximum error caused by omitting a part, in multiples of the level's error; if the omission causes more, the part is restored */
 #define MISSED 1.05f
-/* attempts to move corners of flattened faces (levels_facing.c): first in all parts, then only in parts whose error stays within the
- * limit */
+/* number of attempts to move corners of flattened faces (levels_facing.c): first in all parts, then only in parts whose error
+ * stays within the limit */
 #define MAX_TRIES 2
 
 struct levels_making {
@@ -37,8 +37,8 @@ struct levels_making {
     struct versions versions;
     struct omission *omissions;
     char *used;     /* by vertex: nonzero if the previous level of detail uses the vertex */
-    char *contrary; /* by part (connected component): nonzero if the winding of a face contradicts its normals (levels_find_contrary()) */
-    /* The following members are the current state of the choice: */
+    char *contrary; /* by part (connected component): nonzero if a face's winding contradicts its normals (levels_find_contrary()) */
+    /* current state of the choice: */
     /* by part (connected component): index of its version (simplification step) in the level being chosen; ABSENT: the part is omitted */
     uint32_t *version;
     /* by part (connected component): index of its version (simplification step) in the last level added; ABSENT: the part is omitted */
@@ -48,10 +48,10 @@ struct levels_making {
 
 #define ABSENT VERSIONS_MAX
 
-/* --- events, sorted by error: one part changes to a coarser version or is omitted --------------------------------------- */
+/* --- events, sorted by error: a part changes to a coarser version or is omitted --------------------------------------- */
 
 struct event {
-    float error_m; /* smallest error in metres of a level of detail for which the part may change */
+    float error_m; /* metres; smallest error of a level of detail in which the part may change */
     uint32_t part, version;
 };
 
@@ -92,8 +92,7 @@ static void let_happen(struct levels_making *making, const struct event *event)
     making->tri_count += tris_of(making, event->part);
 }
 
-/* Applies events[i] (changes of parts) and later events while their error is at most error_m. Returns the index of the first event not
- * applied. */
+/* Applies events[i] (changes of parts) and the following ones up to the error error_m. Returns the index of the first event not applied. */
 static size_t let_all_happen(struct levels_making *making, const struct event *events, size_t i, size_t count, float error_m)
 {
     for (; i < count && events[i].error_m <= error_m; i++)
@@ -103,7 +102,7 @@ static size_t let_all_happen(struct levels_making *making, const struct event *e
 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
 
-/* Replaces welds (groups of equal vertices) by vertices and writes the triangles of the level of detail, primitive by primitive in the
+/* Replaces welds (groups of equal vertices) by vertices and writes the level's triangles, primitive by primitive in the
  * geometry's order. */
 static void write_level(struct levels_making *making, struct level *level, const uint32_t *welds, size_t count)
 {
@@ -138,8 +137,8 @@ static void write_level(struct levels_making *making, struct level *level, const
     mem_free(fill);
 }
 
-/* Measures the error caused by omitted parts (connected components) that lay on other parts: the largest distance from the omitted surface
- * to the surface that is visible in its place. Raises apart_m of these parts to that distance. */
+/* Measures the error of omitting parts (connected components) that lay on other parts: the largest distance from the omitted
+ * surface to the surface that is visible in its place. Raises apart_m of these parts to that distance. */
 static void measure_lost(const struct levels_making *making, const uint32_t *welds, size_t count, double expected_m, float *apart_m)
 {
     const struct welds *of = &making->welds;
@@ -161,8 +160,8 @@ static void measure_lost(const struct levels_making *making, const uint32_t *wel
     mem_free(lost);
 }
 
-/* Returns the largest error of any part in its current version (simplification step), in metres. Excludes omitted parts that lay on other
- * parts, which measure_lost() measures. */
+/* Returns the largest error of any part in its current version (simplification step), in metres. Ignores omitted parts that lay
+ * on other parts: measure_lost() measures these. */
 static float error_of_parts(const struct levels_making *making)
 {
     float most_m = 0;
@@ -174,8 +173,8 @@ static float error_of_parts(const struct levels_making *making)
     return most_m;
 }
 
-/* Moves corners of flattened faces (levels_facing.c). Sets most_m[part] to 0 if the part's error then exceeds limit_m, so that the next
- * attempt skips the part. Returns whether any part has to be skipped. */
+/* Moves corners of flattened faces (levels_facing.c). If this raises a part's error above limit_m, sets most_m[part] to 0, so
+ * that the next attempt skips the part. Returns whether any part must be skipped. */
 static bool try_facing(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
@@ -241,8 +240,8 @@ static uint32_t version_within(const struct levels_making *making, uint32_t part
     return best;
 }
 
-/* Restores omitted parts whose omission causes more than MISSED times the level's error (apart_m), because the surface under them has moved
- * away. Sets back[part] for restored parts. Returns whether any part was restored. */
+/* Restores omitted parts whose omission causes more than MISSED times the level's error (apart_m), because the surface under
+ * them has moved away. Sets back[part] for these parts. Returns whether any part was restored. */
 static bool bring_back(struct levels_making *making, const float *apart_m, float error_m, char *back)
 {
     bool any = false;
@@ -256,7 +255,7 @@ static bool bring_back(struct levels_making *making, const float *apart_m, float
     return any;
 }
 
-/* Returns the minimum error in metres that the level of detail after `last` must have. */
+/* Returns the minimum error of the level of detail after `last`, in metres. */
 static double step_m(const struct levels_making *making, const struct level *last)
 {
     double last_m = (double)last->error_m;
@@ -268,17 +267,17 @@ static bool is_far(const struct levels_making *making, const struct level *last,
     return making->tri_count <= FAR_TRIANGLES && fmax((double)error_m, step_m(making, last)) >= FAR * making->welds.whole_m;
 }
 
-/* Returns whether the parts in their current versions (simplification steps) have few enough triangles to be worth another level after
- * `last`. */
+/* Returns whether the parts in their current versions (simplification steps) have few enough triangles to justify another level
+ * after `last`. */
 static bool is_worth(const struct levels_making *making, const struct level *last, float error_m)
 {
     double before = (double)(last->index_count / 3), now = (double)making->tri_count;
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Adds a level of detail with the parts in their current versions (simplification steps). *error_out_m receives the level's error. A part
- * that earlier levels omitted as too small is restored if the level would otherwise look wrong. Returns false without adding the level if
- * these parts bring its triangle count so near to the previous level's that it is not worth storing. */
+/* Adds a level of detail with the parts in their current versions (simplification steps). *error_out_m receives the level's
+ * error. Restores parts that earlier levels omitted as too small if the level would otherwise look wrong. Returns false without
+ * adding the level if the restored parts bring its triangle count too close to the previous level's. */
 static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;
@@ -327,7 +326,7 @@ static void make_coarse(struct levels_making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
-    /* waited_m: minimum error in metres of the next attempt after a level of detail was rejected; 0: the last attempt was accepted */
+    /* waited_m: minimum error of the next attempt after a rejected level of detail, metres; 0: the last attempt was accepted */
     float error_m, waited_m = 0;
     making->used = mem_array(making->welds.geometry->vertex_count, 1);
     making->version = mem_array(making->welds.part_count, sizeof(*making->version));

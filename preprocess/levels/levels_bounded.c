@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies a part (connected component) by edge collapses: a mesh point is removed by merging it into a neighbour. The collapse that
- * moves the surface least comes first. Each triangle keeps a list of the original vertices ("places") nearest to it (Ciampalini et al.,
- * Multiresolution decimation based on global error, The Visual Computer 1997). The error of a collapse is the distance from these places to
- * the new triangles, and from the new triangles to the original surface. It is computed only when the collapse reaches the top of the heap.
- * Until then, the heap orders the collapse by a lower bound. */
+/* Simplifies a part (connected component) by edge collapses, each of which merges a mesh point into a neighbour. The collapse
+ * that moves the surface least comes first. Each triangle keeps a list of the original vertices ("places") nearest to it
+ * (Ciampalini et al., Multiresolution decimation based on global error, The Visual Computer 1997). The error of a collapse is
+ * the distance between these places and the new triangles, and between the new triangles and the original surface. It is
+ * computed only when the collapse reaches the top of the heap. Until then, a lower bound determines the collapse's position in
+ * the heap. */
 #include "preprocess/levels/levels_bounded.h"
 
 #include <string.h>
@@ -11,24 +12,23 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define RING 48    /* maximum number of triangles around a mesh point that may be removed */
-#define TURN 0.4   /* minimum cosine between the normals of a triangle before and after an edge collapse */
-#define BORDER 0.5 /* maximum movement of open borders and of seams (of material or texture), as a share of the allowed error */
-/* factor from the growth of a triangle's longest edge to the error added for it, because subdivision must split long edges later */
+#define RING 48    /* maximum number of triangles around a mesh point that may be merged into another */
+#define TURN 0.4   /* minimum cosine of the angle by which an edge collapse may turn a triangle's normal */
+#define BORDER 0.5 /* how far open borders and seams (of material or texture) may move, as a share of the allowed error */
+/* error added per metre by which a triangle's longest edge grows, because subdivision must split long edges later */
 #define STRETCH 0.05
 #define NONE UINT32_MAX
 
 struct bounded_face {
-    uint32_t point[3], weld[3]; /* mesh points and welds (groups of equal vertices) of the corners; all NONE: the face was removed */
+    uint32_t point[3], weld[3]; /* mesh points and welds (groups of equal vertices) at the corners; all NONE: the face was removed */
     uint32_t first;             /* index of the first original vertex ("place") in the face's list; next_place[] links the others */
-    /* index of the triangle of the original surface that was nearest to this face at the last distance test; tested first at the next
-     * one */
+    /* triangle of the original surface nearest to this face in the last distance test; tested first in the next one */
     uint32_t near;
-    double normal[3], length; /* normal, not of unit length; length: its length, twice the triangle's area */
+    double normal[3], length; /* normal, not normalised; its length, which is twice the triangle's area */
     double longest_m;         /* length of the face's longest edge */
 };
 
-struct removal_candidate { /* heap entry: a mesh point that may be removed by merging it into the point `target` */
+struct removal_candidate { /* heap entry: a mesh point that may be merged into the point `target` */
     float error_m;         /* error of merging the point into `target`: exact if is_known, else a lower bound */
     uint32_t point, stamp, target;
     bool is_known; /* error_m is exact */
@@ -38,12 +38,11 @@ struct bounded {
     const struct welds *welds;
     const struct bvh *first;
     double (*points)[3];
-    float *moved_m; /* by mesh point: distance by which the open borders and seams at the point have moved so far */
-    /* corner: by mesh point, head of the list of face corners at the point (3 * face + 0 to 2); next: by corner, the next corner in the
-     * list */
+    float *moved_m; /* by mesh point: how far the open borders and seams there have moved so far */
+    /* corner: by mesh point: first of the list of face corners there (3 * face + 0 to 2); next: by corner: the next corner in the list */
     uint32_t *corner;
     uint32_t *next;
-    /* by mesh point: incremented when the triangles around the point change; a heap entry with an older value is outdated */
+    /* by mesh point: incremented when the triangles around it change; a heap entry with an older value is outdated */
     uint32_t *stamp;
     struct bounded_face *faces;
     size_t point_count, face_count, left;
@@ -85,22 +84,22 @@ static struct removal_candidate pop(struct bounded *b)
 
 /* --- ring: triangles around a point ---------------------------------------------------------------------------------------------- */
 
-struct ring_wedge {               /* one of the triangles around a point of the mesh */
-    uint32_t face, at;            /* at: index (0 to 2) of the face's corner that is at the point */
+struct ring_wedge {               /* one of the triangles around a mesh point */
+    uint32_t face, at;            /* at: index (0 to 2) of the face's corner at the point */
     uint32_t weld;                /* weld (group of equal vertices) of the face's corner at the point */
-    uint32_t points[2], welds[2]; /* points and welds (groups of equal vertices) of the face's other two corners, in winding order */
+    uint32_t points[2], welds[2]; /* points and welds (groups of equal vertices) at the face's other two corners, in winding order */
 };
 
 struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
-    int count; /* number of wedges (triangles around the point); RING + 1: there are too many to store */
-    /* by edge from the ring's point: the point at the edge's other end, and, in one of the edge's triangles, the welds (groups of equal
-     * vertices) at this end (here) and the other end (there) */
+    int count; /* number of wedges (triangles around the point); RING + 1: too many to store */
+    /* by edge from the ring's point: the point at the other end; in one of the edge's triangles, the welds (groups of equal
+     * vertices) at the near end (here) and the far end (there) */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
-    bool is_feature[2 * RING]; /* by edge from the ring's point: whether it is an open border or a seam of material or texture */
+    bool is_feature[2 * RING]; /* by edge from the ring's point: it is an open border or a seam of material or texture */
     int end_count, feature_count;
-    double longest_m; /* length of the longest edge of the triangles around the point */
+    double longest_m; /* longest edge of the triangles around the point */
 };
 
 static struct ring_wedge wedge_of(const struct bounded *b, uint32_t corner)
@@ -121,7 +120,7 @@ static void list_ring(struct bounded *b, uint32_t point, struct point_ring *ring
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
         const struct bounded_face *face = &b->faces[corner / 3];
-        /* unlink from the point's list a corner whose point was merged into another point, or whose face was removed */
+        /* the corner's point was merged into another point, or its face was removed: unlink the corner from the point's list */
         if (face->point[corner % 3] != point) {
             *link = b->next[corner];
             continue;
@@ -184,8 +183,8 @@ static bool has_end(const struct ring_wedge *wedge, uint32_t end)
     return wedge->points[0] == end || wedge->points[1] == end;
 }
 
-/* Returns the weld (group of equal vertices) that a corner at the ring's point gets when that point is merged into the target: the target's
- * weld in a triangle that contains both points. NONE: no weld fits, or several do. */
+/* Returns the weld (group of equal vertices) that a corner at the ring's point gets when this point is merged into the target:
+ * the target's weld in a triangle that contains both points. Returns NONE if no weld or several welds fit. */
 static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t weld)
 {
     uint32_t found = NONE;
@@ -201,7 +200,7 @@ static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t w
     return found;
 }
 
-/* Writes the positions that the corners of a triangle around a point will have when the point is merged into `target`. */
+/* Computes the corner positions of a triangle around a point after the point is merged into `target`. */
 static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, uint32_t target, const double *at[3])
 {
     at[wedge->at] = b->points[target];
@@ -209,8 +208,8 @@ static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, 
     at[(wedge->at + 2) % 3] = b->points[wedge->points[1]];
 }
 
-/* Returns how far open borders and seams would have moved after merging the ring's point into a neighbour, in metres. 0: the point is on
- * none; INFINITY: the merge would break a border or seam, so it is not allowed. */
+/* Returns how far open borders and seams would move if the ring's point were merged into a neighbour, in metres, including
+ * earlier moves. 0: the point is on none; INFINITY: the merge is forbidden, because it would break a border or seam. */
 static double border_of(const struct bounded *b, const struct point_ring *ring, int target)
 {
     int other = -1;
@@ -230,8 +229,8 @@ static double longest_edge(const double *const at[3])
     return sqrt(max_of(vec_distance2(at[0], at[1]), max_of(vec_distance2(at[1], at[2]), vec_distance2(at[2], at[0]))));
 }
 
-/* Returns a lower bound of the error in metres of merging the ring's point into a neighbour. INFINITY: the merge is not allowed, or its
- * error is at least most_m. */
+/* Returns a lower bound of the error of merging the ring's point into a neighbour, in metres. INFINITY: the merge is forbidden,
+ * or its error is at least most_m. */
 static double bound_of(const struct bounded *b, const struct point_ring *ring, int target, double most_m)
 {
     uint32_t to = ring->ends[target];
@@ -257,8 +256,8 @@ static double bound_of(const struct bounded *b, const struct point_ring *ring, i
     return max_of(nearest_m, border_m) + STRETCH * longer_m;
 }
 
-/* Returns the larger of error_m and the distance of `point` from the original surface. Tests triangle *near first, and writes the nearest
- * triangle to *near. */
+/* Returns the larger of error_m and the distance of `point` from the original surface. Tests triangle *near first; *near
+ * receives the nearest triangle. */
 static double raise(const struct bounded *b, const double point[3], double error_m, uint32_t *near)
 {
     struct bvh_place place;
@@ -268,13 +267,13 @@ static double raise(const struct bounded *b, const double point[3], double error
     return max_of(error_m, place.distance_m);
 }
 
-struct moved { /* a triangle as it is after the collapse of an edge */
+struct moved { /* a triangle after an edge collapse */
     const double *at[3];
     const struct ring_wedge *wedge;
 };
 
-/* Returns the distance from an original vertex ("place") to the nearest of the triangles that a collapse would move; once a triangle within
- * enough_m is found, any value up to enough_m. Tests the place's own triangle first. */
+/* Returns the distance from an original vertex ("place") to the nearest of the triangles that a collapse would move. Stops at a
+ * triangle within enough_m: the result is then any value up to enough_m. Tests the place's own triangle first. */
 static double distance_to_any(const double place[3], const struct moved *moved, int count, int own, double enough_m)
 {
     double nearest_m = INFINITY;
@@ -287,8 +286,9 @@ static double distance_to_any(const double place[3], const struct moved *moved, 
     return nearest_m;
 }
 
-/* Returns the largest of error_m and the two distances that make up the error of a collapse: from the affected original vertices ("places")
- * to the triangles after the collapse, and from these triangles to the original surface. Stops early once the result exceeds enough_m. */
+/* Returns the largest of error_m and the two distances that make up the error of a collapse: from the affected original
+ * vertices ("places") to the triangles after the collapse, and from these triangles to the original surface. Stops as soon as
+ * the result exceeds enough_m. */
 static double error_of(struct bounded *b, const struct point_ring *ring, uint32_t to, double error_m, double enough_m)
 {
     struct moved moved[RING];
@@ -303,8 +303,8 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
     for (int c = 0; c < ring->count && error_m <= enough_m; c++)
         for (uint32_t s = b->faces[ring->wedges[c].face].first; s != NONE && error_m <= enough_m; s = b->next_place[s])
             error_m = max_of(error_m, distance_to_any(b->places[s], moved, count, own[c] < count ? own[c] : 0, error_m));
-    /* measure each triangle as it will be after the collapse: at its centre, and at the midpoint of the edge that it does not share with
-     * the next such triangle */
+    /* measure each triangle as it will be after the collapse: at its centre, and at the midpoint of the edge not shared with
+     * the next of these triangles */
     for (int f = 0; f < count && error_m <= enough_m; f++) {
         const double *const *at = moved[f].at;
         uint32_t m = moved[f].wedge->at, *near = &b->faces[moved[f].wedge->face].near;
@@ -321,7 +321,7 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
 
 /* --- collapsing ------------------------------------------------------------------------------------------------------------------ */
 
-/* Finds the neighbour into which a point can be merged with the smallest lower bound of the error, and pushes this merge onto the heap. */
+/* Finds the neighbour whose merge with the point has the smallest lower bound of the error, and pushes this merge onto the heap. */
 static void offer(struct bounded *b, uint32_t point)
 {
     struct point_ring ring;
@@ -355,8 +355,8 @@ static void measure_face(const struct bounded *b, struct bounded_face *face)
     face->longest_m = longest_edge(at);
 }
 
-/* Assigns an original vertex ("place") to the nearest of these faces of the simplified surface. Of equally near faces, the first one is
- * taken. Returns its index in the list. Tests the face `last` first, because successive places are close together. */
+/* Assigns an original vertex ("place") to the nearest of these faces of the simplified surface; of equally near faces, to the
+ * first. Returns its index in the list. Tests the face `last` first, because successive places are close together. */
 static int rehome(struct bounded *b, const uint32_t *faces, int count, int last, uint32_t place)
 {
     double nearest_m = INFINITY;
@@ -427,8 +427,9 @@ static int index_of(const struct point_ring *ring, uint32_t end)
     return -1;
 }
 
-/* Returns whether an edge collapse would make the surface touch itself along an edge: the ends of the collapsed edge share a neighbour that
- * is in no triangle with both ends (link condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
+/* Returns whether an edge collapse would make the surface touch itself along an edge: then both ends of the collapsed edge have
+ * a common neighbour that is in no triangle with both (link condition; Dey et al., Topology preserving edge contraction, Publ.
+ * Inst. Math. 1999). */
 static bool would_touch(struct bounded *b, const struct point_ring *ring, int target)
 {
     struct point_ring there;
@@ -444,8 +445,9 @@ static bool would_touch(struct bounded *b, const struct point_ring *ring, int ta
     return common > shared;
 }
 
-/* Takes the first collapse from the heap and drops it if it is outdated. If its exact error is known, and therefore the smallest of all,
- * collapses the edge; otherwise computes the exact error and puts the collapse back unless it is still the first one. */
+/* Pops the first collapse from the heap and drops it if it is outdated. If its exact error is known, and therefore the
+ * smallest, collapses the edge; otherwise computes the exact error and pushes the collapse back unless it is still the first.
+ * */
 static void take_turn(struct bounded *b, double error_m)
 {
     struct removal_candidate turn = pop(b);
@@ -483,7 +485,7 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
 
 /* map from welds (groups of equal vertices) to the mesh points of one part */
 struct point_numbers {
-    /* by index of a weld minus low: index of the weld's point + 1 (0: none); low, high: range of weld indices that the map covers */
+    /* by weld index minus low: 1 + index of the weld's point, 0: none; range of weld indices in the map */
     uint32_t *of, low, high;
 };
 
@@ -510,7 +512,7 @@ static struct point_numbers number_points(struct bounded *b, const uint32_t *cor
     return numbers;
 }
 
-/* Removes triangles without area, which are invisible. */
+/* Removes triangles without area, because they are invisible. */
 static void drop_empty(struct bounded *b)
 {
     size_t kept = 0;

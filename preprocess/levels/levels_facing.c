@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Repairs faces of thin parts that simplification has flattened to zero thickness. Such a face may have only vertices of the opposite side,
- * whose normals point away from it and give it wrong lighting. Its corners are moved to vertices of its own side. */
+/* Repairs faces of thin parts that simplification has flattened to zero thickness. Such a face may only have vertices of the
+ * opposite side, whose normals point away from it, so that it is lit wrongly. Its corners are moved to vertices of its own
+ * side. */
 #include <math.h>
 #include <string.h>
 
@@ -8,19 +9,19 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-/* maximum cosine between the face normal and the closest vertex normal in the corner's weld (group of vertices) for which the corner is
- * repaired */
+/* a corner is repaired if the cosine between the face normal and the closest vertex normal in its weld (group of vertices) is
+ * at most this */
 #define AWAY (-0.5f)
-#define ALONG 0.7f /* minimum cosine between the face normal and the normal of a vertex to which the corner is moved */
-/* maximum distance of a move, in multiples of the allowed error; above 1, because the thickness of a slanted sheet exceeds its error */
+#define ALONG 0.7f /* minimum cosine between the face normal and the normal of the vertex that the corner is moved to */
+/* maximum length of a move, in multiples of the allowed error; above 1, because the thickness of a slanted sheet exceeds its error */
 #define BESIDE 1.25f
 #define NONE UINT32_MAX
 
-struct corner_need { /* a face corner to repair: it needs a vertex whose normal points to the front of the face */
+struct corner_need { /* a face corner to repair: it needs a vertex whose normal points to the face's front */
     size_t corner;
-    float normal[3]; /* normal of the face to which the corner belongs */
+    float normal[3]; /* normal of the corner's face */
     float score;     /* score of the best replacement so far: 2 - distance / maximum distance */
-    uint32_t weld;   /* weld (group of equal vertices) that is the best replacement so far; NONE: none yet */
+    uint32_t weld;   /* weld (group of equal vertices) of the best replacement so far; NONE: none yet */
     size_t next;     /* index in `needs` of the next corner with the same weld (group of equal vertices); SIZE_MAX: none */
 };
 
@@ -66,8 +67,8 @@ uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t wel
     return best;
 }
 
-/* Returns the cosine between face normal n and the normal of the vertex that levels_vertex() chooses from the weld (group of equal
- * vertices); -1: no vertex of the weld is used. */
+/* Returns the cosine between the face normal n and the normal of the vertex that levels_vertex() chooses from the weld (group
+ * of equal vertices); -1: no vertex of the weld is used. */
 static float look(const struct facing_pass *facing, uint32_t weld, const float n[3], bool one_side)
 {
     uint32_t vertex = levels_vertex(facing->welds, facing->used, weld, n, one_side);
@@ -107,8 +108,8 @@ static void find_needs(struct facing_pass *facing, const uint32_t *corners, size
     }
 }
 
-/* Offers weld `to` (a weld is a group of equal vertices) as a replacement to all corners in need that are at weld `from`. The welds are the
- * ends of an edge of the model. The nearest weld that has a vertex facing the corner's side wins. */
+/* Offers weld `to` (a group of equal vertices) as a replacement to all corners in need at weld `from`. The two welds are the
+ * ends of an edge of the model. Each corner takes the nearest weld that has a vertex facing its side. */
 static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
 {
     if (facing->first[from] == SIZE_MAX || facing->welds->primitive[from] != facing->welds->primitive[to])
@@ -124,7 +125,7 @@ static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
     }
 }
 
-/* Moves corners to the welds (groups of equal vertices) that replace theirs, except in faces that would flip or lose their area. */
+/* Moves corners to the replacements of their welds (groups of equal vertices), except in faces that would flip or lose their area. */
 static void move_faces(const struct facing_pass *facing, uint32_t *corners)
 {
     for (size_t i = 0; i < facing->count;) {
@@ -143,8 +144,8 @@ static void move_faces(const struct facing_pass *facing, uint32_t *corners)
     }
 }
 
-/* Undoes the repair of faces that had a corner at a weld (group of equal vertices) that no face uses any more: the next coarser levels may
- * only use welds that this level uses. */
+/* Undoes the repair of a face if no face uses the weld (group of equal vertices) of one of its old corners any more: the next
+ * coarser levels may only use welds that this level uses. */
 static void keep_knots(const struct facing_pass *facing, const uint32_t *before, uint32_t *corners, size_t count)
 {
     char *kept = mem_array(facing->welds->count, 1);

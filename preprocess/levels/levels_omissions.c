@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which parts (connected components) a far level may omit: small parts that lie on larger parts, and groups of parts that are
- * together smaller than a pixel. */
+/* Decides which parts (connected components) a far level may omit: small parts that lie on larger ones, and groups of parts
+ * that are together smaller than a pixel. */
 #include <math.h>
 #include <string.h>
 
@@ -9,23 +9,23 @@
 #include "preprocess/levels/levels_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define MUCH_LARGER 4.0f /* minimum ratio between the size of a larger part and the size of a small part that lies on it */
-#define MAX_PX 8.0f      /* maximum size, in pixels when the level is drawn, of a part that is omitted because it lies on another part */
-/* factor from the part's distance from the larger parts to the expected error of the omission; above 1, because the larger parts are
- * simplified too */
+#define MUCH_LARGER 4.0f /* minimum size ratio of a larger part to a small part that lies on it */
+#define MAX_PX 8.0f      /* pixels; a part that lies on another part is omitted if it would be drawn at most this large */
+/* factor from the distance between the part and the larger parts to the expected error of omitting it; above 1, because the
+ * larger parts are simplified too */
 #define OVER 1.1f
-#define SMALL 0.1   /* maximum size of a part that is omitted because it lies on others, relative to the whole asset */
-#define AROUND 4.0f /* small parts whose distance is less than this many times their size form a group, whose parts are omitted together */
-#define PROBES 4    /* number of points on each edge of a small part's triangles whose distance from larger parts is measured */
+#define SMALL 0.1   /* maximum size of a part that is omitted because it lies on others, relative to the asset's size */
+#define AROUND 4.0f /* small parts closer together than this many times their size form a group, which is omitted as a whole */
+#define PROBES 4    /* number of points on each edge of a small part's triangles at which the distance from larger parts is measured */
 
 #define CLASSES_MAX 20
-#define FEWER 0.75 /* a size class (struct size_class) is made only if it has at most this share of the triangles of the class before */
+#define FEWER 0.75 /* a size class (struct size_class) is made only if it has at most this share of the previous class's triangles */
 
-/* Size class: the triangles of all parts larger than than_m, with a bounding volume hierarchy of their own. With one hierarchy of all
+/* Size class: the triangles of all parts larger than than_m, with their own bounding volume hierarchy. In a hierarchy of all
  * triangles, each search for a larger part would first find the small part itself and its neighbours. */
 struct size_class {
     float than_m;
-    struct trimesh mesh; /* triangles of the size class; shares the points of the whole mesh */
+    struct trimesh mesh; /* triangles of the size class, over the points of the whole mesh */
     struct bvh *bvh;
 };
 
@@ -34,7 +34,7 @@ struct omission_search {
     struct trimesh mesh;
     struct size_class classes[CLASSES_MAX]; /* size classes, by increasing than_m */
     size_t class_count;
-    uint32_t *part;         /* by triangle: part (connected component) that contains it */
+    uint32_t *part;         /* by triangle: its part (connected component) */
     uint32_t *first, *tris; /* indices of triangles, grouped by part (connected component) */
     struct omission *omissions;
 };
@@ -92,8 +92,8 @@ static void add_class(struct omission_search *search, float than_m, size_t count
     class->bvh = bvh_create(&class->mesh);
 }
 
-/* Builds the size classes (struct size_class). A search for parts larger than a limit uses the class with the largest than_m that does not
- * exceed the limit. */
+/* Builds the size classes (struct size_class). A search for parts larger than a limit uses the class with the largest than_m up
+ * to that limit. */
 static void make_classes(struct omission_search *search)
 {
     const struct welds *welds = search->welds;
@@ -126,7 +126,7 @@ struct larger {
     const struct omission_search *search;
     const struct size_class *class;
     float than_m;
-    uint32_t near; /* index of the triangle that was nearest to the previous point, tested first; TRIMESH_NONE: none */
+    uint32_t near; /* the triangle nearest to the previous point, which is tested first; TRIMESH_NONE: none */
 };
 
 static bool is_larger(const void *arg, uint32_t tri)
@@ -135,8 +135,8 @@ static bool is_larger(const void *arg, uint32_t tri)
     return larger->search->welds->size_m[larger->search->part[larger->class->mesh.tri_source[tri]]] > larger->than_m;
 }
 
-/* Returns the larger of apart_m and the largest distance between points on the edges of triangle `tri` and the larger parts; INFINITY if
- * that distance exceeds limit_m. */
+/* Returns the larger of apart_m and the largest distance of points on the edges of triangle `tri` from the larger parts;
+ * INFINITY if that distance exceeds limit_m. */
 static float look_from(struct larger *larger, uint32_t tri, double limit_m, float apart_m)
 {
     const struct trimesh *mesh = &larger->search->mesh;
@@ -174,8 +174,8 @@ static void look_for_larger(void *arg, size_t begin, size_t end)
 
 /* --- isolated parts ------------------------------------------------------------------------------------------------------- */
 
-/* Lists the bounding boxes of small parts near which no larger part is, enlarged by the distance up to which another part counts as
- * near. */
+/* Lists the bounding boxes of small parts without a larger part near them, enlarged by the distance up to which another part
+ * counts as near. */
 static size_t list_boxes(const struct omission_search *search, struct part_box *boxes)
 {
     const struct welds *welds = search->welds;
@@ -194,8 +194,8 @@ static size_t list_boxes(const struct omission_search *search, struct part_box *
     return count;
 }
 
-/* Groups neighbouring small parts that have no larger part near them. Each part of a group may be omitted from levels of detail whose error
- * is at least the group's size. */
+/* Groups neighbouring small parts without a larger part near them. The parts of a group may be omitted from levels of detail
+ * whose error is at least the group's size. */
 static void look_for_lonely(const struct omission_search *search)
 {
     const struct welds *welds = search->welds;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies an asset step by step into versions, and measures the error of each part (connected component) in each version. Assets with
- * many triangles are first simplified as a whole (meshoptimizer), to about half the triangles each time; then part by part, by edge
- * collapses. */
+/* Simplifies an asset step by step into versions, and measures the error of each part (connected component) in each version. An
+ * asset with many triangles is first simplified as a whole (meshoptimizer), to about half the triangles per step, then part by
+ * part, by edge collapses. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -10,27 +10,27 @@
 #include "preprocess/levels/levels_bounded.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define SHRINK 0.55 /* share of the previous version's triangles that each version (simplification step) should keep */
-/* simplification of the whole asset stops at a version (simplification step) with more than this share of the previous version's
- * triangles */
+#define SHRINK 0.55 /* target triangle count of a version (simplification step), as a share of the previous version's */
+/* stop simplifying the asset as a whole at a version (simplification step) that keeps more than this share of the previous
+ * version's triangles */
 #define STUCK 0.9
-/* number of triangles above which the asset is simplified as a whole, which is fast; with fewer, part by part (levels_bounded.c) */
+/* above this triangle count the asset is simplified as a whole, which is fast; below, part by part (levels_bounded.c) */
 #define HALVE_ABOVE 40000
-/* maximum number of triangles for simplification part by part, also if simplification of the whole makes no more progress */
+/* above this triangle count the asset is never simplified part by part, even if simplifying it as a whole makes no more progress */
 #define MAX_COLLAPSED 100000
-/* allowed error of the first version (simplification step) that is made by edge collapses, relative to the asset's size */
+/* allowed error of the first version (simplification step) made by edge collapses, relative to the asset's size */
 #define LEAST 0.00025
-/* factor from the allowed error of one version (simplification step) to that of the next, in the range of far levels (levels.c) */
+/* ratio of the allowed errors of successive versions (simplification steps) in the range of far levels (levels.c) */
 #define STEP 1.3
-/* factor from the allowed error of one version (simplification step) to that of the next, in the range of near levels; larger, because each
+/* ratio of the allowed errors of successive versions (simplification steps) in the range of near levels; larger, because each
  * version must be measured and near levels need fewer versions */
 #define STEP_ELSE 1.7
-#define ALIKE 0.85       /* a version (simplification step) with more than this share of the previous version's triangles is dropped */
-#define MIN_TRIANGLES 60 /* smaller assets are not simplified */
-/* versions (simplification steps) with a smaller error, relative to the asset's size, keep open borders, so that no hair gaps open between
- * patches */
+#define ALIKE 0.85       /* a version (simplification step) with more than this share of the previous one's triangles is dropped */
+#define MIN_TRIANGLES 60 /* assets with fewer triangles are not simplified */
+/* versions (simplification steps) with an error below this, relative to the asset's size, keep open borders, so that no hair
+ * gaps open between patches */
 #define NEAR 0.01
-#define BEYOND 3.0 /* factor from meshoptimizer's error estimate, a mean over planes, to the largest distance that is probably measured */
+#define BEYOND 3.0 /* factor from meshoptimizer's error estimate, a mean over planes, to the probable measured maximum */
 
 static size_t triangles_of(const struct versions *versions)
 {
@@ -111,12 +111,12 @@ struct collapsing {
     const struct welds *welds;
     const struct deviation *first;
     const struct version *from;
-    struct bounded **parts; /* by part (connected component): its edge collapser (levels_bounded.h); NULL: the part has no triangle left */
+    struct bounded **parts; /* by part (connected component): its edge collapser (levels_bounded.h); NULL: the part has no triangles left */
     size_t *first_corner;   /* by part: index in `corners` of its first triangle in the version (simplification step) `from` */
     uint32_t *corners;
-    size_t *first_place; /* by part (connected component): index in `places` of its first vertex of the original model */
+    size_t *first_place; /* by part (connected component): index in `places` of its first vertex in the original model */
     uint32_t *places;
-    double error_m; /* allowed error of the version that is being made, metres */
+    double error_m; /* allowed error of the version being made, metres */
 };
 
 /* Counting sort: turns the count of part p at [p + 2] into its start offset at [p + 1]. Filling then advances each offset at [p + 1] to the
@@ -178,8 +178,8 @@ static void read_parts(const struct collapsing *collapsing, struct version *vers
         }
 }
 
-/* Lists the errors allowed for the versions (simplification steps) made by edge collapses, from the largest useful error down to the
- * smallest, at most `room`. Returns their number, and sorts the list in ascending order. */
+/* Lists the allowed errors for the versions (simplification steps) made by edge collapses: at most `room`, chosen from the
+ * largest useful error down, and sorted in ascending order. Returns their number. */
 static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_MAX])
 {
     size_t count = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups vertices into welds (groups of equal vertices) for the simplifier, which could not collapse edges where vertices with different
- * normals share a position. Finds the connected parts of a model. */
+/* Groups equal vertices into welds, so that the simplifier can collapse edges where vertices with different normals share a
+ * position. Finds the connected parts of a model. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -11,8 +11,8 @@
 #include "preprocess/geometry/welded_positions.h"
 #include "surface/mesh/trimesh.h"
 
-/* attributes of a vertex; vertices that differ in any attribute get different welds (groups), so that the simplifier preserves borders of
- * materials and textures as seams */
+/* attributes of a vertex; vertices that differ in any of these are in different welds (groups), so that the simplifier
+ * preserves borders of materials and textures as seams */
 struct weld_key {
     float position[3], texcoord[2], second_texcoord[2];
     uint32_t primitive;

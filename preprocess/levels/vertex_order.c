@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts vertices by level of detail, coarsest first, and by their use in triangles. */
+/* Sorts vertices by level of detail, coarsest first, and within it by their use in triangles. */
 #include "preprocess/levels/vertex_order.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@
 
 #define BINS (2 * LEVELS_MAX)
 
-/* bins[vertex]: twice the index of the coarsest level of detail that uses the vertex, where the coarsest level has index 0; plus one for
+/* bins[vertex]: twice the number of the coarsest level of detail that uses the vertex (0: the coarsest of all); plus one for
  * vertices added by subdivision. The value BINS marks an added vertex that only dropped levels used. */
 static void find_bins(const struct levels *levels, uint32_t vertex_count, uint32_t first_added, uint8_t *bins)
 {
@@ -21,9 +21,9 @@ static void find_bins(const struct levels *levels, uint32_t vertex_count, uint32
         }
 }
 
-/* Assigns new numbers to the vertices in order of their bins (find_bins()). Within a bin, vertices are in the order in which triangles use
- * them, so that vertices with neighbouring numbers are close together: their distances then take fewer bits (protocol/distance_pack.h).
- * Returns the number of vertices kept. */
+/* Renumbers the vertices in the order of their bins (find_bins()), and within a bin in the order in which triangles use them.
+ * Vertices with neighbouring numbers are then close together, so that their distances take fewer bits
+ * (protocol/distance_pack.h). Returns the number of vertices kept. */
 static uint32_t number_vertices(const struct levels *levels, uint32_t vertex_count, const uint8_t *bins, struct asset_level *out,
                                 uint32_t *new_of)
 {

@@ -29,8 +29,8 @@ static void add_cell(struct text *out, const char *cell)
         text_add(out, "%s", cell);
 }
 
-/* Computes the check cell of a row of matches.csv, by which a later run detects edits: the first letter of the status that is written, then
- * a hash of tag, status and asset. */
+/* Computes the check cell of a row of matches.csv, from which a later run detects edits: the first letter of the status
+ * written, then a hash of tag, status and asset. */
 static void find_check(const char *tag, const char *status, const char *asset, char check[16])
 {
     char *all = mem_printf("%s\n%s\n%s", tag, status, asset);
@@ -94,8 +94,8 @@ static bool find_columns(const struct table_row *header, int columns[COLUMNS], c
     return true;
 }
 
-/* Reads a row of matches.csv and compares it with its check cell. If they do not match, a person edited the row. If the status still begins
- * with the check's first letter, the person changed only the asset, and the status follows from the asset. */
+/* Reads a row of matches.csv and compares it with its check cell. If they do not match, a person edited the row. If the status
+ * still begins with the check's first letter, only the asset was edited, and the status follows from the new asset. */
 static bool read_row(struct decision *out, const struct table_row *row, const int columns[COLUMNS], char why[MATCH_WHY_BYTES])
 {
     const char *status = table_cell(row, columns[STATUS]), *asset = table_cell(row, columns[ASSET]),

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes matches.csv: the equipment that each tag was matched to, and why. Rows that people edited are kept and override the
- * matcher. Thread: one. */
+/* Reads and writes matches.csv: the equipment that each tag was matched to, and the reason. Rows edited by people are kept and
+ * override the matcher. Thread: one. */
 #ifndef PREPROCESS_MATCH_DECISIONS_H
 #define PREPROCESS_MATCH_DECISIONS_H
 #include "base/text/text.h"
@@ -8,20 +8,20 @@
 
 struct decision { /* one row of matches.csv */
     char *tag, *asset;
-    enum match_status status; /* status in matches.csv; for an edited row, the status that the edit implies */
-    bool by_hand, edited;     /* by_hand: a person made the decision; edited: a person changed the row after the last run wrote it */
-    char *row;                /* text of the whole row with its line end, as in matches.csv */
+    enum match_status status; /* status in matches.csv; for an edited row, the status implied by the edit */
+    bool by_hand, edited;     /* by_hand: a person made the decision; edited: a person changed the row after the last run */
+    char *row;                /* the whole row of matches.csv with its line end */
 };
 
 struct decisions {       /* zero-initialise */
     struct decision *at; /* decisions in the order of the file */
-    int *by_tag;         /* indices of decisions, sorted by tag (case-insensitive): the first decision of each tag */
+    int *by_tag;         /* index of the first decision about each tag, sorted by tag (case-insensitive) */
     size_t count, capacity, tags;
 };
 
-/* Reads decisions about tags from a file written by decisions_add_row(), possibly edited since, or from one with only the columns Tag,
- * Status and Asset. A missing file counts as empty. A decision that `decisions` already contains takes precedence over the file's decision
- * about the same tag. Returns false with the reason in why. */
+/* Reads decisions about tags from a file written by decisions_add_row(), possibly edited since, or from a file with only the
+ * columns Tag, Status and Asset. A missing file counts as empty. Decisions already in `decisions` take precedence over the
+ * file's decisions about the same tags. Returns false with the reason in why. */
 bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES]);
 /* Returns the decision about a tag, or NULL if there is none. */
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag);
@@ -31,8 +31,8 @@ void decisions_finish(struct decisions *decisions);
  * (mem_free). Returns NULL if the text cannot be parsed. */
 char *decisions_without(const char *text, const char *const *tags, size_t count);
 
-/* Append to the text of matches.csv the header line, or one row. Several assets that a tag may belong to are separated by bars. The row's
- * last cell is a check of the written status and asset, by which a later run detects edits. */
+/* Append the header line, or one row, to the text of matches.csv. If a tag may belong to several assets, their names are
+ * separated by bars. The row's last cell is a check of the status and asset, from which a later run detects edits. */
 void decisions_add_header(struct text *out);
 void decisions_add_row(struct text *out, const struct plant *plant, const char *tag, const struct match *match, const char *asset,
                        const char *place, bool by_hand);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes plant-file lines that make assets of selected model nodes. */
+/* Writes plant-file lines that turn selected model nodes into assets. */
 #include "preprocess/match/equipment.h"
 
 #include <errno.h>
@@ -53,8 +53,8 @@ static void add_field(struct text *lines, const char *key, const char *text)
     plant_edit_add_quoted(lines, text);
 }
 
-/* Appends a plant-file line with an asset for a model node. The asset's id is unique over all models, and its node pattern matches only
- * this node. */
+/* Appends a plant-file line for an asset made from a model node. The asset's id is unique over all models, and its node pattern
+ * matches only this node. */
 static void add_asset(const struct model_index *site, size_t model, size_t node, struct text *lines)
 {
     const struct model_tree *tree = &site->models[model];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the new content of all files of a set to temporary files, then renames each to its final name. */
+/* Writes the new content of all files in a set to temporary files, then renames each to its final name. */
 #include "preprocess/match/file_set.h"
 
 #include <dirent.h>
@@ -15,8 +15,8 @@
 
 #include "base/mem.h"
 
-/* age in seconds from which a temporary file is removed as a leftover. Its writer may be a process of another container or machine, which
- * cannot be seen from here, but would have finished by then. */
+/* seconds after which a temporary file is removed as a leftover; its writer may be a process of another container or machine,
+ * which cannot be seen from here, but would have finished by then */
 enum { LEFT_S = 60 };
 
 static bool is_old(int folder, const char *name)
@@ -25,7 +25,7 @@ static bool is_old(int folder, const char *name)
     return fstatat(folder, name, &st, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(st.st_mode) && st.st_mtime + LEFT_S < time(NULL);
 }
 
-/* Returns whether a file is a temporary file (NAME.PID.new or .trial.PID.yaml) of a process that no longer exists. */
+/* Returns whether a file is a temporary file (NAME.PID.new or .trial.PID.yaml) whose process no longer exists. */
 static bool is_left(int folder, const char *name)
 {
     static const char *const begins[] = { "plant.yaml.", "tags.csv.", "matches.csv.", ".trial." };
@@ -55,7 +55,7 @@ int file_set_lock(const struct plant_folder_params *params, char **why)
     return fd;
 }
 
-/* Gives a new file the mode and owner of the file that it replaces. */
+/* Gives a new file the mode and owner of the file it replaces. */
 static int take_rights(int fd, const char *path)
 {
     struct stat st;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decomposes text into base characters and accents with utf8proc, replaces or drops characters, and composes the text again. */
+/* Decomposes text into base characters and accents with utf8proc, replaces or drops characters, and recomposes the text. */
 #include "preprocess/match/fold.h"
 
 #include <stdbool.h>
@@ -27,8 +27,7 @@ static bool is_blank(utf8proc_int32_t c)
     return c == '\t' || category == UTF8PROC_CATEGORY_ZS || category == UTF8PROC_CATEGORY_ZL || category == UTF8PROC_CATEGORY_ZP;
 }
 
-/* Returns the text's characters (Unicode code points) in decomposed form, which the caller frees (mem_free), or NULL if the text is not
- * UTF-8. */
+/* Returns the text's Unicode code points in decomposed form, which the caller frees (mem_free), or NULL if the text is not valid UTF-8. */
 static utf8proc_int32_t *decompose(const char *text, utf8proc_option_t options, utf8proc_ssize_t *count)
 {
     const utf8proc_uint8_t *bytes = (const utf8proc_uint8_t *)text;
@@ -61,7 +60,7 @@ char *fold_text(const char *text)
         return mem_strdup(text);
     for (utf8proc_ssize_t i = 0; i < count; i++) {
         if (utf8proc_category(at[i]) == UTF8PROC_CATEGORY_CF && at[i] != 0x00ad)
-            continue; /* leave out a zero-width blank or direction mark */
+            continue; /* drop a zero-width blank or direction mark */
         utf8proc_int32_t c = is_dash(at[i]) ? '-' : is_blank(at[i]) ? ' ' : at[i];
         if (c != ' ' || (kept > 0 && at[kept - 1] != ' '))
             at[kept++] = c;

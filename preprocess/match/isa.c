@@ -28,8 +28,8 @@ const char *isa_quantity(char variable)
     return NULL;
 }
 
-/* Valid letters of a tag name are a measured variable, optionally a modifier (D, F, J, K, M, Q, S, X, Y, Z), then functions. H, L and O are
- * valid only after a function. */
+/* The letters before a loop number are valid if they are a measured variable, optionally a modifier (D, F, J, K, M, Q, S, X, Y,
+ * Z), then functions. H, L and O are valid only after a function. */
 bool isa_are_letters(const char *letters)
 {
     static const char functions[] = "ACEGIKQRSTUVWYZ";
@@ -41,7 +41,7 @@ bool isa_are_letters(const char *letters)
     return strchr(functions, letters[at]) && letters[at] && strspn(letters + at, "ACEGIKQRSTUVWYZHLOM") == length - at;
 }
 
-/* attribute words that control systems append to tag names, such as PV, and the role that each states */
+/* attribute words that control systems append to tag names, such as PV, and the role of such tags */
 static const struct {
     const char *word;
     enum isa_role role;
@@ -56,8 +56,8 @@ static const struct {
     { "HIHI", ISA_STATE },      { "LOLO", ISA_STATE },     { "ACK", ISA_STATE },
 };
 
-/* Removes attribute words, such as PV, that follow a separator at the end of the tag name. The last word determines the role (measurement,
- * state or setting). */
+/* Removes trailing attribute words, such as PV, that follow a separator in the tag name. The last word determines the role
+ * (measurement, state or setting). */
 static void drop_attributes(struct isa_name *name)
 {
     bool first = true;

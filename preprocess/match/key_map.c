@@ -18,7 +18,7 @@ static void grow(struct key_map *map)
     mem_free(map->slots);
     map->slots = mem_array(map->slot_count, sizeof(*map->slots));
     memset(map->slots, 0xff, map->slot_count * sizeof(*map->slots));
-    /* insert from last to first, so that the oldest of several entries with the same key is found first */
+    /* insert from last to first, so that the oldest entry with a key is found first */
     for (size_t i = map->count; i-- > 0;) {
         int *slot = &map->slots[slot_of(map, map->things[i].key)];
         map->things[i].next = *slot;

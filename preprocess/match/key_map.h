@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A hash map from keys to assets and nodes; several entries may share a key. Thread: one while entries are added, any afterwards. */
+/* A hash map from keys to assets and nodes; several entries may have the same key. Thread: one while entries are added, any afterwards. */
 #ifndef PREPROCESS_MATCH_KEY_MAP_H
 #define PREPROCESS_MATCH_KEY_MAP_H
 #include <stddef.h>
 
 struct key_thing {
     char *key;
-    /* asset: index of the asset that the key names; node: index of a node of its model, -1: the key names the asset itself */
+    /* asset: index of the asset that the key names; node: index of a node of the asset's model; -1: the key names the asset itself */
     int asset, node;
-    int next;        /* index in `things` of the next entry of the same hash slot; -1: none */
+    int next;        /* index in `things` of the next entry in the same hash slot; -1: none */
 };
 
 struct key_map { /* zero-initialise */
@@ -19,7 +19,7 @@ struct key_map { /* zero-initialise */
 
 /* Adds an entry to the map unless the same asset and node already have this key. Copies the key. */
 void key_map_add(struct key_map *map, const char *key, int asset, int node);
-/* Return the index of an entry with the key: key_map_find() of the first one, key_map_next() of the one after an entry. -1: none. */
+/* Return the index of an entry with the key: key_map_find() returns the first one, key_map_next() the one after a given entry. -1: none. */
 int key_map_find(const struct key_map *map, const char *key);
 int key_map_next(const struct key_map *map, int thing);
 void key_map_finish(struct key_map *map);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds a tag's equipment by the tag's name: a model node with that name; the site's rules; equipment whose name is part of the tag's name;
- * the same with a spelling slip in one of the names. */
+/* Finds a tag's equipment by the tag's name: a model node with that name; the site's rules; equipment whose name is part of the
+ * tag's name; the same with a spelling mistake in one of the names. */
 #include <stdio.h>
 #include <string.h>
 
@@ -122,14 +122,14 @@ bool method_rules(const struct matcher *matcher, const struct match_subject *sub
 static bool is_apart(const struct name_tokens *tokens, int from, int to)
 {
     bool before = tokens->at[from].apart, behind = to == tokens->count || tokens->at[to].apart;
-    /* whether a single letter that distinguishes equipment follows the tokens (runs of letters or digits): E-101-A is not E-101 */
+    /* a single letter that distinguishes equipment follows the tokens (runs of letters or digits): E-101-A is not E-101 */
     bool letter = to < tokens->count && !tokens->at[to].digits && strlen(tokens->at[to].text) == 1 && tokens->at[to].text[0] <= 'F' &&
                   tokens->at[to - 1].digits;
     return before && behind && !letter;
 }
 
-/* Finds the longest range of the tag name's tokens (runs of letters or digits) that is the name of equipment. The range must begin and end
- * at a separator or at an end of the tag's name. */
+/* Finds the longest range of the tag name's tokens (runs of letters or digits) that is the name of equipment. The range must
+ * begin and end at a separator or at an end of the tag name. */
 static bool find_within(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -157,7 +157,7 @@ bool method_name_within(const struct matcher *matcher, const struct match_subjec
     return true;
 }
 
-/* --- slips of spelling ------------------------------------------------------------------------------------------------------ */
+/* --- spelling mistakes -------------------------------------------------------------------------------------------------------- */
 
 /* Finds equipment whose name equals tokens (runs of letters or digits) of the tag's name, except for O in place of 0, and I or L in place
  * of 1. */
@@ -178,8 +178,8 @@ static bool find_folded(const struct matcher *matcher, const struct name_tokens 
     return false;
 }
 
-/* Finds equipment with the same digits as the tag's name, and letters that differ by one slip: a letter doubled, missing or swapped.
- * Proposes nothing if several assets match. */
+/* Finds equipment with the same digits as the tag's name, and letters that differ by one mistake: a letter doubled, missing or
+ * swapped. Proposes nothing if several assets match. */
 static bool find_slip(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     const struct key_map *map = &matcher->site->digits;
@@ -218,7 +218,7 @@ static bool find_ending(const struct matcher *matcher, const struct name_tokens 
             if (!is_apart(tokens, from, from + length) || !candidates_find(&out->candidates, &matcher->site->endings, key))
                 continue;
             const struct name_tokens *of = &matcher->site->assets[out->candidates.assets[0]].tokens;
-            /* index of the asset's token (run of letters or digits) before the ending that both names share */
+            /* index of the asset's last token (run of letters or digits) before the ending that the two names share */
             int dropped = of->count - length - 1;
             const struct name_token *before = from > 0 ? &tokens->at[from - 1] : NULL;
             bool contradicts = before && dropped >= 0 && before->digits == of->at[dropped].digits &&

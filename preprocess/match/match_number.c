@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds a tag's equipment by number: an instrument loop has the number of its equipment, possibly followed by one or two digits (ISA-5.1,
- * 4.2; ISA-5.1-2009 annex A). */
+/* Finds a tag's equipment by number: an instrument loop has the number of its equipment, possibly followed by one or two more
+ * digits (ISA-5.1, 4.2; ISA-5.1-2009 annex A). */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,8 +14,8 @@ static bool has_token(const struct name_tokens *tokens, const struct name_token 
     return false;
 }
 
-/* Rates how well the tag's prefix fits an asset: 2 if the prefix occurs in the asset's name or area, 1 if the tag has no prefix or one that
- * most tags have, 0 if the prefix names another area. */
+/* Rates how well the tag's prefix fits an asset: 2 if the prefix occurs in the asset's name or area; 1 if the tag has no
+ * prefix, or one that most tags have; 0 if the prefix names another area. */
 static int rate_prefix(const struct matcher *matcher, const struct match_subject *subject, int asset)
 {
     const struct isa_name *name = &subject->name;
@@ -34,7 +34,7 @@ static int rate_prefix(const struct matcher *matcher, const struct match_subject
     return name->letters <= 0 || leads || (*matcher->common_prefix && !strcmp(key, matcher->common_prefix));
 }
 
-/* Returns the suffix of an asset's name: a letter after the number that distinguishes, for example, pumps A and B; "": none. */
+/* Returns the suffix of an asset's name: a letter after the number that distinguishes, for example, pump A from pump B; "": none. */
 static const char *suffix_of(const struct indexed_asset *asset)
 {
     int at = asset->number + 1;
@@ -42,7 +42,7 @@ static const char *suffix_of(const struct indexed_asset *asset)
     return *text >= 'A' && *text <= 'F' && !text[1] ? text : "";
 }
 
-/* kinds of equipment: a word for the kind in descriptions, and the letters in names of such equipment */
+/* kinds of equipment: a word for the kind in descriptions, and the letters that names of such equipment begin with */
 static const struct {
     const char *word, *letters;
 } classes[] = {
@@ -84,7 +84,7 @@ static bool has_word(const char *list, const char *word)
     return false;
 }
 
-/* Returns whether the tag's description has a word for the kind of equipment that the letters of the asset's name state. */
+/* Returns whether the tag's description contains a word for the kind of equipment indicated by the letters of the asset's name. */
 static bool fits_class(const struct matcher *matcher, const struct match_subject *subject, int asset)
 {
     const struct indexed_asset *of = &matcher->site->assets[asset];
@@ -99,7 +99,7 @@ static bool fits_class(const struct matcher *matcher, const struct match_subject
 
 enum number_filter { PREFIX_FITS, SAME_SUFFIX, NO_SUFFIX, FITS_CLASS };
 
-/* Removes from the list the assets that do not pass the filter, unless none passes. The list holds the assets to which a tag may belong. */
+/* Removes the assets that do not pass the filter from the list of assets that a tag may belong to, unless none passes. */
 static void keep(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list,
                  enum number_filter filter)
 {
@@ -117,7 +117,7 @@ static void keep(const struct matcher *matcher, const struct match_subject *subj
         *list = kept;
 }
 
-/* Removes from the list the assets whose suffix letter (A, B, ...) differs from the tag's suffix letter. */
+/* Removes the assets whose suffix letter (A, B, ...) differs from the tag's from the list. */
 static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list)
 {
     struct match_candidates kept = { .more = list->more };
@@ -135,8 +135,8 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     if (name->letters < 0)
         return false;
     const struct name_token *number = &name->tokens.at[name->number];
-    /* digits, letters: whether the tag name's prefix has a run of digits, of letters. With both, the prefix itself names the equipment, and
-     * the loop number is not used. */
+    /* does the tag name's prefix have a run of digits, or of letters? If it has both, the prefix itself names the equipment,
+     * and the loop number is not used. */
     bool digits = false, letters = false;
     for (int i = 0; i < name->letters; i++) {
         digits |= name->tokens.at[i].digits && name->tokens.at[i].raw_length >= 3;
@@ -174,12 +174,12 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
 
 /* --- parts of names ----------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the tokens (runs of letters or digits) of the tag's name, without instrument letters and loop number, occur in the
- * asset's name in the same order, and include letters. */
+/* Returns whether the tokens (runs of letters or digits) of the tag's name, except instrument letters and loop number, occur in
+ * the asset's name in the same order, and include letters. */
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {
     int at = 0;
-    bool letters = false; /* at least one of the matching tokens (runs of letters or digits) consists of letters */
+    bool letters = false; /* true: at least one of the matching tokens consists of letters */
     for (int i = 0; i < name->tokens.count; i++) {
         const struct name_token *token = &name->tokens.at[i];
         int next = at;
@@ -196,7 +196,7 @@ static bool is_part(const struct isa_name *name, const struct name_tokens *of)
     return letters;
 }
 
-/* Matches tags with the equipment's number and some other part of its name: RADIATOR-583216, 0001-F2. */
+/* Matches tags that contain the equipment's number and another part of its name: RADIATOR-583216, 0001-F2. */
 bool method_parts(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct isa_name *name = &subject->name;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds a tag's equipment by text: attributes of model nodes, equipment that the tag's description names, words of descriptions,
- * aliases. */
+/* Finds a tag's equipment by text: attributes of model nodes, equipment named in the tag's description, words of descriptions, aliases. */
 #include <stdio.h>
 #include <string.h>
 
@@ -20,7 +19,7 @@ bool method_attributes(const struct matcher *matcher, const struct match_subject
     return true;
 }
 
-/* Finds equipment by its number in a text, if a word of the equipment's name is next to the number. */
+/* Finds equipment by its number in a text, provided that a word of the equipment's name is next to the number. */
 static void find_numbers(const struct matcher *matcher, const struct name_tokens *tokens, struct match_candidates *out)
 {
     const struct key_map *map = &matcher->site->numbers;
@@ -39,7 +38,7 @@ static void find_numbers(const struct matcher *matcher, const struct name_tokens
     }
 }
 
-/* Proposes all equipment whose name the tag's description contains; where several names overlap in the text, only the longest is used. */
+/* Proposes all equipment named in the tag's description; where several names overlap in the text, only the longest is used. */
 bool method_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->description;
@@ -75,7 +74,7 @@ struct word_count {
         size_t letters;
     } at[256];
     int count;
-    const char *seen[NAME_MAX_TOKENS * 2]; /* distinct words of the tag's texts that were counted so far */
+    const char *seen[NAME_MAX_TOKENS * 2]; /* distinct words of the tag's texts counted so far */
     int seen_count;
 };
 
@@ -112,8 +111,8 @@ static void count_own(const char *word, void *data)
     ++*(int *)data;
 }
 
-/* Returns how many words the tag's texts and the asset must have in common for a match by words: the number of words in the asset's
- * description, or in its name if that has no number and fewer words. */
+/* Returns how many words the tag's texts and the asset must have in common to match: the number of words in the asset's
+ * description, or in its name if the name has fewer words and no number. */
 static int own_words(const struct model_index *site, int asset)
 {
     int description = 0, name = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs the methods of matching a tag to equipment in order, and decides between proposals that disagree. */
+/* Runs the methods that match a tag to equipment, in order, and decides between conflicting proposals. */
 #include "preprocess/match/matcher.h"
 
 #include <errno.h>
@@ -21,10 +21,10 @@ static const size_t max_table_bytes = (size_t)16 << 20;
 typedef bool (*match_method)(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
 static const match_method methods[] = { method_own_node, method_rules,      method_name_within, method_parts, method_spelling,
                                         method_number,   method_attributes, method_description, method_words, method_alias };
-enum { MIN_PREFIXES = 20 }; /* minimum number of tag names that have a prefix; with fewer, no prefix is taken as common to most names */
+enum { MIN_PREFIXES = 20 }; /* minimum number of tag names with a prefix; if there are fewer, no prefix counts as common to most names */
 enum { METHODS = sizeof(methods) / sizeof(*methods) };
 
-/* Returns whether two names differ in only one or two characters, so that one may be a typing error for the other. */
+/* Returns whether two names differ in only one or two characters, so that one may be a misspelling of the other. */
 static bool are_near(const char *a, const char *b)
 {
     size_t differ = 0;
@@ -40,8 +40,8 @@ static const char *id_of(const struct matcher *matcher, int asset)
     return matcher->site->plant->assets[asset].id;
 }
 
-/* Returns whether a sure proposal of another method contradicts the chosen proposal. A strong proposal, such as a full name, is
- * contradicted only by equipment with a nearly equal name, because one of the names may be a typing error. */
+/* Returns whether another method's sure proposal contradicts the chosen one. A strong proposal, such as a full name, is
+ * contradicted only by equipment with a nearly equal name, because one of the two names may be misspelt. */
 static bool contradicts(const struct matcher *matcher, const struct proposal *chosen, const struct proposal *other)
 {
     int asset = chosen->candidates.assets[0];
@@ -66,10 +66,10 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
 {
     struct text reason = { 0 };
     char names[200];
-    /* indices of matching methods. chosen: the method whose proposal is taken; -1: none. open: the first method that proposed several
-     * assets; -1: none */
+    /* indices of matching methods. chosen: the method whose proposal is accepted; -1: none. open: the first method that
+     * proposed several assets; -1: none */
     int chosen = -1, open = -1;
-    /* first pass: only those proposals that a method calls sure; second pass: all proposals */
+    /* first pass: only proposals that their method marks as sure; second pass: all proposals */
     for (int pass = 0; pass < 2 && chosen < 0; pass++)
         for (int i = 0; i < METHODS && chosen < 0; i++) {
             const struct proposal *proposal = &proposals[i];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads an exported tag list, matches its tags to equipment, composes the new files, and writes them if the plant they describe can be
- * loaded. */
+/* Reads an exported tag list, matches its tags to equipment, composes the new files, and writes them if the resulting plant can
+ * be loaded. */
 #include "preprocess/match/matching.h"
 
 #include <errno.h>
@@ -38,12 +38,12 @@ struct matching_run {
     struct place_proposal *places;
     struct tag_rows rows;
     struct tag_source source;
-    char *result;                                      /* text that is printed for the user after matching */
-    char *plant_text, *new_text;                       /* texts of the plant file. plant_text: current text; new_text: text to write */
-    /* texts of the plant file, the tag list and matches.csv at the start of the run; NULL: the file does not exist */
+    char *result;                                      /* text printed for the user after matching */
+    char *plant_text, *new_text;                       /* plant file: current text, and text to write */
+    /* texts of the plant file, the tag list and matches.csv when the run began; NULL: the file does not exist */
     char *plant_before, *tags_before, *matches_before;
-    /* tags_text, matches_text: new texts of the tag list and matches.csv; left_names: names, for the report, of the first tags that are
-     * missing from the new tag list */
+    /* new texts of the tag list and matches.csv; left_names: for the report, names of the first tags that are missing from the
+     * new tag list */
     struct text tags_text, matches_text, left_names;
     size_t left, by_hand, left_out, written, assumed, own_nodes;
 };
@@ -96,7 +96,7 @@ static void print_list(const struct matching_run *run)
                *list->encoding.name ? list->encoding.name : "text");
 }
 
-/* Replaces the plant's assets by the equipment that the option --equipment selects. Returns false with an error if the tag list refers to
+/* Replaces the plant's assets by the equipment selected with --equipment. Returns false with an error if the tag list refers to
  * assets, because those tags would lose their equipment. */
 static bool choose_equipment(struct matching_run *run)
 {
@@ -134,7 +134,7 @@ static bool read_optional(struct matching_run *run, const char *name,
     return good;
 }
 
-/* Reads the plant in this process and not in the confined child, because the daemon reads the same files too. */
+/* Reads the plant in this process, not in the confined child, because the daemon reads the same files too. */
 static bool read_plant(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -177,7 +177,7 @@ static bool read_lists(struct matching_run *run)
 
 /* --- deciding --------------------------------------------------------------------------------------------------------------- */
 
-/* Applies the decisions that people made about tags, which override the matcher. */
+/* Applies people's decisions about tags, which override the matcher. */
 static bool obey(struct matching_run *run)
 {
     char *path = beside(run, "matches.csv"), why[200];
@@ -199,14 +199,14 @@ static bool obey(struct matching_run *run)
                                  .confidence = match->asset == asset ? match->confidence : 1,
                                  .reason = mem_strdup("by hand") };
         if (match->node < 0 && match->confidence > 0.98)
-            match->confidence = 0.95; /* confidence below 1, because only the asset is certain; the sensor's position on it is assumed */
+            match->confidence = 0.95; /* below 1, because only the asset is certain; the sensor's position on it is assumed */
         run->by_hand++;
     }
     mem_free(path);
     return good;
 }
 
-/* Determines the source of the tags: the source that --source names, or the one that --modbus adds, or the plant's only source. */
+/* Determines the source of the tags: the one named by --source, the one added by --modbus, or the plant's only source. */
 static bool find_source(struct matching_run *run)
 {
     const struct matching_params *params = run->params;
@@ -247,7 +247,7 @@ static void put_rows(struct matching_run *run)
         const char *found = match->asset < 0 ? "" : run->plant->assets[match->asset].id;
         bool kept = asset && (!before || !before->edited) && match->status == MATCH_SURE && strcmp(asset, found) != 0;
         struct match shown = *match;
-        if (kept) { /* a person edited the asset of this tag in the tag list; the edit takes precedence over the match */
+        if (kept) { /* a person edited this tag's asset in the tag list; the edit takes precedence over the match */
             shown.status = *asset ? MATCH_SURE : MATCH_NONE;
             found = asset;
         }
@@ -274,8 +274,7 @@ static int by_folded_name(const void *a, const void *b)
     return strcasecmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Returns whether a tag of an earlier run comes from the same control system as the current export, judging by its source in the plant
- * file. */
+/* Returns whether a tag of an earlier run comes from the control system of the current export, judging by its source in the plant file. */
 static bool is_of_source(const struct matching_run *run, const char *tag)
 {
     for (size_t i = 0; i < run->plant->tag_count; i++)
@@ -284,8 +283,8 @@ static bool is_of_source(const struct matching_run *run, const char *tag)
     return run->plant->source_count <= 1;
 }
 
-/* Keeps decisions about tags that are missing from the current export, because they may belong to another control system, or occur in a
- * later export. */
+/* Keeps decisions about tags that are missing from the current export, because they may belong to another control system, or
+ * reappear in a later export. */
 static void keep_left(struct matching_run *run)
 {
     const char **names = mem_array(run->list.count + 1, sizeof(*names));
@@ -308,7 +307,7 @@ static void keep_left(struct matching_run *run)
 
 /* --- the plant file --------------------------------------------------------------------------------------------------------- */
 
-/* Appends a group to the plant file's lines. The group's colour scale comes from the scaled limits of its tags. */
+/* Appends a group to the plant file's lines. The group's colour scale is derived from the scaled limits of its tags. */
 static void add_group(const struct quantity *quantity, struct text *lines)
 {
     bool known = quantity->low < quantity->high;
@@ -402,8 +401,8 @@ static bool compose_plant(struct matching_run *run, bool placeholder)
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether a file still has the text that was read. Called immediately before writing, because matching may take minutes, in which
- * other people may save the file. */
+/* Returns whether a file still has the text that was read. Called immediately before writing, because matching may take
+ * minutes, during which others may save the file. */
 static bool is_as_read(const char *path, const char *before)
 {
     size_t length = 0;
@@ -424,9 +423,9 @@ static void say_written(const char *path, const char *before, const char *text)
     printf("%s: %s\n", path, before && !strcmp(before, text) ? "unchanged" : "written");
 }
 
-/* Writes the plant's files. The plant file comes first, because it only gains groups and a source, and is valid with the old tag list.
- * matches.csv comes last: if the run is killed before that, the next run completes the work and does not take the new rows of the tag list
- * for edits by people. */
+/* Writes the plant's files. The plant file comes first, because it only gains groups and a source, and is valid with the old
+ * tag list. matches.csv comes last: if the run is killed before that, the next run completes the work and does not mistake the
+ * tag list's new rows for people's edits. */
 static bool write_files(struct matching_run *run, const char *matches_path)
 {
     const char *plant = run->params->plant, *tags = run->plant->files.tags_path;
@@ -523,7 +522,7 @@ static int lock_folder(const struct matching_params *params)
 
 struct matching_answer {
     struct matching_run *run;
-    int file; /* memory file into which the confined child writes the new texts of the files, each as an 8-byte length and its bytes */
+    int file; /* memory file to which the confined child writes the files' new texts, each as an 8-byte length and its bytes */
 };
 
 static bool put_text(int file, const char *text)
@@ -537,7 +536,7 @@ static bool put_text(int file, const char *text)
     return good;
 }
 
-/* Reads a text from the answer of the confined child. Returns NULL if the answer is malformed, because the child may be compromised. */
+/* Reads a text from the confined child's answer. Returns NULL if the answer is malformed; the child may be compromised. */
 static char *get_text(int file)
 {
     uint64_t length;
@@ -555,8 +554,8 @@ static char *get_text(int file)
     return text;
 }
 
-/* Reads and matches the untrusted tag list and composes all files; called in the confined child. Returns the exit status of the child: 0,
- * or 1 after printing the error. */
+/* Reads and matches the untrusted tag list and composes all files; runs in the confined child. Returns the child's exit status:
+ * 0, or 1 after printing the error. */
 static int match_in_child(void *arg)
 {
     const struct matching_answer *answer = arg;
@@ -638,8 +637,8 @@ static bool match(struct matching_run *run)
     bool good = child_run(&(struct child_params){ .call = match_in_child,
                                                   .arg = &answer,
                                                   .name = "the tag list reader",
-                                                  /* the child starts in the current folder, so that relative paths in the options are still
-                                                   * right */
+                                                  /* the child starts in the current folder, so that relative paths in the
+                                                   * options stay valid */
                                                   .folder = folder,
                                                   .timeout_s = run->params->timeout_s,
                                                   .memory_bytes = run->params->memory_bytes,

@@ -11,22 +11,22 @@ struct matching_params {
     const char *tags;             /* path of the exported tag list */
     const char *encoding;         /* encoding of the exported tag list; NULL: detect it */
     const char *decisions;        /* path of a file of people's decisions, which override matches.csv; NULL: none */
-    const char *const *equipment; /* selections of the nodes that become assets (equipment.h); count 0: keep the plant file's assets */
+    const char *const *equipment; /* selects the nodes that become assets (equipment.h); count 0: keep the plant file's assets */
     int equipment_count;
-    /* id, in the plant file, of the source that delivers the tags' values; NULL: the plant's only source, or `plc` with --modbus */
+    /* plant file's id of the source that delivers the tags' values; NULL: the plant's only source, or `plc` with --modbus */
     const char *source;
-    /* HOST or HOST:PORT of a Modbus source to add, or the new address of a source that an earlier run added; NULL: none */
+    /* HOST or HOST:PORT of a Modbus source to add, or the new address of a source added by an earlier run; NULL: none */
     const char *modbus;
-    int unit;               /* Modbus unit identifier of the source to add; -1: not stated */
-    const char *byte_order; /* byte order of the Modbus source to add; NULL: not stated */
+    int unit;               /* unit identifier of the Modbus source to add; -1: not given */
+    const char *byte_order; /* byte order of the Modbus source to add; NULL: not given */
     int address_base;       /* address base of the Modbus source to add */
     int lent;               /* descriptor of a folder lock held by the parent process (plant_folder.h); 0: none */
-    int timeout_s;          /* time limit of the confined child for reading and matching, seconds */
+    int timeout_s;          /* time limit for the confined child, which reads and matches, seconds */
     size_t memory_bytes;    /* memory limit of the confined child, bytes */
-    bool dry_run;           /* print the results, write nothing */
+    bool dry_run;           /* only print the results */
 };
 
-/* Returns the exit status: 0, or 1 after printing one line per error on standard error; then nothing was written. */
+/* Returns the exit status: 0, or 1 after printing one line per error on standard error without writing any file. */
 int matching_run(const struct matching_params *params);
 
 #endif

@@ -30,8 +30,8 @@ void model_index_each_word(const char *text, void (*each)(const char *word, void
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns the index of the token (run of letters or digits) that is probably the number of the equipment: the longest run of at least two
- * digits; of equally long runs the last one; -1: none. */
+/* Returns the index of the token (run of letters or digits) that is probably the equipment's number: the longest run of at
+ * least two digits, the last one if several are equally long; -1: none. */
 static int find_number(const struct name_tokens *tokens)
 {
     int best = -1;
@@ -126,7 +126,7 @@ static void add_node_names(struct model_index *site, int model, int node)
     }
 }
 
-/* Marks in asset_of the nodes of the model that belong to the asset, and finds its root node. Returns false with the reason in why. */
+/* Marks in asset_of the model's nodes that belong to the asset, and finds its root node. Returns false with the reason in why. */
 static bool take_nodes(struct model_index *site, int asset, char why[MODEL_INDEX_WHY_BYTES])
 {
     const struct plant_asset *of = &site->plant->assets[asset];
@@ -141,7 +141,7 @@ static bool take_nodes(struct model_index *site, int asset, char why[MODEL_INDEX
             from = i;
             to = tree->nodes[i].end;
         }
-    if (of->nodes && named != 1) { /* the asset is not selected by one plain node name: match its node patterns */
+    if (of->nodes && named != 1) { /* the asset is not selected by a single plain node name: match its node patterns */
         bool *taken = mem_array(tree->count, sizeof(*taken));
         bool good = nodes_take(of->nodes, tree->nodes, tree->count, taken, reason, sizeof(reason));
         for (size_t i = 0; i < tree->count && good; i++)

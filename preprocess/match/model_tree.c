@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of a glTF file from its JSON, from the scene's roots down. Checks only the properties that it reads; plantcast-prep
- * validates all others. */
+/* Reads the nodes of a glTF file from its JSON, from the scene's roots down. Checks only the properties it uses; plantcast-prep
+ * validates the rest. */
 #include "preprocess/match/model_tree.h"
 
 #include <errno.h>
@@ -29,7 +29,7 @@ static const char *text_of(json_t *object, const char *name)
     return text ? text : "";
 }
 
-/* Returns the item of a glTF file's list at an index, or NULL if the index is missing or out of range. */
+/* Returns an item of one of a glTF file's lists, or NULL if the index is missing or out of range. */
 static json_t *item_of(json_t *root, const char *list, json_t *index)
 {
     return json_is_integer(index) && json_integer_value(index) >= 0
@@ -135,7 +135,7 @@ static bool add_node(struct model_tree *tree, json_t *index, int parent, const d
     return good;
 }
 
-/* Finds the JSON text of a model file and, in a GLB file, the binary chunk. Returns false with the reason in why. */
+/* Finds the JSON text of a model file and, for a GLB file, the binary chunk. Returns false with the reason in why. */
 static bool find_chunks(struct model_tree *tree, size_t length, const char **json, size_t *json_bytes)
 {
     *json = tree->bytes;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of a glTF model with names, attributes (extras) and bounding boxes, and with vertices if the file stores them uncompressed.
- * Thread: any. */
+/* The nodes of a glTF model with names, attributes (extras) and bounding boxes, and with vertices if these are stored
+ * uncompressed. Thread: any. */
 #ifndef PREPROCESS_MATCH_MODEL_TREE_H
 #define PREPROCESS_MATCH_MODEL_TREE_H
 #include <jansson.h>
@@ -36,8 +36,8 @@ enum { TREE_WHY_BYTES = 200 };
 /* Reads a .glb or .gltf file. Returns false with the reason in why. */
 bool model_tree_read(struct model_tree *tree, const char *path, char why[TREE_WHY_BYTES]);
 void model_tree_finish(struct model_tree *tree);
-/* Finds the vertex nearest to a point, among those of a node and its subtree. Returns false if no vertices can be read because they are
- * compressed or in another file. */
+/* Finds the vertex of a node and its subtree that is nearest to a point. Returns false if no vertices can be read because they
+ * are compressed or in another file. */
 bool model_tree_nearest_vertex(const struct model_tree *tree, int node, const double point[3], double out[3]);
 
 #endif

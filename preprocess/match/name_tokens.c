@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits names into runs of letters and digits. Bytes of other alphabets count as letters, after full-width letters, dashes and blanks have
- * been normalised. */
+/* Splits names into runs of letters and digits. First normalises full-width letters, dashes and blanks; bytes of other
+ * alphabets count as letters. */
 #include "preprocess/match/name_tokens.h"
 
 #include <ctype.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds positions for tags on their equipment: by words for ends and nozzles of equipment (inlet, top), or spread along the equipment. */
+/* Finds positions for tags on their equipment: at an end or nozzle named in words (inlet, top), or spread along the equipment. */
 #include "preprocess/match/places.h"
 
 #include <math.h>
@@ -48,8 +48,8 @@ static bool shows(const struct model_tree *tree, int node)
     return tree->more[node].low[0] <= tree->more[node].high[0];
 }
 
-/* Returns the index of the asset's node whose name mentions the most of the `wanted` ends, such as inlet (bit mask), if there is exactly
- * one; else -1. */
+/* Returns the index of the asset's node whose name mentions the most of the `wanted` ends, such as inlet (bit mask); -1 if no node
+ * or several nodes do. */
 static int find_end(const struct model_index *site, int asset, unsigned wanted)
 {
     const struct indexed_asset *of = &site->assets[asset];
@@ -68,7 +68,7 @@ static int find_end(const struct model_index *site, int asset, unsigned wanted)
     return alike == 1 ? best : -1;
 }
 
-/* Transforms a point from the model's frame to the frame of coordinates in the tag list. */
+/* Transforms a point from the model's frame to the frame of the tag list's coordinates. */
 static void into_list(const struct model_index *site, int asset, const double model[3], double out[3])
 {
     const struct plant_asset *of = &site->plant->assets[asset];
@@ -98,8 +98,8 @@ static void put(const struct model_index *site, int asset, int node, const doubl
     out->has_position = true;
 }
 
-/* Computes the position of tag `number` of `count` tags on an asset without a stated position: the vertex nearest to a point along the
- * longest side of the equipment, or at its top or bottom. */
+/* Computes the position of tag `number` of `count` tags without a given position on an asset: the vertex nearest to a point
+ * along the equipment's longest side, or at its top or bottom. */
 static void spread(const struct model_index *site, int asset, unsigned wanted, size_t number, size_t count, struct place_proposal *out)
 {
     const struct indexed_asset *of = &site->assets[asset];

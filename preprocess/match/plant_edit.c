@@ -23,8 +23,8 @@ static const char *next_line(const char *line)
     return line + (*line == '\n');
 }
 
-/* Finds the line `list:` of the plant file, without a value after the colon. Sets *flow if a value follows it, which means a list in flow
- * style. Returns NULL if there is no such line. */
+/* Finds the line `list:` of the plant file that has no value after the colon. Sets *flow if there is a value, which means a
+ * list in flow style. Returns NULL if there is no such line. */
 static const char *find_key(const char *text, const char *list, bool *flow)
 {
     size_t length = strlen(list);
@@ -38,7 +38,7 @@ static const char *find_key(const char *text, const char *list, bool *flow)
     return NULL;
 }
 
-/* Finds the byte range of a list's items: from the line after the list's key to the last line of the last item. Excludes the blank lines
+/* Finds the byte range of a list's items: from the line after the list's key to the last item's last line. Excludes blank lines
  * and comments before the next key. */
 static void find_items(const char *key, const char **begin, const char **end)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes temporary plant files in the plant's folder, because paths in a plant file are relative to that folder. */
+/* Writes temporary plant files into the plant's folder, because paths in a plant file are relative to it. */
 #include "preprocess/match/plant_trial.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
 
-/* Returns the text of a plant file with the path of its tag list replaced by `list`. The caller frees it. */
+/* Returns the text of a plant file with its tag list's path replaced by `list`. The caller frees it. */
 static char *with_list(const char *text, const char *list)
 {
     const char *key = strstr(text, "\ntags:"), *end = key ? key + 1 + strcspn(key + 1, "\n") : NULL;
@@ -28,7 +28,7 @@ struct plant *plant_trial_load(const struct plant *plant, const char *text, cons
     if (status != 0)
         fprintf(stderr, "%s: %s: %s\n", program, path, strerror(-status));
     else
-        loaded = plant_load_without_models(path); /* the plant's models are not loaded, since they may not have been imported yet */
+        loaded = plant_load_without_models(path); /* do not load the plant's models: they may not have been imported yet */
     if (status == 0 && !loaded)
         fprintf(stderr, "%s: the resulting plant would be invalid; nothing was written\n", program);
     unlink(path);

@@ -32,15 +32,15 @@ static bool is_number(const char *type)
     return !has_any(type, others, sizeof(others) / sizeof(*others));
 }
 
-/* For each kind of unit, the quantities that are measured in such units; the first quantity is the default. An empty list: units of this
- * kind do not identify a quantity. */
+/* For each kind of unit, the quantities measured in such units; the first is the default. An empty list: units of this kind do
+ * not identify a quantity. */
 static const struct {
     const char *kind;
-    bool alone; /* true: a unit of this kind determines the quantity alone, without description or letters */
+    bool alone; /* true: a unit of this kind is enough to determine the quantity, without description or letters */
     const char *quantities;
 } kinds[] = {
     { "temperature", true, "|Temperature|" },
-    { "pressure", true, "|Pressure|Differential pressure|" }, /* pressure in any unit, gauge, absolute or with another reference */
+    { "pressure", true, "|Pressure|Differential pressure|" }, /* pressure in any unit; gauge, absolute or with another reference */
     { "flow", true, "|Flow|" },
     { "density", true, "|Density|" },
     { "conductivity", true, "|Conductivity|" },
@@ -60,7 +60,7 @@ static const struct {
     { "resistance", false, "|Resistance|Conductivity|Temperature|" },
 };
 
-/* Returns the index in the table of the unit's kind; -1: unknown unit. */
+/* Returns the table index of the unit's kind; -1: unknown unit. */
 static int kind_of(const char *unit)
 {
     const char *kind = *unit ? unit_kind(unit) : NULL;
@@ -79,7 +79,7 @@ static bool is_possible(int kind, const char *quantity)
     return possible;
 }
 
-/* Returns whether the tag is a tuning parameter. TI is a tuning parameter (integral time) if its unit is seconds; with another unit or a
+/* Returns whether the tag is a tuning parameter. TI is one (integral time) if its unit is seconds; with another unit or a
  * telling description it is a temperature indicator. */
 static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, int kind, const char *described)
 {
@@ -89,8 +89,8 @@ static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, 
     return (unit && !strcmp(unit, "time")) || (kind < 0 && !described);
 }
 
-/* Determines the quantity that a tag measures, such as "Temperature"; "": a state or setting, or unknown. The tag's unit is used first,
- * then its description, words of its name, and its letters. None of these may contradict the unit. */
+/* Determines the quantity that a tag measures, such as "Temperature"; "": it is a state or setting, or unknown. Uses the tag's
+ * unit first, then its description, words of its name, and its letters, none of which may contradict the unit. */
 static void name_of(const struct export_tag *tag, char name[NAME_BYTES])
 {
     struct isa_name isa;
@@ -154,8 +154,8 @@ static struct quantity *add_quantity(struct quantities *quantities, const char *
     return quantity;
 }
 
-/* Returns the index of the group for a quantity and unit; -1: none. An existing group of the plant fits by its unit alone if it is the only
- * group with that unit. */
+/* Returns the index of the group for a quantity and unit; -1: none. An existing group fits by its unit alone if no other group
+ * has that unit. */
 static int find(const struct quantities *quantities, const char *name, const char *unit)
 {
     int by_unit = -1, fitting = 0;
@@ -187,7 +187,7 @@ static void take_range(struct quantity *quantity, const struct export_tag *tag)
     quantity->high = fmax(quantity->high, unit_change_value(&change, high));
 }
 
-/* Returns a unit in the spelling for the legend of a colour scale, such as "°C" for "degC". */
+/* Returns a unit as spelt in a colour scale's legend, such as "°C" for "degC". */
 static const char *written(const char *unit)
 {
     static const char *const usual[] = { "°C", "°F" };
@@ -225,7 +225,7 @@ void quantities_find(struct quantities *quantities, const struct plant *plant, c
     for (size_t g = 0; g < plant->group_count; g++)
         if (!unused || strcmp(unused, plant->groups[g].id) != 0)
             add_quantity(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
-    /* second round: tags without a unit come last, because they join groups that other tags have created */
+    /* second round: tags without a unit, which join the groups created by other tags */
     for (int blank = 0; blank < 2; blank++)
         for (size_t i = 0; i < list->count; i++) {
             if (blank == 0)

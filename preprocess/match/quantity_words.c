@@ -64,7 +64,7 @@ static const struct {
 };
 enum { QUANTITIES = sizeof(quantities) / sizeof(*quantities) };
 
-/* Returns the letters and digits of a text as words with one blank before and after each. The caller frees the returned text. */
+/* Returns the letters and digits of a text as words, with one blank before and after each word. The caller frees the text. */
 static char *words_of(const char *text)
 {
     char *folded = fold_text(text), *out = mem_array(strlen(folded) * 4 + 3, 1);
@@ -87,7 +87,7 @@ static char *words_of(const char *text)
     return out;
 }
 
-/* Returns whether a word of the table must match a whole word of the text. False for Chinese, Japanese and Korean words, because these
+/* Returns whether a word of the table must match a whole word. False for Chinese, Japanese and Korean words, because these
  * languages do not separate words. */
 static bool is_whole(const char *word, char mark)
 {

@@ -3,7 +3,7 @@
 #ifndef PREPROCESS_MATCH_QUANTITY_WORDS_H
 #define PREPROCESS_MATCH_QUANTITY_WORDS_H
 
-/* Returns the quantity named in a text, spelled as by isa_quantity() (static). Returns NULL if the text names none or several. */
+/* Returns the quantity named in a text, spelt as by isa_quantity() (static), or NULL if the text names none or several. */
 const char *quantity_words_find(const char *text);
 
 #endif

@@ -65,8 +65,8 @@ void table_finish(struct cell_table *table)
     *table = (struct cell_table){ 0 };
 }
 
-/* Rates how likely a character is the separator of a CSV text: by the number of lines in which it occurs equally often, outside quotes and
- * at least once. Returns this number of lines times 1000, plus its count per line, which decides between equal ratings. */
+/* Rates how likely a character is the separator of a CSV text: by the number of lines in which it occurs equally often, outside
+ * quotes and at least once. Returns this number times 1000, plus its count per line as a tie-breaker. */
 static size_t rate(const char *text, char separator)
 {
     size_t counts[SAMPLE_LINES] = { 0 }, lines = 0, best = 0;
@@ -113,7 +113,7 @@ char table_separator(const char *text)
     return best;
 }
 
-/* Reads one CSV cell that begins at `at` and appends it to the row. Returns the cell's end, or NULL if its quote is not terminated. */
+/* Reads the CSV cell that begins at `at` and appends it to the row. Returns the cell's end, or NULL if its quote is not terminated. */
 static const char *read_cell(struct cell_table *table, struct table_row *row, const char *at, char separator, int *line)
 {
     struct text cell = { 0 };

@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A table of text cells from a CSV file or a spreadsheet. Reads more leniently than csv.h, since other programs write these files: rows may
- * differ in length. Thread: any. */
+/* A table of text cells from a CSV file or a spreadsheet. Reads more leniently than csv.h, because other programs write these
+ * files: rows may differ in length. Thread: any. */
 #ifndef PREPROCESS_MATCH_TABLE_H
 #define PREPROCESS_MATCH_TABLE_H
 #include <stdbool.h>
 #include <stddef.h>
 
 struct table_row {
-    char **cells; /* texts of the cells: UTF-8, without blanks at their ends; control characters are replaced by blanks */
+    char **cells; /* texts of the cells: UTF-8, trimmed; control characters are replaced by blanks */
     size_t count, capacity;
-    int line; /* line number in the file, from 1; in a spreadsheet the row number */
+    int line; /* line number in the file, from 1; row number in a spreadsheet */
 };
 
 struct cell_table {         /* zero-initialise */
     struct table_row *rows; /* rows that are not blank */
     size_t count, capacity;
-    size_t control; /* number of control characters that were replaced by blanks */
+    size_t control; /* number of control characters replaced by blanks */
 };
 
 enum { TABLE_MAX_CELLS = 1000 };
 #define TABLE_MAX_ROWS 1000000
 
-/* Returns the character that probably separates the cells of a CSV text: comma, semicolon, tab or bar, the one that splits the most of the
- * first lines into equally many cells. */
+/* Returns the character that probably separates the cells of a CSV text: the one of comma, semicolon, tab and bar that splits
+ * most of the first lines into equally many cells. */
 char table_separator(const char *text);
 /* Appends the rows of a CSV text to the table. Returns false with the reason in why: too many rows, or an unterminated quote. */
 bool table_read_csv(struct cell_table *table, const char *text, char separator, char *why, size_t why_bytes);
@@ -31,9 +31,9 @@ typedef void table_take_sheet(void *data, struct cell_table *sheet, const char *
 /* Reads all non-empty sheets of a spreadsheet (Office Open XML, .xlsx) in workbook order, including hidden ones. Returns false with the
  * reason in why. */
 bool table_read_xlsx(const char *path, table_take_sheet *take, void *data, char *why, size_t why_bytes);
-/* Appends a cell to the row, without blanks at its ends and with control characters replaced by blanks. */
+/* Appends a cell to the row, trimmed and with control characters replaced by blanks. */
 void table_add_cell(struct cell_table *table, struct table_row *row, const char *text, size_t length);
-/* Appends a row to the table and takes ownership of its cells. Drops a row of blank cells. */
+/* Appends a row to the table and takes ownership of its cells. Drops the row if all cells are blank. */
 void table_add_row(struct cell_table *table, struct table_row *row);
 /* Returns a cell, or "" if the row is too short or column is negative. */
 const char *table_cell(const struct table_row *row, int column);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Reads texts as they are and numbers as they
- * are stored; number formats are not applied. */
+/* Reads spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Reads texts and numbers as
+ * stored, without applying number formats. */
 #include "preprocess/match/table.h"
 
 #include <expat.h>
@@ -14,10 +14,10 @@
 
 enum {
     MAX_SHEETS = 1024,
-    /* maximum bytes of all shared strings and cells of a spreadsheet together; a shared string counts for each cell that uses it */
+    /* maximum total bytes of a spreadsheet's shared strings and cells; a shared string counts for each cell that uses it */
     MAX_BYTES = 1 << 28,
     MAX_CELL_BYTES = 1 << 20, /* maximum bytes of one cell or shared string; programs that write spreadsheets allow 32,767 characters */
-    MAX_TAG_BYTES = 1 << 20,  /* maximum bytes of one XML tag; expat parses an unfinished tag again with each block */
+    MAX_TAG_BYTES = 1 << 20,  /* maximum bytes of one XML tag; limited because expat parses an unfinished tag again with each block */
     MAX_DEPTH = 64,           /* maximum depth of nested XML elements; a sheet has 8 */
     STRING_BYTES = 40         /* bytes of memory that a shared string takes in addition to its text */
 };
@@ -28,12 +28,12 @@ struct xlsx_sheet {
     char **strings; /* shared strings of the workbook */
     size_t string_count, string_room;
     struct table_row row;
-    struct text text; /* text of the cell or shared string that is being parsed */
+    struct text text; /* text of the cell or shared string being parsed */
     int column, last_row;
-    /* type of the cell that is being parsed: 's' index of a shared string, 'i' text in the cell itself, 0 value stored in the cell */
+    /* type of the cell being parsed: 's' index of a shared string, 'i' text in the cell itself, 0 value in the cell */
     char type;
-    size_t bytes; /* total size in bytes of all shared strings and cells so far */
-    int depth;    /* number of nested XML elements that are open */
+    size_t bytes; /* total bytes of all shared strings and cells so far */
+    int depth;    /* number of open nested XML elements */
     bool in_value, in_phonetic, too_large;
     XML_Parser parser;
 };
@@ -59,7 +59,7 @@ static void refuse_large(struct xlsx_sheet *sheet)
     XML_StopParser(sheet->parser, XML_FALSE);
 }
 
-/* Counts the nesting depth of an XML element that begins, and refuses deeply nested elements. Returns the element's name without prefix. */
+/* Counts the nesting depth of a beginning XML element, and refuses deeply nested elements. Returns the element's name without prefix. */
 static const char *enter(struct xlsx_sheet *sheet, const char *name)
 {
     if (++sheet->depth > MAX_DEPTH)
@@ -172,7 +172,7 @@ static void cell_ends(void *data, const char *name)
         table_add_row(sheet->table, &sheet->row);
 }
 
-/* --- parts of the archive, which are XML files ------------------------------------------------------------------------------ */
+/* --- the archive's parts, which are XML files -------------------------------------------------------------------------------- */
 
 static void refuse_entity(void *data, const char *name, int parameter, const char *value, int length, const char *base,
                           const char *system_id, const char *public_id, const char *notation)
@@ -191,8 +191,7 @@ static unsigned long current_line(XML_Parser parser)
 #endif
 }
 
-/* Parses one XML file ("part") of the archive. Returns 1 if the part was read, 0 if it is missing, -1 if it is broken, with the reason in
- * why. */
+/* Parses a part (XML file) of the archive. Returns 1 if it was read, 0 if it is missing, -1 if it is malformed, with the reason in why. */
 static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XML_StartElementHandler begins, XML_EndElementHandler ends,
                      char *why, size_t why_bytes)
 {
@@ -241,7 +240,7 @@ struct book_sheet {
 };
 
 struct book {
-    /* must be the first member, because the XML handlers receive a pointer to it and use it as a pointer to this struct */
+    /* must be the first member, because the XML handlers cast a pointer to it to a pointer to this struct */
     struct xlsx_sheet sheet;
     struct book_sheet sheets[MAX_SHEETS];
     int count;
@@ -280,7 +279,7 @@ static void nothing_ends(void *data, const char *name)
     (void)name;
 }
 
-/* Finds the sheets of a spreadsheet through the archive's file that lists them; by their usual file names if that file is missing. Returns
+/* Finds the sheets of a spreadsheet in the archive's list of sheets, or by their usual file names if there is no list. Returns
  * false with the reason in why. */
 static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_bytes)
 {

@@ -62,7 +62,7 @@ static void set_number(struct export_tag *tag, enum export_field field, const ch
         export_tag_set(tag, field, copy);
 }
 
-/* Sets a tag's scaled limits from a range that PI (AVEVA's historian) exports as its low end and its length. */
+/* Sets a tag's scaled limits from a PI range (AVEVA's historian), which is exported as its low end and its length. */
 static void set_span(struct export_tag *tag, const char *text)
 {
     struct export_tag of_text = { 0 };
@@ -101,9 +101,9 @@ static void read_row(struct tag_export *list, const struct tag_header *header, c
         export_tag_set(tag, EXPORT_TYPE, header->data_type);
 }
 
-/* --- Studio 5000 exports, with several kinds of rows: tags, aliases, comments --- */
+/* --- Studio 5000 exports, which have several kinds of rows: tags, aliases, comments --- */
 
-/* Returns a description without the escapes $N (new line), $Q and $' (quotes) and $$ (dollar). */
+/* Returns a description with the escapes $N (new line), $Q and $' (quotes) and $$ (dollar) decoded. */
 static char *without_escapes(const char *text)
 {
     static const char signs[] = "NnLlRrTtPp'Qq$", meant[] = "          '\"\"$";
@@ -165,10 +165,10 @@ static void read_studio(struct tag_export *list, const struct cell_table *table,
         text_add(&list->remarks, "%zu comments are skipped, because they describe only elements of tags, such as single bits\n", comments);
 }
 
-/* --- lists whose first lines contain a row of column names ----------------------------------------------------------------------- */
+/* --- lists with a row of column names among the first lines ------------------------------------------------------------------------ */
 
-/* Finds the header of a tag list: the row with the most recognised column names. Returns their number, or 0 if no row has a column of tag
- * names. */
+/* Finds the header of a tag list: the row with the most recognised column names. Returns the number of these names, or 0 if no
+ * row has a column of tag names. */
 static int find_header(const struct cell_table *table, struct tag_header *header, size_t *row)
 {
     bool one_column = table->count > 0;
@@ -187,7 +187,7 @@ static int find_header(const struct cell_table *table, struct tag_header *header
     return most;
 }
 
-/* Reads a second header row, which names the two columns of a range: "from", "to". Returns whether there is such a row. */
+/* Reads a second header row, in which the two columns of a range are named "from" and "to". Returns whether there is one. */
 static bool read_second(const struct table_row *row, struct tag_header *header)
 {
     struct tag_header second;
@@ -247,8 +247,8 @@ static bool is_dump(const struct cell_table *table)
     return false;
 }
 
-/* Reads the header of a section of an AVEVA dump. Returns whether the rows of the section are tags; false for access names, alarm groups
- * and trends. */
+/* Reads the header of a section of an AVEVA dump. Returns whether the section's rows are tags; false for access names, alarm
+ * groups and trends. */
 static bool begin_section(struct tag_export *list, const struct table_row *row, struct tag_header *header)
 {
     static const struct {
@@ -267,7 +267,7 @@ static bool begin_section(struct tag_export *list, const struct table_row *row, 
     for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds); i++)
         if (!strcasecmp(cell, kinds[i].section)) {
             header->data_type = kinds[i].type;
-            /* in a section with tags, the first column is the tag's name, and the column ItemName is its address */
+            /* in a section of tags, the first column is the tag's name, and the column ItemName its address */
             header->columns[EXPORT_NAME] = 0;
             for (size_t c = 0; c < row->count; c++)
                 if (!strcasecmp(row->cells[c], "ItemName"))
@@ -327,7 +327,7 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
 }
 
 struct workbook {
-    /* the sheet with the most recognised column names in its header; of several with equally many, the one with the most rows */
+    /* the sheet whose header has the most recognised column names; if several have, the one with the most rows */
     struct cell_table best;
     struct text others;     /* names of the other sheets with a header, for a remark */
     char *name;
@@ -362,7 +362,7 @@ static void take_sheet(void *data, struct cell_table *sheet, const char *name)
     table_finish(sheet);
 }
 
-/* Reads the sheet of a spreadsheet that contains the tag list, which may come after cover sheets, notes and hidden sheets. */
+/* Reads the sheet of a spreadsheet that contains the tag list; cover sheets, notes and hidden sheets may precede it. */
 static bool read_workbook(struct tag_export *list, const char *path, char *why, size_t why_bytes)
 {
     struct workbook book = { .known = -1 };
@@ -394,7 +394,7 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
     }
     mem_free(bytes);
     if (good && list->count == 0) {
-        /* adds the first remark to the error message, because it often tells why the file has no tags */
+        /* add the first remark to the error message, because it often says why the file has no tags */
         size_t length = strcspn(list->remarks.at ? list->remarks.at : "", "\n");
         snprintf(why, why_bytes, "the file contains no tags%s%.*s", length > 0 ? ": " : "", (int)length,
                  length > 0 ? list->remarks.at : "");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the tag list exported by a control system or OPC server, with columns of any names: Kepware CSV, Ignition JSON and CSV, AVEVA
- * InTouch DBDump and Galaxy dump, lists in the style of DeltaV and Experion, plain CSV, spreadsheets. Thread: any. */
+/* Reads the tag list exported by a control system or OPC server, with columns of any names: Kepware CSV, Ignition JSON and CSV,
+ * AVEVA InTouch DBDump and Galaxy dump, DeltaV and Experion style lists, plain CSV, spreadsheets. Thread: any. */
 #ifndef PREPROCESS_MATCH_TAG_EXPORT_H
 #define PREPROCESS_MATCH_TAG_EXPORT_H
 #include <stdbool.h>
@@ -11,7 +11,7 @@
 #include "preprocess/match/export_field.h"
 
 struct export_tag {
-    char *fields[EXPORT_FIELDS]; /* texts of the tag's fields: UTF-8; "": the field is empty; NULL only while a reader fills the tag */
+    char *fields[EXPORT_FIELDS]; /* texts of the tag's fields, UTF-8; "": empty; NULL only while a reader fills the tag */
     int line;                    /* line number of the tag in the exported file; 0 for JSON */
 };
 
@@ -21,30 +21,30 @@ struct tag_export {                 /* zero-initialise */
     char separator;                 /* character that separates the columns of the exported file; 0: none */
     struct export_tag *tags;        /* tags in the order of the exported file; their names are unique (case-insensitive) */
     size_t count, capacity;
-    size_t rows; /* number of rows that describe a tag, before duplicates were merged */
-    /* numbers of rows left out as duplicates. same: equal to the first row of the same name; differing: different from that row */
+    size_t rows; /* number of rows that describe a tag, before merging duplicates */
+    /* numbers of rows omitted as duplicates. same: equal to the first row with the same name; differing: different from it */
     size_t same, differing;
     char *differing_lines; /* the first duplicate rows that differ, as "TT-101 (lines 5 and 80), ..."; NULL: none */
-    /* nameless: number of rows left out because they have no name; control: number of control characters; damaged: number of undecodable
-     * characters */
+    /* nameless: number of rows omitted because they have no name; control: number of control characters; damaged: number of
+     * undecodable characters */
     size_t nameless, control, damaged;
-    struct text remarks; /* further remarks about the exported file for the user, one a line */
-    /* number of tags that got their folder path as a prefix, because tags of other folders have the same name */
+    struct text remarks; /* further remarks for the user about the exported file, one per line */
+    /* number of tags whose folder path was prefixed to their name, because tags of other folders have the same name */
     size_t renamed;
 };
 
-/* Reads an exported tag list. encoding: a name that charset_resolve() knows; NULL: detect it with charset_find(). Returns false with the
- * reason in why and an empty list. */
+/* Reads an exported tag list. encoding: a name known to charset_resolve(); NULL: detect it with charset_find(). Returns false
+ * with the reason in why and an empty list. */
 bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes);
 void tag_export_finish(struct tag_export *list);
 
-/* Appends an empty tag to the list; for the readers of file formats. Returns a pointer that is valid until the next call. */
+/* Appends an empty tag to the list; for the file format readers. Returns a pointer that is valid until the next call. */
 struct export_tag *tag_export_add(struct tag_export *list, int line);
-/* Sets a field of a tag to a copy of text. Does nothing if the field has a value already or text is blank. */
+/* Sets a field of a tag to a copy of text. Does nothing if the field already has a value or text is blank. */
 void export_tag_set(struct export_tag *tag, enum export_field field, const char *text);
 /* Reads an export of tags from Ignition (JSON). Returns false with the reason in why. */
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes);
-/* Merges duplicate tags of the list, so that names are unique. */
+/* Merges the list's duplicate tags, so that names are unique. */
 void tag_export_join(struct tag_export *list);
 
 #endif

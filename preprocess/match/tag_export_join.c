@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Adds tags to an exported list, and handles names that occur several times: the same tag twice, or different tags with one name in several
- * folders. */
+/* Adds tags to an exported list, and handles names that occur several times: duplicates of a tag, or different tags with the
+ * same name in several folders. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -39,7 +39,7 @@ static bool same_text(const char *a, const char *b)
     return !strcmp(a ? a : "", b ? b : "");
 }
 
-/* Returns the indices of the tags sorted by name, and after them tags->count as an end mark. The caller frees the array. */
+/* Returns the indices of the tags sorted by name, followed by tags->count as an end mark. The caller frees the array. */
 static size_t *sort_names(struct tag_export *list)
 {
     size_t *order = mem_array(list->count + 1, sizeof(*order));
@@ -54,7 +54,7 @@ static bool same_name(const struct tag_export *list, size_t a, size_t b)
     return !strcasecmp(list->tags[a].fields[EXPORT_NAME], list->tags[b].fields[EXPORT_NAME]);
 }
 
-/* Puts the folder path in front of the names of tags that share a name with a tag of another folder. */
+/* Prefixes the folder path to the names of tags that have the same name as a tag of another folder. */
 static void rename_by_folder(struct tag_export *list)
 {
     size_t *order = sort_names(list);
@@ -99,7 +99,7 @@ static int by_key(const void *pa, const void *pb)
     return order ? order : (a->tag > b->tag) - (a->tag < b->tag);
 }
 
-/* Appends a remark about names that look alike because they differ only in dashes, letter widths or blanks. */
+/* Appends a remark about similar names that differ only in dashes, letter widths or blanks. */
 static void say_alike(struct tag_export *list)
 {
     struct folded *all = mem_array(list->count + 1, sizeof(*all));

@@ -33,7 +33,7 @@ static const struct property {
     { "opcServer", EXPORT_DEVICE },
 };
 
-/* A problem that concerns many tags: the number of these tags, and the paths of the first ones. */
+/* A problem that concerns many tags: their number, and the paths of the first ones. */
 struct complaint {
     size_t count;
     struct text paths;
@@ -49,26 +49,26 @@ struct tag_json_reader {
     int references;
 };
 
-/* an element of the export (folder, instance or tag) as a stack of definitions ("layers"): first its own definition, then those of its
- * types */
+/* an element of the export (folder, instance or tag) as a stack of definitions ("layers"): its own definition first, then those
+ * of its types */
 struct layered_node {
     json_t *layers[MAX_LAYERS];
     int count;
 };
 
-struct instance_frame { /* an instance of a user-defined type (UDT) that encloses a tag */
+struct instance_frame { /* an instance of a user-defined type (UDT) that contains a tag */
     const struct instance_frame *outer;
     const struct layered_node *node;
-    /* number of layers (definitions) that are the instance's own and not those of its types; parameters in own layers refer to the
+    /* number of layers (definitions) of the instance itself, not of its types; parameters in these layers refer to the
      * enclosing instance */
     int own;
     const char *name;
 };
 
-struct scope { /* context in which a reference to a parameter is resolved: the tag, its folder and the UDT instances that enclose it */
+struct scope { /* context in which parameter references are resolved: the tag, its folder and the UDT instances that contain it */
     struct tag_json_reader *reader;
     const struct instance_frame *frame;
-    const char *folder, *name; /* path of the folder that contains the tag; name of the tag */
+    const char *folder, *name; /* path of the tag's folder; name of the tag */
 };
 
 static const char *text_of(json_t *object, const char *key)
@@ -117,8 +117,8 @@ static void index_types(struct tag_json_reader *reader, json_t *node, const char
     mem_free(below);
 }
 
-/* Returns the type definition whose path in the export is `id`. If there is none, returns the only type with that name, ignoring upper and
- * lower case. NULL: there is no such type, or several have the name. */
+/* Returns the type definition whose path in the export is `id`, or else the only type with that name, ignoring case. NULL:
+ * there is no such type, or several have the name. */
 static json_t *find_type(const struct tag_json_reader *reader, const char *id)
 {
     const char *wanted = !strncmp(id, "_types_/", 8) ? id + 8 : id, *slash = strrchr(wanted, '/'), *name = slash ? slash + 1 : wanted, *key;
@@ -146,7 +146,7 @@ static bool is_around(const struct instance_frame *frame, const json_t *type)
     return false;
 }
 
-/* Appends to the layers of an instance the definition of its type, and those of the type's parents. */
+/* Appends the definitions of an instance's type and the type's parents to its layers. */
 static void add_types(struct tag_json_reader *reader, struct layered_node *node, const struct instance_frame *outer, const char *folder,
                       const char *name)
 {
@@ -236,12 +236,12 @@ static bool add_parameter(const struct scope *scope, const char *name, struct te
     return text != NULL;
 }
 
-/* A term such as "Base+10*(Number-1)" that is being evaluated. */
+/* a term being evaluated, such as "Base+10*(Number-1)" */
 struct term_reading {
     const struct scope *scope;
     const char *at;
     int depth;
-    bool good; /* false: the text is no term, or a parameter is no number */
+    bool good; /* false: the text is not a term, or a parameter is not a number */
 };
 
 static double sum_of(struct term_reading *term);
@@ -307,8 +307,8 @@ static double sum_of(struct term_reading *term)
     return number;
 }
 
-/* Appends the value of a reference to parameters with arithmetic or a number format, such as "{Base+10*No}" and "{Number|000}". Returns
- * false if it cannot be resolved. */
+/* Appends the value of a parameter reference with arithmetic or a number format, such as "{Base+10*No}" and "{Number|000}".
+ * Returns false if it cannot be resolved. */
 static bool add_formatted(const struct scope *scope, const char *reference, struct text *out, int depth)
 {
     struct term_reading term = { scope, reference, depth, true };
@@ -327,8 +327,8 @@ static bool add_formatted(const struct scope *scope, const char *reference, stru
     return true;
 }
 
-/* Appends a text in which references to parameters are replaced by their values. Returns false if a reference could not be resolved; such a
- * reference stays in the text. */
+/* Appends a text with parameter references replaced by their values. Returns false if a reference could not be resolved; it
+ * then stays in the text. */
 static bool expand(const struct scope *scope, const char *text, struct text *out, int depth)
 {
     bool good = true;
@@ -353,7 +353,7 @@ static bool expand(const struct scope *scope, const char *text, struct text *out
 
 /* --- tags --------------------------------------------------------------------------------------------------------------------- */
 
-/* Sets a field of a tag to a text, without blanks at its ends and without control characters. */
+/* Sets a field of a tag to a text, trimmed and without control characters. */
 static void set_text(struct tag_export *list, struct export_tag *tag, enum export_field field, char *text)
 {
     for (char *c = text; *c; c++)
@@ -382,8 +382,8 @@ static void set_field(const struct scope *scope, struct export_tag *tag, enum ex
     text_finish(&out);
 }
 
-/* Adds a tag of the export to the list. A member of a UDT instance is named by its whole path, because its own name does not tell instances
- * apart. */
+/* Adds a tag of the export to the list. A member of a UDT instance gets its whole path as its name, because its own name is the
+ * same in all instances. */
 static void add_tag(const struct scope *scope, const struct layered_node *node)
 {
     struct tag_export *list = scope->reader->list;
@@ -398,12 +398,12 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
         set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
-    if (tag->fields[EXPORT_SCALED_HIGH]) /* use Ignition's defaults for the scaled limits, 0 and 100, which an export omits */
+    if (tag->fields[EXPORT_SCALED_HIGH]) /* use Ignition's defaults for the scaled limits, 0 and 100: exports omit default values */
         export_tag_set(tag, EXPORT_SCALED_LOW, "0");
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");
     export_tag_set(tag, EXPORT_AREA, scope->folder);
-    if (!tag->fields[EXPORT_NAME]) /* the tag's name in the export consists only of blanks */
+    if (!tag->fields[EXPORT_NAME]) /* the tag's name in the export is blank */
         export_tag_set(tag, EXPORT_NAME, "unnamed");
     scope->reader->too_many |= list->count > TABLE_MAX_ROWS;
 }

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "preprocess/match/fold.h"
 
-/* column names after fold_key(), by the field that they mean; if several columns of a file fit a field, the name listed earlier wins */
+/* column names after fold_key(), by the field they denote; if several columns of a file fit a field, the name listed earlier wins */
 static const struct {
     enum export_field field;
     const char *words;
@@ -105,7 +105,7 @@ static const struct {
 };
 enum { FIELDS = sizeof(fields) / sizeof(*fields) };
 
-/* Returns the position of `key` in a list of words with a blank before and after each; -1: the list does not contain it. */
+/* Returns the position of `key` in a list of words with a blank before and after each, or -1 if it is not in the list. */
 static int rank_of(const char *words, const char *key)
 {
     char *wanted = mem_printf(" %s ", key);
@@ -114,8 +114,8 @@ static int rank_of(const char *words, const char *key)
     return at ? (int)(at - words) : -1;
 }
 
-/* Calls `each` with keys made of a header cell's text until `each` returns true: of the whole cell, then of the parts around "/", "(" and
- * similar, then of the ASCII part and of the rest, for bilingual headers. */
+/* Calls `each` with keys derived from a header cell's text until it returns true: the whole cell, then the parts around "/",
+ * "(" and similar, then the ASCII part and the rest, for bilingual headers. */
 static bool each_key(const char *cell, bool (*each)(const char *key, void *data), void *data)
 {
     static const char separators[] = "/|()[]:;\n";

@@ -8,16 +8,15 @@
 struct tag_header {
     int columns[EXPORT_FIELDS]; /* by field of a tag (export_field.h): index of its column; -1: none */
     int tag_type;               /* index of the column with Ignition's tag type, which marks folders; -1: none */
-    int span;                   /* index of the column with the length of a range that begins at the scaled low limit; -1: none */
-    /* indices of columns of Studio 5000 exports. kind: kind of the row; specifier: element of a tag that a comment row describes; -1:
-     * none */
+    int span;                   /* index of the column with the length of a range whose low end is the scaled low limit; -1: none */
+    /* column indices in Studio 5000 exports. kind: kind of the row; specifier: element of a tag described by a comment row; -1: none */
     int kind, specifier;
     const char *data_type; /* data type of all tags in the rows after the header; NULL: unknown */
 };
 
-/* Reads a row as a header. Returns the number of columns whose names were recognised. */
+/* Reads a row as a header. Returns the number of recognised column names. */
 int tag_header_read(const struct table_row *row, struct tag_header *header);
-/* Returns whether a cell of the row equals the word after both are normalised by fold_key(). */
+/* Returns whether a cell of the row equals the word after fold_key() of each. */
 bool tag_header_has(const struct table_row *row, const char *word);
 
 #endif

@@ -95,7 +95,7 @@ static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WH
     charset_decode(bytes, count, NULL, &text);
     rows->separator = table_separator(text.utf8);
     bool good = table_read_csv(&table, text.utf8, rows->separator, why, MATCH_WHY_BYTES);
-    /* keeps the rows that the file has, unless it has only a header: then the new list gets the default header */
+    /* keep the file's rows unless it has only a header: the new list then gets the default header */
     if (good && table.count > 1) {
         rows->at = table.rows;
         rows->count = table.count;
@@ -168,7 +168,7 @@ static bool is_text(const char *type)
     return !strcasecmp(type, "String") || !strcasecmp(type, "Text") || !strcasecmp(type, "Char") || !strcasecmp(type, "DateTime");
 }
 
-/* Returns whether an exported tag is left out of the tag list: it is not numeric, or its address is not valid for its source. */
+/* Returns whether an exported tag is omitted from the tag list: it is not numeric, or its address is invalid for its source. */
 static bool is_left_out(const struct export_tag *tag, const struct tag_source *source)
 {
     struct modbus_address address;
@@ -177,8 +177,8 @@ static bool is_left_out(const struct export_tag *tag, const struct tag_source *s
            (source->modbus && !address_parse(tag->fields[EXPORT_ADDRESS], source->address_base, &address, why));
 }
 
-/* Returns Kepware's name for a data type. Names of Ignition, IEC 61131-3 and PI are converted. An unknown name gives "", so that the
- * address determines the type. */
+/* Returns Kepware's name for a data type, converting names used by Ignition, IEC 61131-3 and PI. An unknown name gives "", so
+ * that the type follows from the address. */
 static const char *type_of(const char *type)
 {
     static const char *const others[][2] = {
@@ -226,8 +226,8 @@ static void put_scaling(struct tag_rows *rows, struct table_row *row, const stru
             put(rows, row, columns[i], cells[i]);
 }
 
-/* Writes a tag's alarm limits to its row. Limits that are not in ascending order are not alarm limits and are left out, so that the group's
- * limits apply. */
+/* Writes a tag's alarm limits to its row. Omits limits that are not in ascending order: they cannot be alarm limits, and the
+ * group's limits apply instead. */
 static void put_limits(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
     const char *before = NULL;
@@ -317,7 +317,7 @@ void tag_rows_write(const struct tag_rows *rows, struct text *out)
     size_t width = rows->at[0].count;
     bool *used = mem_array(width + 1, sizeof(*used));
     for (size_t c = 0; c < width; c++) {
-        used[c] = rows->known > 1; /* a column that the tag list already had is written even if it is blank */
+        used[c] = rows->known > 1; /* a column that the tag list already had is written even if blank */
         for (size_t i = 1; i < rows->count && !used[c]; i++)
             used[c] = *table_cell(&rows->at[i], (int)c);
     }

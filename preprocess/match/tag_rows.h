@@ -14,9 +14,9 @@ struct tag_rows {         /* zero-initialise */
     char separator;
 };
 
-struct tag_source { /* the source from which the daemon will read the exported tags */
-    const char *id; /* id of the source; NULL: neither the source nor addresses are written */
-    bool modbus;    /* true: the source is Modbus; tags without a valid Modbus address are left out */
+struct tag_source { /* the source of the exported tags' values for the daemon */
+    const char *id; /* id of the source; NULL: write neither source nor addresses */
+    bool modbus;    /* true: the source is Modbus; tags without a valid Modbus address are omitted */
     int address_base;
 };
 
@@ -31,13 +31,13 @@ struct tag_row_input {
     const struct match *match;
     const struct decision *before; /* decision about the tag in the previous run; NULL: none */
     const struct place_proposal *place;
-    const char *group; /* id of the tag's group; empty: none */
+    const char *group; /* id of the tag's group; "": none */
     const struct tag_source *source;
 };
-/* Adds a tag to the list, or updates its row except for cells that people changed. Returns the id of the row's asset ("": no asset), valid
- * until the next call; NULL if the tag was left out of the list. */
+/* Adds a tag to the list, or updates its row except for cells changed by people. Returns the id of the row's asset ("": no
+ * asset), valid until the next call; NULL if the tag was omitted from the list. */
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input);
-/* Appends the tag list as text. Omits columns that this program added and that are blank in all rows. */
+/* Appends the tag list as text. Omits columns added by this program that are blank in all rows. */
 void tag_rows_write(const struct tag_rows *rows, struct text *out);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wraps the library Draco, which decodes compressed meshes, in plain C. Checks the counts in the file's header against the size of the data
- * before the library allocates memory for them. */
+/* Wraps the library Draco, which decodes compressed meshes, in plain C. Checks the counts in the file's header against the size
+ * of the data before the library allocates memory for them. */
 #include "preprocess/model/draco_shim.h"
 
 #include <draco/compression/decode.h>
@@ -18,8 +18,8 @@ struct draco_mesh {
 namespace
 {
 
-/* Limit of the triangle count. A regular grid compresses to well under one bit per triangle, but data with more triangles than
- * FREE_TRIANGLES plus TRIANGLES_PER_BYTE per byte are rejected as implausible. */
+/* Limit on the triangle count. A regular grid compresses to well under one bit per triangle, but data with more triangles than
+ * FREE_TRIANGLES plus TRIANGLES_PER_BYTE per byte is rejected as implausible. */
 constexpr uint64_t FREE_TRIANGLES = 1 << 16, TRIANGLES_PER_BYTE = 1024;
 
 bool read_varint(draco::DecoderBuffer *buffer, uint64_t *out)
@@ -36,8 +36,8 @@ bool read_varint(draco::DecoderBuffer *buffer, uint64_t *out)
     return false;
 }
 
-/* Checks the counts in a Draco header against limits, for version 2.2 of the bit stream, which every glTF exporter writes. Returns false
- * with the reason in why. */
+/* Checks the counts in a Draco header against limits, for bitstream version 2.2, which every glTF exporter writes. Returns
+ * false with the reason in why. */
 bool claims_good(const char *bytes, size_t size, char *why)
 {
     draco::DecoderBuffer buffer;

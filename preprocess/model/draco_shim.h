@@ -25,8 +25,8 @@ uint32_t draco_mesh_triangle_count(const struct draco_mesh *mesh);
 /* Writes the mesh's triangles to `out`, three vertex indices each. */
 void draco_mesh_indices(const struct draco_mesh *mesh, uint32_t *out);
 
-/* Writes the attribute unique_id of all vertices to out, tightly packed: `width` components each, of a glTF component type. Returns false
- * if the mesh has no such attribute or it has fewer components. */
+/* Writes the values of attribute unique_id at all vertices to out, tightly packed: `width` components each, of a glTF component
+ * type. Returns false if the mesh has no such attribute or it has fewer components. */
 bool draco_mesh_attribute(const struct draco_mesh *mesh, uint32_t unique_id, int component_type, int width, void *out);
 
 #ifdef __cplusplus

@@ -49,8 +49,8 @@ uint32_t integer(const unsigned char *at, int type)
                                                             : load<uint32_t>(at);
 }
 
-/* Returns the memory of `count` elements of `element` bytes each, at byte `offset` of a buffer view, with the view's stride or tightly
- * packed. Buffer views are known to lie within their buffers (model_document.h). */
+/* Returns the memory of `count` elements of `element` bytes each, at byte `offset` of a buffer view, with the view's stride or
+ * tightly packed. model_document.h guarantees that buffer views lie within their buffers. */
 byte_span view_span(const gltf_work &w, int number, uint64_t offset, uint64_t element, uint64_t count, bool strided,
                     const std::string &what)
 {

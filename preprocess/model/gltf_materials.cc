@@ -11,7 +11,7 @@ namespace gltf
 namespace
 {
 
-struct use { /* one use of a texture by a material, such as the base colour */
+struct use { /* a texture's role in a material, such as the base colour */
     int texture, set;
     const tinygltf::ExtensionMap *extensions;
 };
@@ -115,7 +115,7 @@ std::string material_what(const gltf_work &w, int number)
 
 const char *const use_names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
 
-/* Returns, for each purpose of a texture, a pointer to the material's member that holds the texture's index. */
+/* Returns, by texture role, a pointer to the material's member with the texture's index. */
 std::array<uint32_t *, USE_COUNT> places_of(asset_material *m)
 {
     return { &m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture, &m->occlusion_texture, &m->emissive_texture };
@@ -220,7 +220,7 @@ void read_materials(gltf_work *w)
     model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
     model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
     model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
-    /* room for one text for each texture use of a material, one for each ignored extension, and one about nodes outside the scene */
+    /* one text for each texture role of a material, one for each ignored extension, and one about nodes outside the scene */
     model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 2);
     for (size_t i = 0; i < d->look_count; i++)
         leave_out(w, d->looks[i]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the primitives of meshes to triangle lists that contain only the vertices used. */
+/* Converts mesh primitives to triangle lists that contain only the vertices in use. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <algorithm>
@@ -60,8 +60,8 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
     return out;
 }
 
-/* Returns the vertices that `indices` use, in ascending order, and renumbers the indices accordingly. Dropping unused vertices matters
- * because exporters often share one large buffer among many primitives. */
+/* Returns the vertices used by `indices`, in ascending order, and renumbers the indices accordingly. Dropping unused vertices
+ * matters because exporters often share one large buffer among many primitives. */
 std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
 {
     std::vector<uint32_t> used;
@@ -137,8 +137,8 @@ float (*read_vectors(const attribute_reader &reader, const std::string &name))[3
     return out;
 }
 
-/* Reads a set of texture coordinates; *out stays NULL if the primitive has none. Returns true if coordinates lie outside 0..1 although the
- * texture's mapping (uv_transform) is valid only inside. */
+/* Reads a set of texture coordinates; *out stays NULL if the primitive has none. Returns true if coordinates lie outside 0..1
+ * although the texture's mapping (uv_transform) is only valid inside. */
 bool read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
 {
     std::string name = "TEXCOORD_" + std::to_string(uv.set);
@@ -193,7 +193,7 @@ void check_morphing(const std::vector<double> &weights, const std::string &what)
             refuse("%s: morph targets are not supported", what.c_str());
 }
 
-/* Reads a primitive. Returns false if it has no triangle to draw, for example because it consists of lines or points. */
+/* Reads a primitive. Returns false if it has no triangles, for example because it consists of lines or points. */
 bool read_primitive(gltf_work *w, const tinygltf::Primitive &p, gltf_primitive *out, gltf_mesh *mesh, const std::string &what)
 {
     int mode = p.mode;
@@ -239,7 +239,7 @@ void read_meshes(gltf_work *w)
         check_morphing(mesh.weights, name);
         for (size_t i = 0; i < mesh.primitives.size(); i++) {
             gltf_primitive *primitive = &model->primitives[model->primitive_count];
-            model->primitive_count++; /* count the primitive before it is read, so that gltf_free() also frees a partially read one */
+            model->primitive_count++; /* count the primitive before reading it, so that gltf_free() also frees a partially read one */
             if (!read_primitive(w, mesh.primitives[i], primitive, out, name + ", primitive " + std::to_string(i)))
                 model->primitive_count--;
         }

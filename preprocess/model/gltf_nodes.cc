@@ -17,18 +17,19 @@ namespace
 {
 
 constexpr uint32_t ELEMENTS_PER_INSTANCE = 16;
-/* tolerance of a quaternion's length; rotations of instances stored as bytes deviate by up to 0.008 */
+/* tolerance for a quaternion's length; instance rotations stored as bytes deviate by up to 0.008 */
 constexpr double ROTATION_SLACK = 0.01;
 
-/* Throws an exception if `why`, the result of a rule of node_rules.h about the node `what`, is not NULL. */
+/* If a rule of node_rules.h failed for the node `what`, throws an exception with the rule's result `why`. NULL: it did not fail. */
 void check(const char *why, const std::string &what)
 {
     if (why)
         refuse("%s: %s", what.c_str(), why);
 }
 
-/* Computes the transform of a node or an instance. glTF requires rotations to be unit quaternions. A quaternion of another length is
- * normalised, as other programs do, and counted; rounding is tolerated. matrix: replaces the other three; nullptr: none. */
+/* Computes the transform of a node or an instance. glTF requires rotations to be unit quaternions; a quaternion of another
+ * length is normalised, as in other programs, and counted, unless the difference is only rounding. matrix: replaces the other
+ * three; nullptr: none. */
 void compose(gltf_work *w, const double t[3], const double q[4], const double s[3], const double *matrix, double out[16],
              const std::string &what)
 {
@@ -52,7 +53,7 @@ void local_of(gltf_work *w, const tinygltf::Node &node, double out[16], const st
     compose(w, t, q, s, node.matrix.size() == 16 ? node.matrix.data() : nullptr, out, what);
 }
 
-struct node_order { /* working data while the scene's nodes are listed in depth-first order */
+struct node_order { /* working data for listing the scene's nodes in depth-first order */
     gltf_work *w;
     std::vector<gltf_node> out;
     std::vector<char> seen;
@@ -79,7 +80,7 @@ void add(node_order *tree, int number, int parent, int mesh, const double world[
     tree->out.back().end = static_cast<uint32_t>(tree->out.size());
 }
 
-/* Adds the mesh of a node with EXT_mesh_gpu_instancing once for each instance, as child nodes with the same name. */
+/* Adds the mesh of a node with EXT_mesh_gpu_instancing once per instance, as child nodes with the same name. */
 void add_instances(node_order *tree, int number, int parent, const tinygltf::Value &extension)
 {
     const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
@@ -157,7 +158,7 @@ std::vector<int> roots_of(const tinygltf::Model &m)
     return roots;
 }
 
-/* Appends to the model's left_out how many nodes with a mesh are not part of the default scene. */
+/* Appends the number of nodes with a mesh outside the default scene to the model's left_out. */
 void note_unreached(const node_order &tree)
 {
     size_t count = 0;

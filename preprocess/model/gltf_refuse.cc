@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Throws an exception with the reason why a model is rejected. */
+/* Throws an exception that says why a model is rejected. */
 #include <cstdarg>
 #include <cstdio>
 

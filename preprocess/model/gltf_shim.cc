@@ -15,7 +15,7 @@ using gltf::refuse;
 
 constexpr uint64_t FREE_ELEMENTS = 1 << 22, ELEMENTS_PER_BYTE = 16;
 
-/* File callback of tinygltf: a normalised document refers to no files, and none is ever opened. */
+/* tinygltf's file callback: never finds or opens a file, because a normalised document does not refer to any. */
 bool file_absent(const std::string &, void *)
 {
     return false;
@@ -73,7 +73,7 @@ void parse(gltf::gltf_work *w)
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
     while (!error.empty() && error.back() == '\n')
         error.pop_back();
-    if (!good || !error.empty()) /* tinygltf describes content that it could not read in `error`, even if it returns true */
+    if (!good || !error.empty()) /* even if tinygltf returns true, `error` may describe content that it could not read */
         refuse("%s", error.empty() ? "not a glTF file" : error.c_str());
 }
 

@@ -13,8 +13,8 @@ struct gltf_primitive { /* triangles of one material, in model units and the mes
     uint32_t vertex_count, index_count;
     float (*positions)[3];
     float (*normals)[3];          /* vertex normals; NULL: the primitive has none */
-    float (*texcoords)[2];        /* coordinates for the material's first texture mapping (KHR_texture_transform); NULL: none */
-    /* coordinates for the textures with the material's second mapping, which the material's bit mask `second` lists; NULL: none */
+    float (*texcoords)[2];        /* texture coordinates for the material's first mapping (KHR_texture_transform); NULL: none */
+    /* coordinates for the textures with the material's second mapping, which are in the bit mask `second` of the material; NULL: none */
     float (*second_texcoords)[2];
     uint8_t (*colors)[4];         /* vertex colours; NULL: none */
     uint32_t *indices;            /* triangle list, converted from strips and fans */
@@ -23,8 +23,8 @@ struct gltf_primitive { /* triangles of one material, in model units and the mes
 
 struct gltf_mesh {
     char *name;
-    uint32_t first_primitive, primitive_count; /* range of the mesh's primitives, each of which has at least one triangle */
-    uint64_t index_count;                      /* number of indices, summed over the mesh's primitives */
+    uint32_t first_primitive, primitive_count; /* range of the mesh's primitives; each has at least one triangle */
+    uint64_t index_count;                      /* number of indices in all primitives of the mesh */
     uint32_t skipped_lines, skipped_points;    /* numbers of primitives skipped because they consist of lines or points */
 };
 
@@ -32,7 +32,7 @@ struct gltf_node {    /* nodes are in depth-first order: the subtree of node i i
     char *name;       /* name of the node; "": it has none */
     int parent, mesh; /* indices of the parent node and of the node's mesh; -1: none */
     uint32_t end;
-    uint32_t number;  /* index in the file's list of nodes; an instance (EXT_mesh_gpu_instancing) has the index of its node */
+    uint32_t number;  /* index in the file's list of nodes; an instance (EXT_mesh_gpu_instancing) has its node's index */
     double world[16]; /* column-major transform from the node's frame to the scene's frame */
 };
 
@@ -53,17 +53,17 @@ struct gltf_model {
     struct gltf_node *nodes; /* nodes of the default scene */
     struct asset_material *materials;
     char **material_names;
-    struct gltf_texture *textures; /* textures that materials refer to, one for each use of an image by a material */
+    struct gltf_texture *textures; /* textures that materials refer to, one for each use of an image in a material */
     struct gltf_image *images;
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
-    uint32_t skipped_lines, skipped_points; /* numbers of skipped line and point primitives, summed over all meshes */
+    uint32_t skipped_lines, skipped_points; /* numbers of skipped line and point primitives in all meshes */
     uint32_t scaled_rotations;              /* number of nodes and instances whose rotation quaternion is not of unit length */
-    char **left_out;                        /* texts for the report, one for each use of a texture and each extension that is ignored */
+    char **left_out;                        /* texts for the report, one for each ignored texture and extension */
     uint32_t left_out_textures;
 };
 
-/* Parses and decodes a model file. Returns false with the reason in why, which names the object and the number; then gltf_free() need not
- * be called. */
+/* Parses and decodes a model file. Returns false with the reason in why, which names the object and the number; gltf_free()
+ * then need not be called. */
 bool gltf_load(struct gltf_model *model, const struct model_source *source, char why[MODEL_WHY_BYTES]);
 /* Frees the arrays of a parsed model. */
 void gltf_free(struct gltf_model *model);

@@ -12,7 +12,7 @@
 #include "plant/models/model_rules.h"
 #include "preprocess/model/model_uri.h"
 
-/* maximum total size in bytes of accessors without a buffer view, which take no space in the file */
+/* maximum total bytes of accessors without a buffer view, which take no space in the file */
 #define MAX_ZERO_BYTES ((uint64_t)64 << 20)
 
 /* --- buffers ------------------------------------------------------------------------------------------------------------- */
@@ -71,8 +71,8 @@ static bool views_good(const struct document_work *work)
 
 /* --- accessors ----------------------------------------------------------------------------------------------------------- */
 
-/* Gives an accessor without a buffer view a buffer of zeros, as glTF defines it; the accessor's sparse values may then replace some
- * zeros. */
+/* Gives an accessor without a buffer view a buffer of zeros, as glTF specifies; the accessor's sparse values may then replace
+ * some of the zeros. */
 static bool fill_with_zeros(struct document_work *work, const json_t *number, uint64_t *zeros)
 {
     json_t *accessor = json_array_get(json_object_get(work->root, "accessors"), (size_t)json_integer_value(number));
@@ -160,7 +160,7 @@ static bool load_images(struct document_work *work)
 
 static const char specular[] = "KHR_materials_pbrSpecularGlossiness";
 
-/* Records the ignored glTF extensions: required ones that only affect appearance, and unknown ones. */
+/* Records the ignored glTF extensions: required ones that affect only appearance, and unknown ones. */
 static void take_left_out(struct document_work *work)
 {
     const json_t *required = json_object_get(work->root, "extensionsRequired"), *used = json_object_get(work->root, "extensionsUsed");
@@ -187,7 +187,7 @@ static void move_member(json_t *to, const char *as, json_t *from, const char *na
         json_object_set(to, as, value);
 }
 
-/* Converts the diffuse colour of specular-glossiness materials to a glTF base colour, unless the material already has a base colour. */
+/* Converts the diffuse colour of specular-glossiness materials to a glTF base colour, unless the material has one. */
 static void take_diffuse_colors(json_t *root)
 {
     const json_t *materials = json_object_get(root, "materials");

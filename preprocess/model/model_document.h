@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A glTF document in normalised form: checked JSON without compression, external files or data URIs; buffers and images are held in
- * memory. */
+/* A normalised glTF document: checked JSON without compression, external files or data URIs; buffers and images are in memory. */
 #ifndef PREPROCESS_MODEL_DOCUMENT_H
 #define PREPROCESS_MODEL_DOCUMENT_H
 #include "preprocess/model/model_source.h"
@@ -16,23 +15,23 @@ struct document_bytes {
 };
 
 struct document_image {
-    /* name: name of the image, for messages; missing: reason why the image could not be read; NULL: it was read */
+    /* name: name of the image, for messages; missing: why the image could not be read; NULL: it was read */
     char *name, *missing;
     struct document_bytes bytes; /* bytes of the image as stored in the file: PNG, JPEG or WebP */
 };
 
 struct model_document {
-    char *json; /* JSON text without buffers, images, skins and animations; every buffer view in it lies within its buffer in buffers[] */
+    char *json; /* JSON text without buffers, images, skins and animations; each buffer view lies within its buffer in buffers[] */
     size_t json_bytes;
     struct document_bytes *buffers;
     struct document_image *images;
-    char **looks; /* one text for the report about each ignored extension */
+    char **looks; /* texts for the report, one for each ignored extension */
     size_t buffer_count, image_count, look_count;
-    size_t total_bytes; /* total size in bytes of all buffers, except those that contain only zeros */
+    size_t total_bytes; /* total bytes of all buffers, except those with only zeros */
 };
 
-/* Normalises a source file, which must outlive the document. Returns false with the reason in why; then model_document_finish() need not be
- * called. */
+/* Normalises a source file, which must outlive the document. Returns false with the reason in why; model_document_finish() then
+ * need not be called. */
 bool model_document_open(struct model_document *document, const struct model_source *source, char why[MODEL_WHY_BYTES]);
 /* Frees the document. */
 void model_document_finish(struct model_document *document);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manages the buffers of a document, byte ranges within them, and accessors over them. */
+/* Manages a document's buffers, byte ranges within them, and accessors over them. */
 #include <inttypes.h>
 #include <string.h>
 

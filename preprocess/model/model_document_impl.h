@@ -14,23 +14,23 @@ struct document_work { /* a document being normalised; model_rules.h has already
     char *why;
 };
 
-/* Returns the whole number under `key` of a JSON object, or 0 if there is none. */
+/* Returns the integer under `key` of a JSON object, or 0 if there is none. */
 static inline uint64_t document_number(const json_t *object, const char *key)
 {
     return (uint64_t)json_integer_value(json_object_get(object, key));
 }
 
-/* Appends a buffer to the glTF document and takes ownership of bytes.own, also on failure. Returns the buffer's index. */
+/* Appends a buffer to the glTF document and takes ownership of bytes.own, even on failure. Returns the buffer's index. */
 size_t document_add_buffer(struct document_work *work, struct document_bytes bytes);
-/* Appends a buffer view that covers the whole of `buffer`, and makes the accessor read from that view. */
+/* Appends a buffer view over the whole of `buffer`, and points the accessor to it. */
 void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer);
-/* Finds `length` bytes at `offset` of a buffer and writes their address to *out. Returns false if the buffer is too short; `what` begins
- * the error text in work->why. */
+/* Writes the address of `length` bytes at `offset` of a buffer to *out. Returns false if the buffer is too short; the error
+ * text in work->why begins with `what`. */
 bool document_range(const struct document_work *work, size_t buffer, uint64_t offset, uint64_t length, const char *what,
                     struct model_bytes *out);
 
-/* Returns the size in bytes of one element of an accessor, and writes the component type and the number of components. Returns 0 if glTF
- * 2.0 has no such type. */
+/* Returns the size in bytes of an accessor's element, and writes the component type and the number of components. Returns 0 if
+ * glTF 2.0 has no such type. */
 size_t document_element_bytes(const json_t *accessor, int *component_type, int *width);
 
 /* Decodes EXT_meshopt_compression: each compressed buffer view becomes a plain one over a new buffer. Returns false with the reason in

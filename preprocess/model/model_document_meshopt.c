@@ -13,13 +13,13 @@ enum meshopt_filter { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL };
 static const char *const modes[] = { "ATTRIBUTES", "TRIANGLES", "INDICES" };
 static const char *const filters[] = { "NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL" };
 
-/* maximum plausible ratio of decoded to compressed bytes: 64 bytes of vertex data take at least 1 byte, an index of up to 4 bytes at least
- * a third of a byte */
+/* maximum plausible ratio of decoded to compressed bytes: 64 bytes of vertex data take at least 1 byte, and an index of up to 4
+ * bytes takes at least a third of a byte */
 #define BYTES_PER_BYTE 128u
 
 struct meshopt_view {
     uint64_t count, stride;
-    int mode, filter; /* compression mode and filter (EXT_meshopt_compression); -1: a value unknown to this program */
+    int mode, filter; /* compression mode and filter (EXT_meshopt_compression); -1: unknown value */
     struct model_bytes from;
 };
 

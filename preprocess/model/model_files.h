@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The distinct model files of a plant. All files are hashed first. A file is parsed, and kept in memory, only while its assets are
+/* The distinct model files of a plant. All files are hashed first. A file is parsed and in memory only while its assets are
  * extracted. Thread: one. */
 #ifndef PREPROCESS_MODEL_FILES_H
 #define PREPROCESS_MODEL_FILES_H
@@ -8,18 +8,18 @@
 
 struct model_file {
     const char *path; /* path of the model file; the string belongs to the plant */
-    int line;         /* line in the plant file of the first asset that uses this model */
-    bool good;        /* true: the file can be read; false: `why` has the reason */
+    int line;         /* line in the plant file of the first asset with this model */
+    bool good;        /* true: the file can be read; false: `why` says why not */
     char why[MODEL_WHY_BYTES];
-    uint64_t hash;            /* hash of the file and of the files that its URIs name */
-    uint64_t file_hash;       /* hash of the model file itself, without the files to which it refers */
+    uint64_t hash;            /* hash of the file and of the files it refers to by URI */
+    uint64_t file_hash;       /* hash of the model file alone, without the files it refers to */
     struct gltf_model parsed; /* valid between model_file_parse() and model_file_release() */
     bool is_parsed, was_parsed;
     double parse_s;
-    /* numbers of primitives that were skipped, of rotations that were scaled to unit length, and of texts in left_out, at the model's last
-     * parse; valid if was_parsed */
+    /* at the model's last parse, valid if was_parsed: numbers of skipped primitives, of rotations scaled to unit length, and of
+     * texts in left_out */
     uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures;
-    /* texts for the report, one for each ignored texture use and each ignored extension */
+    /* texts for the report, one for each ignored texture and extension */
     char **left_out;
 };
 
@@ -34,8 +34,8 @@ size_t model_files_add(struct model_files *files, const struct plant_asset *asse
 /* Frees the parsed models and the list of files. */
 void model_files_finish(struct model_files *files);
 
-/* Parses the file into file->parsed, until model_file_release(). Returns false with the reason in file->why, also if the file has changed
-   since it was hashed. */
+/* Parses the file into file->parsed, which stays valid until model_file_release(). Returns false with the reason in file->why;
+   a change of the file since it was hashed is an error too. */
 bool model_file_parse(struct model_file *file);
 /* Frees the parsed model. Does nothing if the file is not parsed. */
 void model_file_release(struct model_file *file);

@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 
-#define MAX_LEVELS 64 /* maximum nesting depth of JSON arrays and objects; glTF needs about ten levels, the free-form `extras` a few more */
+#define MAX_LEVELS 64 /* maximum nesting depth of JSON arrays and objects; glTF needs about ten levels, free-form `extras` a few more */
 
 static uint32_t read_u32(const unsigned char *at)
 {
@@ -38,7 +38,7 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
     return true;
 }
 
-/* Returns whether the nesting depth of the JSON text is within MAX_LEVELS. The JSON parser is recursive and could overflow the stack. */
+/* Returns whether the nesting depth of the JSON text is within MAX_LEVELS; otherwise the recursive JSON parser could overflow the stack. */
 static bool depth_good(struct model_bytes json, char *why)
 {
     int depth = 0;
@@ -72,7 +72,7 @@ json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, cha
         return NULL;
     if (json.size >= 3 && memcmp(json.at, "\xEF\xBB\xBF", 3) == 0)
         json = (struct model_bytes){ json.at + 3, json.size - 3 };
-    /* accept zero bytes after the JSON, with which some writers pad instead of blanks */
+    /* accept zero bytes after the JSON: some writers pad with them instead of blanks */
     while (is_glb && json.size > 0 && json.at[json.size - 1] == 0)
         json.size--;
     if (!depth_good(json, why))
@@ -93,7 +93,7 @@ static const json_t *meshopt_of(const json_t *object)
     return json_object_get(json_object_get(object, "extensions"), "EXT_meshopt_compression");
 }
 
-/* Returns the object's member "buffer", an index below `count`, or `count` if there is no such buffer. */
+/* Returns the object's member "buffer", an index below `count`, or `count` if it is missing or invalid. */
 static size_t number_in(const json_t *object, size_t count)
 {
     const json_t *number = json_object_get(object, "buffer");

@@ -12,13 +12,14 @@ struct model_bytes { /* a range of bytes owned by another object */
     size_t size;
 };
 
-/* Parses the JSON of a model file. Returns the root object, which the caller releases with json_decref(); *binary is the binary chunk, NULL
- * if there is none. Returns NULL with the reason in why if chunks, syntax or nesting depth are invalid. */
+/* Parses the JSON of a model file. Returns the root object, which the caller releases with json_decref(); *binary receives the
+ * binary chunk, or NULL if there is none. Returns NULL with the reason in why if chunks, syntax or nesting depth are invalid.
+ * */
 json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, char why[MODEL_WHY_BYTES]);
 
-/* Returns an array with one element per buffer: true if the buffer is only a fallback for programs that do not support
- * EXT_meshopt_compression. Such a buffer may have no bytes. A buffer is a fallback if the file says so, or if all its views are compressed.
- * The caller frees the array with mem_free(). */
+/* Returns an array by buffer: true if the buffer is only a fallback for programs that do not support EXT_meshopt_compression.
+ * Such a buffer may have no bytes. A buffer is a fallback if the file says so, or if all its views are compressed. The caller
+ * frees the array with mem_free(). */
 bool *model_json_standins(const json_t *root);
 
 #endif

@@ -17,11 +17,11 @@ static bool hash_uri(const struct model_source *source, const char *what, size_t
 {
     size_t size;
     char uri_why[MODEL_WHY_BYTES];
-    /* skip data that the URI itself contains: it is part of the model file's bytes, which are in the hash already */
+    /* skip data inside the URI: it is part of the model file's bytes, which have already been hashed */
     if (!uri || model_uri_is_data(uri))
         return true;
     unsigned char *bytes = model_uri_read(source->folder, uri, &size, uri_why);
-    /* a missing image is no error, because the model can be drawn without it; if the image is added later, the hash changes */
+    /* a missing image is not an error, because the model can be drawn without it; the hash changes if the image is added later */
     if (!bytes && strcmp(what, "image") == 0)
         return true;
     if (!bytes)

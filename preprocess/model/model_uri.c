@@ -38,7 +38,7 @@ static bool percent_decode(char *name)
     return true;
 }
 
-/* Resolves a file name, following symlinks, and checks that the file is inside the folder. Returns NULL, or the reason why it may not be
+/* Resolves a file name, following symlinks, and checks that the file is inside the folder. Returns NULL, or why it may not be
  * opened. The caller frees *real with free(). */
 static const char *find_inside(const char *folder, const char *name, char **real)
 {
@@ -60,8 +60,8 @@ static const char *find_inside(const char *folder, const char *name, char **real
     return NULL;
 }
 
-/* Resolves a file name in a folder. If no such file exists, tries other spellings: percent signs taken literally, composed or decomposed
- * accents (macOS), and backslashes as separators. */
+/* Resolves a file name in a folder. If there is no such file, tries other spellings: literal percent signs, composed or
+ * decomposed accents (macOS), and backslashes as separators. */
 static const char *find_any_form(const char *folder, const char *uri, const char *name, char **real)
 {
     const utf8proc_uint8_t *bytes = (const utf8proc_uint8_t *)name;

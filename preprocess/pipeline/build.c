@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the prepared file of one asset: from a parsed model, or cached geometry, to the bytes of the file. */
+/* Builds the prepared file of one asset, from a parsed model or cached geometry. */
 #include "preprocess/pipeline/build.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* makes xxhash declare the type of its hash state, for a state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* xxhash then declares its hash state as a complete type, so that it can be a local variable */
 #include <xxhash.h>
 
 #include "base/clock.h"
@@ -28,7 +28,7 @@ static void hash_text(XXH3_state_t *state, const char *text)
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-/* Returns the number of sensors on the asset that are in the same group as sensor `sensor`, without those whose position is assumed. */
+/* Returns the number of sensors on the asset in the same group as sensor `sensor`, not counting those with an assumed position. */
 static size_t count_of_group(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     size_t found = 0;
@@ -42,8 +42,8 @@ static bool is_alone(const struct plant *plant, const struct plant_sensor *senso
     return count_of_group(plant, sensors, count, sensor) == !plant->tags[sensors[sensor].tag].place.assumed;
 }
 
-/* Returns whether the field is constant on the asset: each group has a single sensor, Shepard interpolation and no reach. Distances then
- * have no effect on it. */
+/* Returns whether the field is constant on the asset: each group has only one sensor, Shepard interpolation and no reach.
+ * Distances then do not affect it. */
 static bool is_constant(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -54,8 +54,8 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
     return true;
 }
 
-/* Hashes the settings of the interpolation `gp` (Gaussian process) in the plant file, and the recorded readings that its parameters are
- * fitted to. Covers the groups that have a sensor in `sensors`. */
+/* Hashes the plant file's settings for the interpolation `gp` (Gaussian process), and the recorded readings that its parameters
+ * are fitted to, for the groups that have a sensor in `sensors`. */
 static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t g = 0; g < plant->group_count; g++) {
@@ -68,14 +68,14 @@ static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct
         if (!has_sensor || !plant_prepares(&plant->groups[g], INTERPOLATION_GP))
             continue;
         if (gp->fit)
-            /* an unreadable readings file is ignored here, because reading it for the fit reports the error */
+            /* ignore an unreadable readings file: reading it for the fit will report the error */
             plant_model_hash(gp->fit, &readings);
         XXH3_64bits_update(state, numbers, sizeof(numbers));
         XXH3_64bits_update(state, &readings, sizeof(readings));
     }
 }
 
-/* Hashes the plant file's settings on which subdivision depends. */
+/* Hashes the settings in the plant file that subdivision depends on. */
 static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
@@ -159,22 +159,22 @@ struct build {
     struct geometry geometry;
     struct levels levels;
     struct sensor_distances measured;
-    struct asset_level file[LEVELS_MAX]; /* levels of detail in the form in which the asset file stores them */
-    /* serialised geometry and levels of detail, to be written to the geometry cache; empty if they were read from it */
+    struct asset_level file[LEVELS_MAX]; /* levels of detail as stored in the asset file */
+    /* serialised geometry and levels of detail for the geometry cache; empty if they came from it */
     struct text parts;
     bool surface_kept;              /* true: the surface has been written to the build cache */
     struct distance_rows distances; /* distances of the vertices from the sensors, in the vertices' final order */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
-    bool keeps; /* true: results of subdivision are written to the cache for the next run */
+    bool keeps; /* true: write subdivision results to the cache for the next run */
     struct subdiv_cache findings;
     struct sample_cache sample_cache;
     struct build_report geometry_report;
-    struct workers_task *keeping;          /* task of the workers that writes the asset's caches */
-    struct workers_task *sending;          /* task of the workers that writes the asset's file to disk */
-    void (*tasks[2])(struct build *build); /* two build steps that run at the same time */
+    struct workers_task *keeping;          /* workers' task that writes the asset's caches */
+    struct workers_task *sending;          /* workers' task that writes the asset's file to disk */
+    void (*tasks[2])(struct build *build); /* two build steps that run concurrently */
     bool failed[2];
-    int write_error; /* errno of a failed write to the asset's file; 0: no write failed */
+    int write_error; /* errno of a failed write to the asset's file; 0: none failed */
     char *why;
 };
 
@@ -224,8 +224,8 @@ static void assume_sensors(struct build *build)
 
 /* --- two concurrent tasks: subdivision, and checking the distances --- */
 
-/* Starts partitioning a finished level of detail into clusters while the next level is being subdivided, because meshoptimizer uses a
- * single core. Called for each level that subdivision has finished. */
+/* Starts partitioning a finished level of detail into clusters while the next level is subdivided, because meshoptimizer uses
+ * only one core. Called for each level once it is subdivided. */
 static void begin_clusters(void *arg, const struct level *level)
 {
     struct build *build = arg;
@@ -233,8 +233,7 @@ static void begin_clusters(void *arg, const struct level *level)
     build->making[build->making_count++] = clusters_begin(build->workers, level, (const float(*)[3])g->positions_m, g->vertex_count);
 }
 
-/* Waits until the clusters of all levels of detail are made and collects them. Must be done before the levels are merged into one index
- * array. */
+/* Waits for the clusters of all levels of detail and collects them. Must be called before the levels are merged into one index array. */
 static void end_clusters(struct build *build, struct clusters *clusters)
 {
     uint32_t first_index = 0;
@@ -280,8 +279,8 @@ static void split(struct build *build)
     build->output->report.split_s = seconds_since(&since_ns);
 }
 
-/* Compares some of the asset's distances with those of the heat method, for the report. For a small asset this takes longer than everything
- * else, so it is skipped if the field is constant or the cache has the result. */
+/* Compares some of the asset's distances with those of the heat method, for the report. For a small asset this would take
+ * longer than everything else, so it is skipped if the field is constant or the cache has the result. */
 static void check(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -322,7 +321,7 @@ static bool write_surface(const struct build *build)
     return good;
 }
 
-/* Writes the geometry cache. Errors are ignored: then the next run only takes longer. */
+/* Writes the geometry cache. Ignores errors: the next run then only takes longer. */
 static void write_geometry(const struct build *build)
 {
     const struct build_input *input = build->input;
@@ -330,8 +329,8 @@ static void write_geometry(const struct build *build)
         geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->geometry_report);
 }
 
-/* Checks the distances against the heat method, then writes the surface with the result of the check to the cache. Runs while levels of
- * detail are being subdivided. */
+/* Checks the distances against the heat method, then writes the surface with the check's result to the cache. Runs while levels
+ * of detail are subdivided. */
 static void check_and_keep(struct build *build)
 {
     check(build);
@@ -349,8 +348,8 @@ static void write_caches(void *arg)
     write_geometry(build);
 }
 
-/* Orders the vertices by level of detail, so that each level uses only the first vertices of the array. own: number of vertices before
- * subdivision. */
+/* Orders the vertices by level of detail, so that each level uses only the beginning of the array. own: number of vertices
+ * before subdivision. */
 static bool put_in_order(struct build *build, uint32_t own)
 {
     struct build_report *report = &build->output->report;
@@ -375,7 +374,7 @@ static bool put_in_order(struct build *build, uint32_t own)
     return good || wrong(build->why, "cannot compute the levels of detail: out of memory (%u vertices)", g->vertex_count);
 }
 
-/* Computes the influence file (weights of sensors for harmonic, fin and gp). Needs the surface and the vertices in their final order. */
+/* Computes the influence file (weights of sensors for harmonic, fin and gp). Requires the surface and the final vertex order. */
 static bool make_influence(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -418,8 +417,8 @@ static void send_file(void *arg)
     folder_draft_send(arg);
 }
 
-/* Computes the distances in the asset file's format and starts writing them to disk early: they are most of the file, and writing runs
- * while other sections are hashed and checked. */
+/* Converts the distances to the asset file's format and starts writing them to disk early: they are most of the file, and are
+ * written while other sections are hashed and checked. */
 static void write_distances(void *arg, uint16_t *codes)
 {
     struct build *build = arg;
@@ -481,14 +480,14 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     char view_why[200];
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
-    /* error text in case asset_build() fails for lack of memory; a later failure overwrites it */
+    /* error text if asset_build() runs out of memory; a later failure overwrites it */
     wrong(build->why, "cannot create the asset's prepared file: out of memory");
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
         return wrong(build->why, "the asset's distances cannot be written to %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
-    /* check the asset file as a reader would, because an invalid file must not be written */
+    /* check the asset file as a reader would, so that an invalid file is never written */
     return asset_view_fresh(&output->view, bytes, size, view_why) ||
            wrong(build->why, "the asset's prepared file would be invalid: %s", view_why);
 }
@@ -507,7 +506,7 @@ static bool build_file(struct build *build)
             return false;
         build->geometry_report = build->output->report;
         build->keeping = workers_begin(build->workers, write_caches, build);
-        surface_field_finish(&build->measured.field); /* free the distances of the surface early, because they take much memory */
+        surface_field_finish(&build->measured.field); /* free the surface's distances early, because they take much memory */
     }
     if (!any && input->sensor_count > 0)
         sensor_distances_even(&build->distances, input->sensor_count, own);

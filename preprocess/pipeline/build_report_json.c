@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts a build report to JSON and back with a table that maps each of its numbers to a JSON name. */
+/* Converts a build report to JSON and back, using a table that maps each number of the report to a JSON name. */
 #include "preprocess/pipeline/build_report_json.h"
 
 #include <math.h>
@@ -178,7 +178,7 @@ bool build_report_from_json(const json_t *numbers, struct build_report *report)
     for (size_t i = 0; i < report->level_count; i++)
         if (!all_from_json(level_numbers, json_array_get(levels, i), &report->levels[i]))
             return false;
-    const json_t *cloud = json_object_get(numbers, "cloud"); /* the member "cloud" is missing if no group requests distances by heat */
+    const json_t *cloud = json_object_get(numbers, "cloud"); /* "cloud" is missing if no group requests distances by heat */
     if (cloud && !all_from_json(cloud_numbers, cloud, report))
         return false;
     const json_t *bend = json_object_get(numbers, "between_corners");

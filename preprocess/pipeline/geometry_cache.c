@@ -10,8 +10,8 @@
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns the serialised geometry and levels of detail, which follow their length (8 bytes) in the cache file; *size receives the
- * length. */
+/* Returns the serialised geometry and levels of detail, which the cache file stores after their length (8 bytes); *size
+ * receives the length. */
 static const void *cached_parts(const struct geometry_cache *cache, size_t *size)
 {
     uint64_t bytes;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares all assets of a plant: computes keys, checks existing asset files, and builds the others, a batch of models at a time. */
+/* Prepares all assets of a plant: computes keys, checks existing asset files, and builds the rest, one batch of models at a time. */
 #include "preprocess/influence/influence_file.h"
 #include "preprocess/pipeline/prepare.h"
 
@@ -22,15 +22,15 @@
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/pipeline/build_report_json.h"
 
-/* A warning is printed if a sensor is farther from the surface than FAR_M metres, or farther than this share of the asset's size. */
+/* A sensor farther from the surface than FAR_M metres, or than this share of the asset's size, causes a warning. */
 #define FAR_M 0.25
 #define FAR_OF_SIZE 0.05
 
-/* number of triangles in a batch: models are parsed until their assets have this many triangles, then these assets are built */
+/* triangles in a batch: models are parsed until their assets have this many triangles; then these assets are built */
 #define BATCH_TRIANGLES 4e6
-/* assets with more triangles are built one at a time with all cores, because two at a time would need twice the memory */
+/* assets with more triangles are built one at a time on all cores, because two at a time would need twice the memory */
 #define ALONE_TRIANGLES 1e6
-/* for the estimate of the remaining time: measured cost of an asset's first sensor, as a number of triangles that take as long to build */
+/* for estimating the remaining time: cost of an asset's first sensor, as the number of triangles that take equally long to build */
 #define SENSORS_WORK 6e4
 
 struct prepare_run {
@@ -38,16 +38,16 @@ struct prepare_run {
     struct log *log;
     struct workers *workers;
     const struct prepare_params *params;
-    size_t *todo; /* indices of the assets that must be built, grouped by model */
+    size_t *todo; /* indices of the assets to build, grouped by model */
     size_t todo_count, batch_begin, batch_end;
-    struct model_cache known, cuts; /* known: model cache of the last run; cuts: model cache that this run writes */
-    /* number of triangles of the models that were parsed to compute keys, and stay in memory until their assets are built */
+    struct model_cache known, cuts; /* model caches: of the last run (known), and for the next run (cuts) */
+    /* triangles of the models that were parsed to compute keys and stay in memory until their assets are built */
     double parsed_triangles;
     pthread_mutex_t lock;
-    /* --- members protected by `lock` */
+    /* --- members below: protected by `lock` */
     struct diag *diag;
     struct progress progress;
-    /* failed: an error occurred; unusable: an error occurred that is not the fault of a model, so the manifest is not written */
+    /* failed: an error occurred; unusable: an error occurred that is not a model's fault, so the manifest is not written */
     bool failed, unusable;
 };
 
@@ -78,7 +78,7 @@ static void fail_asset(struct prepare_run *run, const struct prepare_asset *asse
     fail(run, run->prepare->plant->files.path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
 }
 
-/* Marks an asset as failed because its model is invalid, or lacks something to which the plant refers. */
+/* Marks an asset as failed because its model is invalid, or lacks something that the plant refers to. */
 static void lose(struct prepare_asset *asset, const char *why)
 {
     asset->state = PREPARE_FAILED;
@@ -106,7 +106,7 @@ static size_t first_with_key(const struct prepare_run *run, size_t i)
     return i;
 }
 
-/* Gets the hash of an asset's geometry and the positions of its sensors from the model cache. Returns false if the model must be parsed. */
+/* Gets an asset's geometry hash and its sensors' positions from the model cache. Returns false if the model must be parsed instead. */
 static bool recall_cut(struct prepare_run *run, struct prepare_asset *asset, uint64_t *geometry)
 {
     bool known = model_cache_find(&run->known, asset->recipe, geometry);
@@ -124,7 +124,7 @@ static double all_triangles(const struct gltf_model *model)
     return corners / 3;
 }
 
-/* Parses the model unless it is parsed already. Returns false if that fails; the error is reported only once. */
+/* Parses the model unless it is parsed already. Returns false on failure; reports the error only once. */
 static bool have_parsed(struct prepare_run *run, struct model_file *model)
 {
     if (model->is_parsed || !model->good)
@@ -174,8 +174,8 @@ static void take_cut(struct prepare_run *run, struct prepare_asset *asset, uint6
             model_cache_add_node(&run->cuts, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
 }
 
-/* Computes the keys of those assets of one model that are to be prepared. Keeps the parsed model in memory for building, unless too many
- * triangles are in memory already. */
+/* Computes the keys of one model's assets that are to be prepared. Keeps the parsed model in memory for building, unless there
+ * are too many triangles in memory already. */
 static void find_keys_of_model(struct prepare_run *run, size_t number)
 {
     struct model_file *model = &run->prepare->models.at[number];
@@ -224,7 +224,7 @@ static void find_keys(struct prepare_run *run)
     }
 }
 
-/* --- checking the existing files in the folder of prepared files --------------------------------------------------------------- */
+/* --- checking the existing prepared files ----------------------------------------------------------------------------------------- */
 
 /* Copies the numbers that the report and the warnings need from an existing, checked asset file. */
 static void take_file(struct prepare_asset *asset, const struct asset_view *view)
@@ -253,8 +253,8 @@ static void take_report(const struct prepare_run *run, struct prepare_asset *ass
     json_decref(numbers);
 }
 
-/* Opens the asset's prepared file and checks its influence file, if the asset needs one. Returns as folder_open(). If a file is damaged,
- * *damaged receives its path and what is wrong with it; the caller frees the text. */
+/* Opens the asset's prepared file and checks its influence file, if the asset needs one. Returns the same values as
+ * folder_open(). If a file is damaged, *damaged receives its path and what is wrong with it; the caller frees the text. */
 static int open_prepared(const struct prepare_run *run, const struct prepare_asset *asset, struct folder_file *file, char **damaged)
 {
     const char *folder = run->params->folder;
@@ -331,7 +331,7 @@ static bool is_built(struct prepare_run *run, const struct prepare_asset *asset,
     return good && status == 0;
 }
 
-/* Sends a status line about the progress to the service manager. The caller holds run->lock. */
+/* Sends the progress to the service manager as a status line. The caller holds run->lock. */
 static void say_status(struct prepare_run *run)
 {
     const struct progress *progress = &run->progress;
@@ -391,7 +391,7 @@ static int heavier_first(const void *a, const void *b, void *arg)
     return p == q ? (i < j ? -1 : 1) : p > q ? -1 : 1;
 }
 
-/* Opens the geometry cache of an asset. Returns false if the model must be parsed instead. */
+/* Opens an asset's geometry cache. Returns false if the model must be parsed instead. */
 static bool find_stock(const struct prepare_run *run, struct prepare_asset *asset)
 {
     return asset->sensor_count > 0 && geometry_cache_open(&asset->cache, run->log, run->params->folder, asset->geometry_key);
@@ -403,8 +403,8 @@ static double own_triangles(const struct prepare_asset *asset, const struct mode
     return asset->cache.parts.bytes ? asset->cache.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
 }
 
-/* Parses the models of the assets in todo[], from index batch_begin on, until there is enough work for a batch (BATCH_TRIANGLES). Assets
- * whose model cannot be parsed fail. */
+/* Parses the models of the assets in todo[], from index batch_begin on, until there is enough work for a batch
+ * (BATCH_TRIANGLES). Assets whose model cannot be parsed fail. */
 static void parse_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -430,7 +430,7 @@ static void parse_batch(struct prepare_run *run)
     }
 }
 
-/* Builds the assets of a batch whose model is valid: large assets one after the other, small ones in parallel. */
+/* Builds the batch's assets that have a valid model: large assets one after the other, small ones in parallel. */
 static void build_batch(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -484,7 +484,7 @@ static void share(struct prepare_run *run)
         asset->reported = first->reported;
         asset->report = first->report;
         asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
-        /* assets with equal keys have equal sensors, so the distances of the first one apply */
+        /* assets with equal keys have equal sensors, so the first one's distances apply */
         for (size_t s = 0; s < asset->sensor_count; s++)
             asset->surface_distances_m[s] = first->surface_distances_m[s];
     }
@@ -507,7 +507,7 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
     }
 }
 
-/* Writes the cache of models. Cache entries of assets that this run does not prepare are kept. Errors are ignored: then the next run only
+/* Writes the model cache. Keeps the entries of assets that this run does not prepare. Ignores errors: the next run then only
  * takes longer. */
 static void write_cuts(struct prepare_run *run)
 {
@@ -528,8 +528,8 @@ static bool any_good(const struct prepare *prepare)
     return false;
 }
 
-/* Lists the textures and extensions of the asset's model that are not drawn, if this run parsed the model. Only a model's first asset has
- * texts, because a plant may have thousands of assets of one model. */
+/* Lists the textures and extensions of the asset's model that are not drawn, if this run parsed the model. Only a model's first
+ * asset gets the texts, because a plant may have thousands of assets of the same model. */
 static void name_left_out(const struct prepare *prepare, size_t index, struct folder_entry *entry)
 {
     static const char *const none[] = { NULL };
@@ -547,7 +547,7 @@ static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
-    /* one array element per tag is enough for all assets, because each tag is a sensor of at most one asset */
+    /* one array element per tag suffices for all assets, because a tag is a sensor of at most one asset */
     const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags;
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes and prints the progress of preparing a plant and the remaining time. */
+/* Computes and prints progress and remaining time while a plant is prepared. */
 #include "preprocess/pipeline/progress.h"
 
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints the progress of preparing a plant and the estimated remaining time. On a terminal, one line is rewritten; otherwise a new line is
- * printed from time to time. The caller passes the current time. Thread: one at a time. */
+/* Prints progress and estimated remaining time while a plant is prepared. On a terminal, rewrites one line; otherwise prints a
+ * new line from time to time. The caller passes the current time. Thread: one at a time. */
 #ifndef PREPROCESS_PIPELINE_PROGRESS_H
 #define PREPROCESS_PIPELINE_PROGRESS_H
 #include <stdbool.h>
@@ -14,15 +14,15 @@ struct progress { /* zero-initialise; out NULL: prints nothing */
     FILE *out;
     bool terminal;
     int64_t began_ns, said_ns;
-    /* numbers of assets. total: all; there: those that need no work; done: those that needed work and are finished */
+    /* numbers of assets. total: all; there: need no work; done: needed work and are finished */
     size_t total, there, done;
-    size_t known; /* number of assets that need work and have a known amount of work */
+    size_t known; /* number of assets that need a known amount of work */
     double work_known, work_done;
 };
 
-/* Starts counting finished assets. total: number of assets; there: number of those that need no work. out NULL: prints nothing. */
+/* Starts counting finished assets. total: number of assets; there: number of assets that need no work. out NULL: prints nothing. */
 void progress_begin(struct progress *progress, FILE *out, size_t total, size_t there, int64_t now_ns);
-/* Adds the amount of work of an asset, in any unit. Called before the asset is finished. */
+/* Adds an asset's amount of work, in any unit. Call it before the asset is finished. */
 void progress_expect(struct progress *progress, double work);
 /* Counts an asset with this amount of work as finished. Prints a line if one is due. */
 void progress_step(struct progress *progress, double work, int64_t now_ns);

@@ -20,7 +20,7 @@ bool build_sensor_place(const struct gltf_model *model, const struct geometry_pa
     return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m, why);
 }
 
-/* Computes the position of each sensor relative to the geometry's origin. */
+/* Computes each sensor's position relative to the geometry's origin. */
 static void place_sensors(struct sensor_distances *measured, const struct build_input *input, const struct geometry *geometry)
 {
     measured->places_m = mem_array(input->sensor_count, sizeof(*measured->places_m));
@@ -80,7 +80,7 @@ static size_t unreachable(const struct sensor_distances *measured, size_t vertex
     return count;
 }
 
-/* Computes the distances of all surface points from all sensors. Distances from a sensor whose position has not changed come from the
+/* Computes the distances of all surface points from all sensors. For a sensor that has not moved, takes the distances from the
  * distance cache. */
 static bool solve(struct sensor_distances *measured, struct log *log, const struct build_input *input, uint32_t triangles, uint32_t *kept)
 {
@@ -117,7 +117,7 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
     return true;
 }
 
-/* --- all positions assumed ---------------------------------------------------------------------------------------------------- */
+/* --- sensors that all have assumed positions -------------------------------------------------------------------------------------- */
 
 bool sensor_distances_matter(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {

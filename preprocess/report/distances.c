@@ -26,7 +26,7 @@ static void to_plant(const struct asset_view *view, const double placement[16], 
     transform_point(placement, p, out);
 }
 
-/* Returns whether a vertex comes from the model and was not added by preparation. */
+/* Returns whether the vertex comes from the model, rather than from preparation. */
 static bool is_own(const struct asset_view *view, uint32_t vertex)
 {
     uint32_t level = 0;

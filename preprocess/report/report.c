@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints the report on preparing a plant as text: possible problems first, then tables. */
+/* Prints the report on preparing a plant as text: possible problems, then tables. */
 #include "preprocess/report/report.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "plant/models/asset_size.h"
 #include "preprocess/report/text_table.h"
 
-#define ROWS_MAX 40 /* maximum number of rows per table, unless the caller requests all rows */
+#define ROWS_MAX 40 /* maximum number of rows per table, unless all rows are requested */
 #define CONCERNS_MAX 20
 
 struct text_report {

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reports the result of preparing a plant and its possible problems, as text for people and as JSON for programs. REPORT.md explains the
- * numbers. Thread: one. */
+/* Reports the result of preparing a plant and possible problems, as text for people and as JSON for programs. REPORT.md
+ * explains the numbers. Thread: one. */
 #ifndef PREPROCESS_REPORT_H
 #define PREPROCESS_REPORT_H
 #include "preprocess/pipeline/prepare.h"
 
-/* A possible problem to which the report draws attention. */
+/* A possible problem that the report points out. */
 struct report_concern {
     const struct prepare_asset *asset;
     char *text;
-    double weight; /* severity, for sorting: the report lists problems with a higher weight first */
+    double weight; /* severity: the report lists problems with a higher weight first */
 };
 /* Lists possible problems, most serious first; *count receives their number. The caller frees the list with report_concerns_free(). */
 struct report_concern *report_concerns(const struct prepare *prepare, size_t *count);
@@ -22,8 +22,8 @@ void report_text(const struct prepare *prepare, bool all, FILE *out);
 /* Prints the report as one JSON object. Returns false if out of memory. */
 bool report_json(const struct prepare *prepare, FILE *out);
 
-extern const char *const report_states[]; /* by enum prepare_state: its name in reports */
-/* Returns the number of vertices that preparation added to the model's vertices. */
+extern const char *const report_states[]; /* by enum prepare_state: name in reports */
+/* Returns the number of vertices that preparation added to the model's. */
 uint32_t report_added(const struct prepare_asset *asset);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds possible problems that the report on preparing a plant lists. */
+/* Finds possible problems to list in the report on preparing a plant. */
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -9,16 +9,14 @@
 #include "preprocess/subdivision/subdivide.h"
 #include "preprocess/report/text_table.h"
 
-/* minimum root mean square difference between an asset's distances and those of the heat method that is reported, relative to the largest
- * distance; smaller differences come from the heat method, which smooths distances */
+/* root mean square difference between an asset's distances and the heat method's above which it is reported, relative to the
+ * largest distance; smaller differences come from the heat method, which smooths distances */
 #define METHODS_DIFFER 0.05
-/* factor on the error limit of subdivision; an interpolation error above the product is reported. Above 1 because of single-precision
- * rounding */
+/* an interpolation error above this multiple of subdivision's error limit is reported; above 1 because of single-precision rounding */
 #define FIELD_SLACK 1.05
-/* share of an asset's surface on which the bend (interpolation error inside triangles) is too large or unknown; reported from this share
- * on */
+/* share of an asset's surface with too large or unknown bend (interpolation error inside triangles) above which it is reported */
 #define BENT_SHARE 1e-3
-/* smallest power of inverse distance weights that is reported: from there on, the error of distances alone can exceed two colour steps */
+/* powers of inverse distance weights are reported from this one on: here the error of distances alone can exceed two colour steps */
 #define HIGH_POWER 5
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
@@ -77,8 +75,8 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
                                (double)left->steps, text_table_number(left->edges).text, left->edges == 1 ? "" : "s"));
 }
 
-/* Reports the bend (interpolation error inside triangles) of the fields harmonic, fin and gp. Subdivision does not refine triangles for
- * these fields, only for fields with distance weights. */
+/* Reports the bend (interpolation error inside triangles) of the fields harmonic, fin and gp. Subdivision refines triangles
+ * only for fields with distance weights, not for these. */
 static void add_bend(struct concerns *concerns, const struct prepare_asset *asset)
 {
     const struct bend_report *bend = &asset->report.bend;
@@ -95,7 +93,7 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
                        bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
-/* Reports high powers of inverse distance weights, which amplify errors of distances (plant/exact.h). */
+/* Reports high powers of inverse distance weights, which amplify distance errors (plant/exact.h). */
 static void add_powers(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
 {
     for (size_t g = 0; g < prepare->plant->group_count; g++) {
@@ -115,8 +113,8 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
     }
 }
 
-/* Reports doubtful sizes of assets (wrong unit?). Includes assets that were not built in this run, because a wrong unit remains an error
- * until somebody corrects it. */
+/* Reports doubtful sizes of assets, which may be due to a wrong unit. Includes assets not built in this run, because a wrong
+ * unit remains an error until somebody corrects it. */
 static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
 {
     double *longest_m = mem_array(prepare->asset_count, sizeof(*longest_m));
@@ -128,7 +126,7 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         char why[SIZE_WHY_BYTES];
-        /* true: the asset's size comes from pieces far from its main part, which are a problem of their own in the report */
+        /* true: the asset is large because of pieces far from its main part, which the report lists as a separate problem */
         bool stray = asset->reported && asset->report.stray[0];
         if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
             add_concern(concerns, asset, 1e6, mem_strdup(why));

@@ -18,7 +18,7 @@ void text_table_add(struct text_table *table, const char *fmt, ...)
     table->cells[table->cell_count++] = cell.at ? cell.at : mem_strdup("");
 }
 
-/* Returns the width of a cell's text in characters, not bytes, because names may be in any language. */
+/* Returns the width of a cell's text in characters, not bytes: names may be in any language. */
 static size_t width_of(const char *text)
 {
     size_t width = 0;

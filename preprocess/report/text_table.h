@@ -11,7 +11,7 @@ struct text_table_column {
     bool right; /* true: the column is right-aligned, as is usual for numbers */
 };
 
-struct text_table { /* initialise with zeros, then set the columns, which the caller keeps */
+struct text_table { /* zero-initialise, then set the columns, which the caller keeps */
     const struct text_table_column *columns;
     size_t column_count;
     char **cells; /* texts of the cells, row by row */
@@ -20,7 +20,7 @@ struct text_table { /* initialise with zeros, then set the columns, which the ca
 
 /* Formats the next cell. A row is complete after one cell per column. */
 void text_table_add(struct text_table *table, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-/* Prints the column titles and at most `rows` rows, then the number of remaining rows. Columns without content are omitted. */
+/* Prints the column titles, at most `rows` rows, and the number of rows left out. Omits columns without content. */
 void text_table_print(const struct text_table *table, size_t rows, FILE *out);
 /* Frees the cells. */
 void text_table_finish(struct text_table *table);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts distances from one row of sensors per position into the asset file's blocks of vertices, and packs these. */
+/* Converts distances from one row of sensors per position to the asset file's blocks of vertices, and packs these. */
 #include "preprocess/subdivision/distance_rows.h"
 
 #include <errno.h>
@@ -13,11 +13,11 @@
 #include "protocol/distance_pack.h"
 #include "surface/mesh/trimesh.h"
 
-/* offset in 16-bit numbers between the output lines of consecutive sensors, chosen so that the lines do not evict each other from the CPU
- * cache */
+/* distance, in 16-bit numbers, between the output lines of consecutive sensors; chosen so that the lines do not evict each
+ * other from the CPU cache */
 #define APART (ASSET_DISTANCE_BLOCK + 32)
-#define AHEAD 8  /* prefetch distance in vertices: the next vertex's row of distances is probably not in the CPU cache */
-#define LINE 32u /* sensors processed at a time, so that their output lines fit the first-level cache */
+#define AHEAD 8  /* prefetch distance in vertices, because a vertex's row of distances is probably not in the CPU cache */
+#define LINE 32u /* number of sensors processed at a time, so that their output lines fit into the first-level cache */
 
 static size_t blocks_of(const struct distance_rows *rows)
 {
@@ -50,7 +50,7 @@ struct rows_block {
     const struct distance_rows *rows;
     int fd;
     off_t at;
-    atomic_int error; /* errno of the first failed write of distances; 0: all writes succeeded */
+    atomic_int error; /* errno of the first failed write of distances; 0: none failed */
 };
 
 static void fetch_row(const struct distance_rows *rows, size_t vertex, size_t begin, size_t width)
@@ -60,7 +60,7 @@ static void fetch_row(const struct distance_rows *rows, size_t vertex, size_t be
         __builtin_prefetch(row + at);
 }
 
-/* Converts the distances of one block of vertices to the 16-bit codes of the asset file (protocol/asset_distance.h), sensor by sensor. */
+/* Converts the distances of a block of vertices to the asset file's 16-bit codes (protocol/asset_distance.h), sensor by sensor. */
 static void turn_block(const struct distance_rows *rows, size_t first, size_t count, uint16_t *codes)
 {
     uint16_t line[LINE * APART];
@@ -100,7 +100,7 @@ static void turn_blocks(void *arg, size_t begin, size_t end)
     mem_free(codes);
 }
 
-#define SAMPLES 40u /* number of vertices at which the distances from two sensors are compared */
+#define SAMPLES 40u /* number of vertices at which two sensors' distances are compared */
 
 /* --- packing ---------------------------------------------------------------------------------------------------------------- */
 
@@ -124,8 +124,8 @@ static void insert_near(uint16_t near[DISTANCE_PACK_NEAR], float apart_m[DISTANC
     }
 }
 
-/* Lists for each sensor the earlier sensors with the most similar distances, measured at some vertices all over the asset. Packing predicts
- * a sensor's distances from theirs. */
+/* Finds, for each sensor, the earlier sensors with the most similar distances, compared at some vertices all over the asset.
+ * Packing predicts a sensor's distances from these. */
 static void find_near(void *arg, size_t begin, size_t end)
 {
     const struct packing *packing = arg;
@@ -148,7 +148,7 @@ static void find_near(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Replaces the padding of the last block of vertices by copies of the last vertex's distances, which take fewer bits. */
+/* Replaces the padding of the last block of vertices by copies of the last vertex's distances, which pack into fewer bits. */
 static void pad_block(uint16_t *codes, size_t sensor_count, size_t count)
 {
     for (size_t s = 0; s < sensor_count; s++)

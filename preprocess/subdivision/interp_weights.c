@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes interpolation weights, and sums over sensors, eight sensors at a time (SIMD). */
+/* Computes interpolation weights and sums over sensors, eight sensors at a time (SIMD). */
 #include "preprocess/subdivision/interp_weights.h"
 
 #include <math.h>
@@ -9,14 +9,14 @@
 #include "base/math/simd.h"
 
 #define L INTERP_LANES
-#define MIN_M 1e-5f    /* metres; a sensor nearer than this to a point has all the weight there */
-#define MIN_EXP -87.0f /* argument of exp() below which a single-precision result would be denormal; smaller arguments are raised to it */
-/* lower limit of the nearness (1 at a sensor, 0 at the radius) from which the weight's slopes are computed: with a decay below 1, the slope
- * is infinite at the radius */
+#define MIN_M 1e-5f    /* metres; a sensor nearer than this to a point gets all the weight there */
+#define MIN_EXP -87.0f /* arguments of exp() are raised to at least this; below, a single-precision result would be denormal */
+/* minimum nearness (1 at a sensor, 0 at the radius) used for the weight's slopes: with a decay below 1, the slope would be
+ * infinite at the radius */
 #define MIN_NEARNESS 1e-3f
 
 typedef float lanes __attribute__((vector_size(4 * L)));
-typedef int32_t mask __attribute__((vector_size(4 * L))); /* a mask with one lane per sensor; all bits of a lane are set, or none */
+typedef int32_t mask __attribute__((vector_size(4 * L))); /* a mask with one lane per sensor, whose bits are all set or all clear */
 
 SIMD_BODY void load(const float *from, lanes *to)
 {
@@ -28,7 +28,7 @@ SIMD_BODY void store(const lanes *from, float *to)
     memcpy(to, from, sizeof(*from));
 }
 
-SIMD_BODY void keep(const mask *which, lanes *x) /* keeps the lanes of *x whose mask is set, and sets the other lanes to 0 */
+SIMD_BODY void keep(const mask *which, lanes *x) /* keeps the lanes of *x whose mask is set, and zeroes the others */
 {
     *x = (lanes)(*which & (mask)*x);
 }
@@ -96,8 +96,8 @@ SIMD_BODY void raise_lanes(lanes *x, float power)
             (*x)[l] = powf(base[l], power);
 }
 
-/* Lowers a sensor's weight smoothly to 0 towards the group's reach: multiplies it by the square of (reach - distance) / (reach - distance
- * of the nearest sensor). Beyond the reach, the weight is 0, except that of the nearest sensor, which stays 1. */
+/* Fades a sensor's weight smoothly to 0 towards the group's reach: multiplies it by the square of (reach - distance) / (reach -
+ * distance of the nearest sensor). Beyond the reach the weight is 0; only the nearest sensor's stays 1. */
 SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes *far, lanes *weight)
 {
     const lanes zero = { 0 }, near = zero + near_m;
@@ -110,7 +110,7 @@ SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes 
     *weight *= left;
 }
 
-/* Computes Shepard weights (power of the inverse distance) divided by the nearest sensor's weight, so that no power overflows a float. */
+/* Computes Shepard weights (power of the inverse distance) relative to the nearest sensor's weight, so that no power overflows a float. */
 SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float near_m, const float *distance_m, lanes *weight)
 {
     const lanes floor_m = (lanes){ 0 } + MIN_M;
@@ -125,7 +125,7 @@ SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float 
         fade(group, near_m, &far, weight);
 }
 
-/* Computes the fraction by which the fade towards the reach lowers a weight per metre of distance: 2 / (reach - distance). */
+/* Computes the relative decrease of a weight per metre of distance due to the fade towards the reach: 2 / (reach - distance). */
 SIMD_BODY void per_left(const struct interp_group *group, const lanes *far, lanes *out)
 {
     const lanes least_m = (lanes){ 0 } + MIN_M;
@@ -208,7 +208,7 @@ SIMD_BODY void exponential(lanes *x)
     const lanes lowest = (lanes){ 0 } + MIN_EXP;
     take_more(&lowest, x);
     lanes halves = *x * 1.44269504f - 0.5f;
-    /* conversion to an integer truncates towards 0, which rounds to the nearest integer here because the number is at most 0 and 0.5 is
+    /* converting to an integer truncates towards 0; here it rounds to nearest, because the number is at most 0 and 0.5 has been
      * subtracted */
     mask n = __builtin_convertvector(halves, mask);
     lanes whole = __builtin_convertvector(n, lanes), r = *x - whole * 0.693359375f + whole * 2.12194440e-4f, p;
@@ -222,13 +222,13 @@ SIMD_BODY void exponential(lanes *x)
 }
 
 struct softmax {
-    /* per_m: 1 / radius; largest: largest exponent of any sensor, which is subtracted from all exponents so that exp() cannot overflow */
+    /* 1 / radius; largest exponent of any sensor, which is subtracted from all so that exp() cannot overflow */
     float per_m, largest;
-    /* distance to the nearest sensor, metres; used only if the group has a reach (largest distance at which a sensor has weight) */
+    /* distance to the nearest sensor, metres; used only if the group has a reach (distance beyond which a sensor has no weight) */
     float near_m;
 };
 
-/* Computes the nearness of sensors: 1 at a sensor, falling to 0 at the radius of Algorithm 1 and beyond. */
+/* Computes the nearness of sensors: 1 at a sensor, falling to 0 at Algorithm 1's radius, and 0 beyond. */
 SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 {
     const lanes zero = { 0 };
@@ -255,9 +255,9 @@ SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const st
         fade(group, softmax->near_m, &far, weight);
 }
 
-/* Returns the largest change of the interpolated value, as a share of the range, if the nearness of each sensor changes by at most 1.
- * Nearness is 1 at the sensor and 0 at the radius. A sensor changes its own term of the value, through its weight and its decay. It also
- * changes the terms of the others, whose weights sum to 1 minus its own. Sensors beyond the radius change nothing. */
+/* Returns the largest change of the interpolated value, as a share of the range, if the nearness of each sensor (1 at the
+ * sensor, 0 at the radius) changes by at most 1. A sensor changes its own term of the value through its weight and its decay.
+ * It also changes the terms of the others, whose weights sum to 1 minus its own. Sensors beyond the radius change nothing. */
 SIMD_BODY float paper_slope(const struct interp_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *interp, float all)
 {
@@ -347,7 +347,7 @@ SIMD_BODY float error_of(const float *const *corners, const float *weights, size
     return most > least ? most : least;
 }
 
-/* --- variants of the functions for wider SIMD registers ------------------------------------------------------------------------- */
+/* --- function variants for wider SIMD registers ----------------------------------------------------------------------------------- */
 
 SIMD_AVX2 static void euclidean_wide(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the sensors' interpolation weights as server/field does, and how far they deviate from linear interpolation between the corners
- * of triangles. */
+/* Computes the sensors' interpolation weights like server/field, and their deviation from linear interpolation between the
+ * corners of triangles. */
 #include "preprocess/subdivision/linear_error.h"
 
 #include <math.h>
@@ -11,9 +11,9 @@
 #include "plant/exact.h"
 #include "plant/singles.h"
 
-#define MAX_SLACK (1 / 255.0) /* largest change of the value that is subtracted from an error, as a share of the range */
-/* maximum number of sensors in a group for which errors of Algorithm 1 are measured; with more sensors, each has so small a weight in
- * Algorithm 1 that these errors are far below those of Shepard interpolation */
+#define MAX_SLACK (1 / 255.0) /* maximum change of the value that may be subtracted from an error, as a share of the range */
+/* errors of Algorithm 1 are not measured for groups with more sensors: each has so small a weight in Algorithm 1 that these
+ * errors are far below those of Shepard interpolation */
 #define MANY 64
 
 static double factor_of(double x)
@@ -97,7 +97,7 @@ void linear_error_set_radius(struct linear_error *linear, const float *const lar
         }
 }
 
-/* Buffer for one distance per sensor: on the caller's stack for at most FEW sensors, else on the heap. */
+/* buffer for one distance per sensor: on the caller's stack for up to FEW sensors, else on the heap */
 #define FEW 1024
 struct corner_room {
     float few[FEW], *at;
@@ -115,9 +115,9 @@ static void room_finish(struct corner_room *room)
         mem_free(room->at);
 }
 
-/* Distances from a point to every sensor: one array along the surface (geodesic), one straight (Euclidean). */
+/* Distances from a point to every sensor: along the surface (geodesic) and straight (Euclidean). */
 struct distances {
-    const float *of[2]; /* distances from the sensors: geodesic and Euclidean (enum distance_mode) */
+    const float *of[2]; /* by enum distance_mode: distances from the sensors */
     struct corner_room straight_m, picked_m;
 };
 
@@ -137,8 +137,8 @@ static void distances_finish(struct distances *distances)
     room_finish(&distances->picked_m);
 }
 
-/* Returns the distances from a point to a group's sensors, valid until the next call. They are not copied if the sensors are consecutive on
- * the asset and need no padding. */
+/* Returns the distances from a point to a group's sensors, valid until the next call. Does not copy them if the sensors are
+ * consecutive on the asset and need no padding. */
 static const float *pick(const struct linear_error_group *group, struct distances *distances, int mode)
 {
     const float *from = distances->of[mode];
@@ -221,8 +221,8 @@ struct error_question {
     double wide_m, slack_m;
 };
 
-/* Returns the largest error of linear interpolation over all groups, as a share of the range. A group that has no value at one of the
- * corners, because no path leads from there to a sensor, counts as error 0. */
+/* Returns the largest error of linear interpolation over all groups, as a share of the range. The error is 0 for a group
+ * without a value at one of the corners, because no path leads from there to a sensor. */
 static double worst_of(const struct linear_error *linear, const struct error_question *question, const float *sample)
 {
     double most = 0;
@@ -239,7 +239,7 @@ static double worst_of(const struct linear_error *linear, const struct error_que
             at[c] = question->corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        /* change of the group's value per metre; if negative: minus the distance in metres from the point where the group's data ends */
+        /* change of the group's value per metre; if negative: minus the distance in metres to where the group's data ends */
         double slope = (double)sample[linear->share_count + g];
         if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / linear->group_count)
             most = max_of((double)interp_error(at, question->weights, question->corner_count, sample + first, count) -

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Linear interpolation error: how wrong a triangle or edge can be that interpolates the field linearly between its corners. A value is the
- * sum of readings times interpolation weights, for any readings within MIN and MAX. The error at a point, as a share of the range, is
- * therefore the larger of two sums over sensors. One sums the amounts by which weights exceed their linear interpolation; the other sums
- * the amounts by which weights fall below it. The result is the maximum over all groups with sensors on the asset, over both interpolations
- * (Shepard, and Algorithm 1 of Kim & Suh, `paper` in PLANT.md), and over geodesic and straight-line distances. Parameters come from the
- * plant file. Sensors with an assumed position are ignored: they show nothing, or colour the whole asset evenly. Groups whose field each
- * pixel evaluates (plant/exact.h) are ignored too. Where no sensor of a group reaches, the group has no data, and the nearest sensor's
- * value is continued. Thread: any, once initialised. */
+/* Linear interpolation error: how wrong a triangle or edge can be if it interpolates the field linearly between its corners. A
+ * value is the sum of readings times interpolation weights, for any readings within MIN and MAX. The error at a point, as a
+ * share of the range, is therefore the larger of two sums over sensors: the amounts by which weights exceed their linear
+ * interpolation, and the amounts by which they fall below it. The result is the maximum over all groups with sensors on the
+ * asset, over both interpolations (Shepard, and Algorithm 1 of Kim & Suh, `paper` in PLANT.md), and over geodesic and
+ * straight-line distances. Parameters come from the plant file. Ignored are sensors with an assumed position, which show
+ * nothing or colour the whole asset evenly, and groups whose field is evaluated at each pixel (plant/exact.h). Out of reach of
+ * all its sensors, a group has no data, and the nearest sensor's value is continued. Thread: any, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #include "plant/plant.h"
@@ -14,9 +14,9 @@
 #include "preprocess/subdivision/interp_weights.h"
 
 struct linear_error_group {
-    uint32_t *columns; /* indices of the group's sensors in the list of the asset's sensors (columns) */
+    uint32_t *columns; /* the sensors' indices in the list of the asset's sensors (columns) */
     bool in_a_row;     /* true: `columns` are consecutive numbers */
-    bool papers;       /* true: errors of Algorithm 1 (Kim & Suh) are included */
+    bool papers;       /* true: include errors of Algorithm 1 (Kim & Suh) */
     size_t count;
     double radius_m[2];     /* radius R of Algorithm 1, by enum distance_mode (geodesic, Euclidean) */
     struct interp_group of; /* interpolation parameters of the group's sensors, padded to INTERP_LANES */
@@ -26,50 +26,52 @@ struct linear_error {
     struct linear_error_group *groups;
     size_t group_count, sensor_count, share_count;
     size_t most_count; /* sensor count of the largest group, padded to INTERP_LANES */
-    /* x, y and z of the sensors' positions on the surface, in three arrays by index of the sensor on the asset, padded to INTERP_LANES */
+    /* x, y and z of the sensors' positions on the surface, as three arrays by sensor of the asset, padded to INTERP_LANES */
     float *axes_m[3];
 };
 
-/* Returns whether errors of Algorithm 1 are included for a group with sensor_count sensors on an asset: not for more than 64 sensors, and
- * for a single sensor only with `singles: cut` in the plant file. */
+/* Returns whether errors of Algorithm 1 are included for a group with sensor_count sensors on an asset: not with more than 64
+ * sensors, and with only one sensor only if the plant file says `singles: cut`. */
 bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count);
 
-/* Prepares the measure of interpolation errors for a plant's groups and an asset's sensors. places_m: positions of the sensors on the
- * surface; copied. Radii that the plant file does not state must be set with linear_error_set_radius(). Finish with
- * linear_error_finish(). */
+/* Prepares to measure interpolation errors for a plant's groups and an asset's sensors. places_m: positions of the sensors on
+ * the surface; copied. Set radii that the plant file omits with linear_error_set_radius(). Finish with linear_error_finish().
+ * */
 void linear_error_init(struct linear_error *linear, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count,
                        const float (*places_m)[3]);
 /* Frees the arrays. */
 void linear_error_finish(struct linear_error *linear);
-/* Sets the radii of Algorithm 1 that the plant file does not state. largest_m[mode][sensor]: largest distance of any vertex from the
+/* Sets the radii of Algorithm 1 that the plant file omits. largest_m[mode][sensor]: largest distance of any vertex from the
  * sensor, by enum distance_mode. */
 void linear_error_set_radius(struct linear_error *linear, const float *const largest_m[2]);
 
-/* Returns the number of floats in a sample: the weights and their changes per metre that linear_error_weights() writes for one point. */
+/* Returns the number of floats in a sample: the weights and their changes per metre at one point, as written by linear_error_weights(). */
 size_t linear_error_sample_count(const struct linear_error *linear);
-/* Computes a sample at a point. First come the sensors' interpolation weights for geodesic distances, then those for straight-line
- * distances. Each is sorted by group; each group has the weights of Shepard interpolation, followed by those of Algorithm 1 if included. In
- * the same order follow the largest changes of the interpolated value per metre (0 for Shepard without `slopes`). geodesic_m: by sensor;
- * INFINITY: no path. norms: receives two normalisations per group (geodesic, straight-line). */
+/* Computes a sample at a point. It begins with the sensors' interpolation weights for geodesic distances, then for
+ * straight-line distances. Each set is sorted by group; a group has its Shepard weights, followed by those of Algorithm 1 if
+ * included. Then, in the same order, come the largest changes of the interpolated value per metre (0 for Shepard without
+ * `slopes`). geodesic_m: by sensor; INFINITY: no path. norms: receives two normalisations per group (geodesic, straight-line).
+ * */
 void linear_error_weights(const struct linear_error *linear, const float point_m[3], const float *geodesic_m, bool slopes, float *interp,
                           struct interp_norm *norms);
-/* Computes only the normalisations (sums of relative weights) that linear_error_weights() writes to norms. */
+/* Computes only the normalisations (sums of relative weights), as linear_error_weights() writes them to norms. */
 void linear_error_norms(const struct linear_error *linear, const float point_m[3], const float *geodesic_m, struct interp_norm *norms);
 /* Computes the weights of a sample from its normalisations (linear_error_norms()). Faster than linear_error_weights(), except in groups
  * with Algorithm 1. Does not write the changes per metre. */
 void linear_error_weights_again(const struct linear_error *linear, const float point_m[3], const float *geodesic_m,
                                 const struct interp_norm *norms, float *interp);
-/* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest point where a group's data ends because
- * all sensors of the group are out of reach. The field may peak at such a point, so edges near it must be short. */
+/* Returns a lower bound, from a sample's normalisations, of the distance in metres to the nearest point where a group's data
+ * ends because all its sensors are out of reach. The field may peak there, so edges near such a point must be short. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Returns, from a sample's normalisations, the shorter of two distances in metres: the straight line to the nearest sensor, and the
- * distance to the nearest point where a group's data ends. */
+/* Returns, from a sample's normalisations, the shorter of two distances in metres: straight to the nearest sensor, and to the
+ * nearest point where a group's data ends. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Return the interpolation error at a point whose sample is `between` or `inside`, as a share of the range. linear_error_on_edge() compares
- * the sample with the linear interpolation at fraction t between the samples of the edge's ends; linear_error_in_triangle() with the
- * interpolation of three corners' samples by `weights`. modes: kinds of distance to include. The change of the value within slack_m, at
- * most one colour step, is subtracted from the error. Farther than wide_m outside a group's data, the error is 0. Nearer, it counts,
- * because an edge or triangle that wide would carry the wrong values into the area with data. */
+/* Return the interpolation error at a point whose sample is `between` or `inside`, as a share of the range.
+ * linear_error_on_edge() compares it with the linear interpolation at fraction t between the samples of the edge's ends;
+ * linear_error_in_triangle() with three corners' samples interpolated by `weights`. modes: kinds of distance to include. The
+ * change of the value within slack_m, at most one colour step, is subtracted from the error. Farther than wide_m outside a
+ * group's data, the error is 0. Nearer, it counts, because an edge or triangle that wide would carry wrong values into the area
+ * with data. */
 enum linear_error_modes {
     LINEAR_ERROR_GEODESIC = 1 << DISTANCE_GEODESIC,
     LINEAR_ERROR_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN,

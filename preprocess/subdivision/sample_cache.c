@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores projections of sample points in a hash table from point keys to triangle indices, 8 bytes per entry. The file holds the table in
- * the same layout, so it is mapped and used directly. */
+/* Stores projections of sample points in a hash table from point keys to triangle indices, 8 bytes per entry. The file has the
+ * same layout as the table, so that it can be mapped and used directly. */
 #include "preprocess/subdivision/sample_cache.h"
 
 #include <string.h>
@@ -9,12 +9,12 @@
 #include "preprocess/cache/build_cache.h"
 #include "surface/mesh/trimesh.h"
 
-/* An entry of the hash table holds the triangle index + 1 in its TRI_BITS low bits, and the low bits of the key above them. The high bits
- * of the key select the slot. */
+/* A hash table entry stores 1 + the triangle index in its TRI_BITS low bits, and the low bits of the key above them. The high
+ * bits of the key select the slot. */
 #define TRI_BITS 24
 #define NOWHERE ((1u << TRI_BITS) - 1)
 #define FULL 0.85
-#define WORTH 0.5 /* minimum share of a run's lookups that the cache file must answer; below it, the file is rewritten */
+#define WORTH 0.5 /* the cache file is rewritten if it answers less than this share of a run's lookups */
 
 void sample_cache_open(struct sample_cache *sample_cache, struct log *log, const char *folder, uint64_t key)
 {
@@ -34,7 +34,7 @@ void sample_cache_close(struct sample_cache *sample_cache)
     *sample_cache = (struct sample_cache){ 0 };
 }
 
-/* Returns the slot of the hash table that holds the key, or if the key is absent the empty slot for it. */
+/* Returns the hash table slot with the key, or the empty slot for it if the key is absent. */
 static size_t slot_of(const uint64_t *table, size_t count, uint64_t key)
 {
     size_t slot = (size_t)((key >> 32) * count >> 32);

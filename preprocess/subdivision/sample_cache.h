@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of the surface triangles that sample points were projected onto: KEY.spots in the folder of prepared files. Projections do not
- * depend on sensors and are half of the work of subdivision. Can be deleted at any time; a damaged file counts as absent. The file holds
- * all lookups of the run that wrote it. It is rewritten if less than half of a run's lookups were found in it. */
+/* Cache of the surface triangles that sample points were projected onto: KEY.spots in the folder of prepared files. Projections
+ * do not depend on sensors and are half the work of subdivision. The file can be deleted at any time; a damaged file counts as
+ * absent. It contains all lookups of the run that wrote it, and is rewritten if a run finds less than half of its lookups
+ * there. */
 #ifndef PREPROCESS_SUBDIVISION_SAMPLE_CACHE_H
 #define PREPROCESS_SUBDIVISION_SAMPLE_CACHE_H
 #include <pthread.h>
@@ -13,13 +14,13 @@ struct sample_cache {
     const uint64_t *known; /* hash table of the mapped file: triangle indices by key; NULL: there is no file */
     size_t slot_count;
     pthread_mutex_t lock;
-    /* --- members protected by `lock` */
+    /* --- members below: protected by `lock` */
     struct sample_cache_asked *asked;
     size_t asked_count, asked_capacity, missed_count;
 };
 
 #define SAMPLE_CACHE_NOTES 128
-struct sample_cache_notes { /* lookups recorded by one thread; initialise with zeros */
+struct sample_cache_notes { /* lookups recorded by one thread; zero-initialise */
     struct sample_cache_asked {
         uint64_t key;
         uint32_t tri;
