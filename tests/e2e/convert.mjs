@@ -6,21 +6,14 @@ import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'n
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { gltfModel } from './support/gltf_model.mjs';
 import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
 
 // Returns a glTF file of a square with that side length.
-function square(side) {
-    const bytes = Buffer.from(new Float32Array([0, 0, 0, side, 0, 0, side, side, 0, 0, 0, 0, side, side, 0, 0, side, 0]).buffer);
-    return JSON.stringify({
-        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
-        meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
-        accessors: [{ bufferView: 0, componentType: 5126, count: 6, type: 'VEC3', min: [0, 0, 0], max: [side, side, 0] }],
-        bufferViews: [{ buffer: 0, byteLength: 72 }],
-        buffers: [{ byteLength: 72, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }],
-    });
-}
+const square = (side) =>
+    JSON.stringify(gltfModel([0, 0, 0, side, 0, 0, side, side, 0, 0, 0, 0, side, side, 0, 0, side, 0], [{ mesh: 0 }]));
 
 async function withPlant(f) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-convert-'));

@@ -41,7 +41,7 @@ before(async () => {
     renderer = await nodes.renderer('r1', core, '--port', String(at), '--openid', openidFile('renderer.yaml', at));
     core.token = renderer.token = nodes.tokens.viewer;
     await nodes.plant.tell('set TI-1 95.5');
-    await until('readings and an alarm', async () => (await alarms(renderer)).some(({ tag }) => tag === 'TI-1'));
+    await until('readings and an alarm', async () => renderer.alarm('TI-1', nodes.tokens.viewer));
     identity = await learnIdentity();
 });
 after(async () => {
@@ -49,8 +49,7 @@ after(async () => {
     await nodes?.destroy();
 });
 
-const alarms = async (node) => (await (await node.fetch('/api/v1/alarms', nodes.tokens.viewer)).json()).alarms ?? [];
-const state = async () => (await alarms(core)).find(({ tag, kind }) => tag === 'TI-1' && kind === 'H')?.state;
+const state = async () => (await core.alarm('TI-1', nodes.tokens.viewer))?.state;
 async function open(token = nodes.tokens.renderer) {
     const client = await PlainClient.open(core.port, { path: '/core', protocol: 'plantcast.core.v1',
         headers: [`Authorization: Bearer ${token}`] });

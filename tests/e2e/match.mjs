@@ -2,6 +2,7 @@
 // `plantcast match`: tag lists generated from real plants' names, matched and compared with the truth; malformed lists; manual
 // changes and a second run; and the whole way from a CAD export to a picture.
 import { DATA, inFolder } from './support/folders.mjs';
+import { boxesFile } from './support/gltf_model.mjs';
 import { seed } from './support/sweep.mjs';
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
@@ -30,18 +31,7 @@ const assetsOf = (plant) =>
 
 // Makes a plant of boxes with these names, without a CAD system.
 function boxPlant(folder, names) {
-    const positions = Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1]).buffer);
-    const corners = Buffer.from(new Uint16Array([0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6,
-        3, 0, 4, 3, 4, 7]).buffer);
-    const bytes = Buffer.concat([positions, corners]);
-    writeFileSync(join(folder, 'model.gltf'), JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }],
-        nodes: [{ name: 'plant', children: names.map((_, i) => i + 1) },
-            ...names.map((name, i) => ({ name, mesh: 0, translation: [2 * (i % 50), 0, 2 * Math.floor(i / 50)] }))],
-        meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
-        accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
-            { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' }],
-        bufferViews: [{ buffer: 0, byteLength: positions.length }, { buffer: 0, byteOffset: positions.length, byteLength: corners.length }],
-        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] }));
+    writeFileSync(join(folder, 'model.gltf'), boxesFile(names, 1, 50));
     writeFileSync(join(folder, 'plant.yaml'), `plant: { name: Boxes }\n\nassets:\n  - { id: all, model: model.gltf }\n\n` +
         'groups:\n  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }\n\ntags: tags.csv\n');
     writeFileSync(join(folder, 'tags.csv'), 'Tag Name,Address\n');

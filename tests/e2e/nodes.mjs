@@ -7,6 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { DATA } from './support/folders.mjs';
+import { gltfModel } from './support/gltf_model.mjs';
 import { promise } from './support/promise.mjs';
 import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
@@ -14,14 +15,9 @@ const skip = notBuilt();
 
 // Returns a model as a data URI with a triangle of that size in each of the given nodes.
 function model(nodes, size = 1, meshName = 'plate') {
-    const bytes = Buffer.from(new Float32Array([0, 0, 0, size, 0, 0, 0, 2 * size, 0]).buffer);
-    return {
-        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes,
-        meshes: [{ name: meshName, primitives: [{ attributes: { POSITION: 0 } }] }],
-        accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [0, 0, 0], max: [size, 2 * size, 0] }],
-        bufferViews: [{ buffer: 0, byteLength: 36 }],
-        buffers: [{ byteLength: 36, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }],
-    };
+    const made = gltfModel([0, 0, 0, size, 0, 0, 0, 2 * size, 0], nodes);
+    made.meshes[0].name = meshName;
+    return made;
 }
 
 function nodes(content, ...args) {

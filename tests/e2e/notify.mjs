@@ -40,8 +40,6 @@ const isCalm = (plant) => until('calm readings', async () => {
     const { tags } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?count=1000`)).json();
     return tags.every(({ value }) => value === limits.calm);
 });
-const metric = async (plant, name) => Number((await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text())
-    .split('\n').find((line) => line.startsWith(`${name} `))?.split(' ').at(-1) ?? NaN);
 async function acknowledge(plant, tag, kinds) {
     const client = await PlainClient.open(plant.port);
     await client.hello({});
@@ -77,7 +75,7 @@ notify:
             assert.match(first.body, /^P3 {2}[\d-]+ [\d:]+ {2}TI-1 high, left: raised at 55 °C \(limit 50 °C\); E-101, Tank farm\r$/m);
             assert.match(first.body, /https:\/\/p\.example\//);
             await plant.daemon.line(/warn +notify: ops: the mail server refuses <gone@p\.example>: 550 5\.1\.1 no such mailbox/);
-            await until('it is counted', async () => await metric(plant, 'plantcast_notify_sent_total{recipient="ops"}') === 1);
+            await until('it is counted', async () => await plant.metric('plantcast_notify_sent_total{recipient="ops"}') === 1);
             await plant.daemon.stop('SIGKILL');
             await plant.startDaemon();
             await set(plant, 'TI-2', 12345678);
@@ -105,7 +103,7 @@ test('a certificate that nobody trusts gets no mail, and no password', options, 
         await calm(plant);
         await set(plant, 'TI-1', limits.high);
         await plant.startDaemon();
-        await until('it fails', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 1);
+        await until('it fails', async () => await plant.metric('plantcast_notify_failed_total{recipient="ops"}') >= 1);
         await plant.daemon.line(/ops cannot be reached: .*certificate/i);
         assert.equal(mail.mails.length, 0);
         assert.ok(!plant.daemon.said.includes('sesame'));
@@ -150,8 +148,8 @@ notify:
         assert.match(alarm.raised, /^\d{4}-\d\d-\d\dT/);
         assert.deepEqual({ ...alarm, raised: '' }, { kind: 'H', priority: 3, state: 'unacknowledged', escalation: 0, raised: '', value: 55,
             limit: 50, unit: '°C', description: 'more, of it', asset: 'E-101', area: 'Tank farm' });
-        await until('the other one has given up', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 2);
-        assert.equal(await metric(plant, 'plantcast_notify_waiting{recipient="ops"}'), EXTRA);
+        await until('the other one has given up', async () => await plant.metric('plantcast_notify_failed_total{recipient="ops"}') >= 2);
+        assert.equal(await plant.metric('plantcast_notify_waiting{recipient="ops"}'), EXTRA);
         const took_ms = [];
         for (let i = 0; i < 5; i++) { // five requests, because slow ones may be due to other load
             const asked = performance.now();
@@ -191,8 +189,8 @@ notify:
         await plant.startDaemon();
         await isCalm(plant);
         await set(plant, 'X-0', limits.high);
-        await until('a failure', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="hook"}') >= 1);
-        assert.equal(await metric(plant, 'plantcast_notify_waiting{recipient="hook"}'), 1);
+        await until('a failure', async () => await plant.metric('plantcast_notify_failed_total{recipient="hook"}') >= 1);
+        assert.equal(await plant.metric('plantcast_notify_waiting{recipient="hook"}'), 1);
         hook.status = 200;
         await until('that it is told', () => hook.taken.length > 0);
     } finally {

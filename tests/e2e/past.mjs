@@ -130,18 +130,14 @@ test('who looks at now never notices, and who follows comes along', { skip }, as
 });
 
 test('the same instant is drawn once for all who look at it', { skip }, async () => {
-    const metric = async (name) => {
-        const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
-        return Number(text.match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
-    };
     const first = await open(), second = await open();
     let isShared = false; // a frame is cached for half a second; on a busy machine the two requests may for a while be farther apart
     for (let s = 440, end = performance.now() + 90000; s < 1800 && performance.now() < end && !isShared; s++) {
-        const before = await metric('plantcast_renders_shared_total');
+        const before = await plant.metric('plantcast_renders_shared_total');
         await Promise.all([first, second].map((client) => travel(client, at(s))));
         const isThere = (p) => p.flags & FLAG.still && p.data_time_us === at(s);
         await Promise.all([first, second].map((client) => client.frameWhere('refined', isThere)));
-        isShared = await metric('plantcast_renders_shared_total') > before;
+        isShared = await plant.metric('plantcast_renders_shared_total') > before;
     }
     assert.ok(isShared);
     first.close();

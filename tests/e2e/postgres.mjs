@@ -70,10 +70,7 @@ function configure({ port, more = '', space = '', folder = `h${databases}`, keep
 `);
 }
 
-async function metric(name) {
-    const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
-    return Number(text.match(new RegExp(`^plantcast_${name} (\\S+)`, 'm'))?.[1] ?? NaN);
-}
+const metric = (name) => plant.metric(`plantcast_${name}`);
 const until = (what, ask, seconds = 60) => waitFor(what, ask, seconds, () => plant.daemon.said.slice(-3000));
 const settled = () => until('nothing waits', async () => await metric('postgres_up') === 1 && await metric('postgres_waiting_points') === 0
     && await metric('history_waiting_points') === 0);

@@ -11,6 +11,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { DATA, inFolder } from './support/folders.mjs';
+import { boxModel } from './support/gltf_model.mjs';
 import { copyGroup, findGroup, readRvm, writeRvm } from './support/rvm_file.mjs';
 import { sweep } from './support/sweep.mjs';
 import { BIN, missing, sleep, TinyPlant } from './support/tiny_plant.mjs';
@@ -107,18 +108,9 @@ test('a real plant: rename, move, delete, add; and back', { skip: noData }, () =
 
 // Writes a glTF model of boxes of one metre at given positions.
 function boxes(path, nodes) {
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, i >> 1 & 1, i >> 2]);
-    const faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    const indices = faces.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]);
-    const bytes = Buffer.concat([Buffer.from(Float32Array.from(corners.flat()).buffer), Buffer.from(Uint16Array.from(indices).buffer)]);
-    writeFileSync(path, JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: nodes.map((_, i) => i) }],
-        nodes: nodes.map(({ name, at, guid, turned }) => ({ name, mesh: 0, translation: at, ...guid && { extras: { GlobalId: guid } },
-            ...turned && { rotation: [0, Math.SQRT1_2, 0, Math.SQRT1_2] } })),
-        meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
-        accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
-            { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' }],
-        bufferViews: [{ buffer: 0, byteLength: 96 }, { buffer: 0, byteOffset: 96, byteLength: 72 }],
-        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] }));
+    writeFileSync(path, JSON.stringify(boxModel(nodes.map(({ name, at, guid, turned }) => ({ name, mesh: 0, translation: at,
+        ...guid && { extras: { GlobalId: guid } }, ...turned && { rotation: [0, Math.SQRT1_2, 0, Math.SQRT1_2] } })),
+    { scene: nodes.map((_, i) => i) })));
 }
 
 test('identities: GUIDs, numbers of nodes, names that are used again', { skip: notBuilt }, () => inFolder((folder) => {

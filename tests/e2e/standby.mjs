@@ -52,11 +52,6 @@ function feed() {
     feeding = async () => { going = false; await done; feeding = null; };
 }
 
-const alarm = async (node, tag) => {
-    const { alarms } = await (await node.fetch('/api/v1/alarms')).json();
-    return alarms.find((one) => one.tag === tag && one.kind === 'H');
-};
-
 test('one of two leads, the other follows and is not ready; a renderer finds who leads', options, async (t) => {
     await Promise.all([two.start('one'), two.start('two')]);
     const core = await two.leader();
@@ -88,7 +83,7 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
     for (let round = 0; round < 4; round++) {
         const high = round % 2 === 0;
         await two.plant.tell(`set TI-1 ${high ? 95 : 50}`);
-        await until('the alarm', async () => Boolean(await alarm(renderer, 'TI-1')) === high);
+        await until('the alarm', async () => Boolean(await renderer.alarm()) === high);
         const anna = await renderer.client({}, { token: two.nodes.tokens.operator });
         if (high) {
             anna.say({ type: 'alarm', seq: 1 + round, action: 'acknowledge', alarms: [['TI-1', 'H']] });
@@ -111,7 +106,7 @@ test('kill -9, there and back: within 5 s the other polls; what operators did is
         pausedMs = pause_ms;
         t.diagnostic(`${pause_ms.toFixed(0)} ms without a poller`);
         if (high) {
-            const { state, who } = await alarm(leads.node, 'TI-1');
+            const { state, who } = await leads.node.alarm();
             assert.deepEqual([state, who], ['acknowledged', 'anna']);
         }
         const notes = await (await leads.node.fetch('/api/v1/notes')).text();

@@ -5,27 +5,14 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { otherVersion } from './support/other_version.mjs';
-import { PostgresServer } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
 import { kill, missingTwoCores, sleep, TAKE_OVER_MS, terms, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 };
-let server, two;
+let two;
 
-before(async () => {
-    if (skip)
-        return;
-    server = await PostgresServer.start();
-    server.makeDatabase('plants');
-    two = await TwoCores.create(server);
-    await two.plant.tell('set TI-1 50');
-    await Promise.all([two.start('one'), two.start('two')]);
-    await two.followed(await two.leader());
-});
-after(async () => {
-    await two?.destroy();
-    await server?.destroy();
-});
+before(async () => { two = skip ? null : await TwoCores.running((cores) => cores.plant.tell('set TI-1 50')); });
+after(() => two?.destroy());
 
 test('one cut changes nothing: between the cores, to the database on either side; nor does its restart', options, async (t) => {
     const core = await two.leader(), other = two.other(core);
@@ -40,11 +27,11 @@ test('one cut changes nothing: between the cores, to the database on either side
                 await other.node.metric('plantcast_core_lease_database_up') === 1, 30);
             await two.followed(core);
         }
-    await server.restart();
+    await two.server.restart();
     await two.goesOn(t, core, 5);
-    server.freeze();
+    two.server.freeze();
     await two.goesOn(t, core, 8);
-    server.thaw();
+    two.server.thaw();
     await two.followed(core);
 });
 
@@ -142,9 +129,10 @@ test('others of the names of both are told, and take nobody\'s place while the l
 test('of bids that the database takes up at the same time one is taken', options, async (t) => {
     for (const core of Object.values(two.cores))
         await core.program.stop();
-    const row = () => server.ask('SELECT epoch, leader FROM plantcast.lease')[0], [before_] = row();
-    const release = await server.lock('SELECT 1 FROM plantcast.lease');
-    const waiting = () => server.ask("SELECT 1 FROM pg_stat_activity WHERE wait_event_type = 'Lock' AND query LIKE 'UPDATE lease%'").length;
+    const row = () => two.server.ask('SELECT epoch, leader FROM plantcast.lease')[0], [before_] = row();
+    const release = await two.server.lock('SELECT 1 FROM plantcast.lease');
+    const waiting = () =>
+        two.server.ask("SELECT 1 FROM pg_stat_activity WHERE wait_event_type = 'Lock' AND query LIKE 'UPDATE lease%'").length;
     try {
         await Promise.all([two.start('one'), two.start('two')]);
         await sleep(4000); // waits until both cores have asked for the lease

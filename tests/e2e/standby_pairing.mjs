@@ -3,7 +3,6 @@
 // first core leads again.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { PostgresServer } from './support/postgres_server.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, TwoCores, until } from './support/two_cores.mjs';
 
@@ -13,25 +12,19 @@ views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
 walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: [whole] }] }] }]
 `;
 const SECRET = `pc_${'7'.repeat(64)}`;
-let server, two, renderer, engineer;
+let two, renderer, engineer;
 
 before(async () => {
     if (skip)
         return;
-    server = await PostgresServer.start();
-    server.makeDatabase('plants');
-    two = await TwoCores.create(server, WALLS, []);
-    two.nodes.trustsLocal = false;
-    engineer = runProgram('plantcast', ['token', 'add', two.nodes.tokenFile, '--role', 'engineer', '--name', 'eve']).out.trim();
-    await two.plant.tell('set TI-1 50');
-    await Promise.all([two.start('one'), two.start('two')]);
-    await two.followed(await two.leader());
+    two = await TwoCores.running(async (cores) => {
+        cores.nodes.trustsLocal = false;
+        engineer = runProgram('plantcast', ['token', 'add', cores.nodes.tokenFile, '--role', 'engineer', '--name', 'eve']).out.trim();
+        await cores.plant.tell('set TI-1 50');
+    }, WALLS, []);
     renderer = await two.renderer('r');
 });
-after(async () => {
-    await two?.destroy();
-    await server?.destroy();
-});
+after(() => two?.destroy());
 
 const ask = async ({ port }) => {
     const headers = { Authorization: `Pairing ${SECRET}` };

@@ -4,27 +4,15 @@
 import assert from 'node:assert/strict';
 import { copyFileSync, cpSync, readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { PostgresServer } from './support/postgres_server.mjs';
 import { long } from './support/promise.mjs';
 import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 }, CUT_S = 6, RETURNS = 5;
 const READ = /history: read \d+ points from PostgreSQL, covering the \d+ s in which another core led/g;
-let server, two;
+let two;
 
-before(async () => {
-    if (skip)
-        return;
-    server = await PostgresServer.start();
-    server.makeDatabase('plants');
-    two = await TwoCores.create(server);
-    await Promise.all([two.start('one'), two.start('two')]);
-    await two.followed(await two.leader());
-});
-after(async () => {
-    await two?.destroy();
-    await server?.destroy();
-});
+before(async () => { two = skip ? null : await TwoCores.running(); });
+after(() => two?.destroy());
 
 const valuesOf = async (core, from_us, to_us) => {
     const path = `/api/v1/history?tags=TI-1&points=20000&from=${from_us / 1e6}&to=${to_us / 1e6}`;

@@ -5,29 +5,18 @@ import assert from 'node:assert/strict';
 import { copyFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { PostgresServer } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 }, STOPS = 2, ROWS = 20, POLL_MS = 100;
 const GIVEN_MS = 1500, BLIND_MS = 2500; // time without a poller; time without readings at a renderer
-let server, two, stopFeeding;
+let two, stopFeeding;
 
-before(async () => {
-    if (skip)
-        return;
-    server = await PostgresServer.start();
-    server.makeDatabase('plants');
-    two = await TwoCores.create(server);
-    await two.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
-    await Promise.all([two.start('one'), two.start('two')]);
-    await two.followed(await two.leader());
-});
+before(async () => { two = skip ? null : await TwoCores.running((cores) => cores.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 })); });
 after(async () => {
     await stopFeeding?.();
     await two?.destroy();
-    await server?.destroy();
 });
 
 // Makes the alarm of TI-1 come and go with each poll.

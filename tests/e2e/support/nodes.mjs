@@ -51,6 +51,12 @@ export class Node {
         return Number(text.split('\n').find((line) => line.startsWith(`${name} `))?.split(' ')[1]);
     }
 
+    // Returns the tag's alarm of kind H, or undefined.
+    async alarm(name = 'TI-1', token = this.token) {
+        const { alarms } = await (await this.fetch('/api/v1/alarms', token)).json();
+        return alarms?.find(({ tag, kind }) => tag === name && kind === 'H');
+    }
+
     async client(options = {}, hello = {}) {
         const client = await PlainClient.open(this.port, options);
         client.welcome = await client.hello(hello);

@@ -77,11 +77,8 @@ tags: tags.csv
         }
     }
 
-    // Returns a number of /metrics, by the beginning of its line.
-    async metric(name) {
-        const text = await (await fetch(`http://127.0.0.1:${this.plant.port}/metrics`)).text();
-        return Number(text.split('\n').find((line) => line.startsWith(`plantcast_source_${name}`))?.split(' ').at(-1));
-    }
+    // Returns a number of /metrics about sources.
+    metric(name) { return this.plant.metric(`plantcast_source_${name}`); }
 
     destroy() {
         return this.plant.destroy();

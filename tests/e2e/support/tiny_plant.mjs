@@ -10,6 +10,7 @@ import { join, resolve } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { faultOf } from './fault.mjs';
 import './fetch.mjs';
+import { gltfModel } from './gltf_model.mjs';
 import { freePort } from './ports.mjs';
 export { sleep };
 
@@ -22,7 +23,7 @@ export const missing = () => PROGRAMS.filter((name) => !existsSync(join(BIN, nam
 export const notBuilt = () => (missing().length > 0 ? `not built: ${missing().join(', ')}` : false);
 
 // Returns a glTF of one box, one metre wide, deep and high, with separate corners for each face.
-function boxModel() {
+function facedBox() {
     const positions = [], normals = [], indices = [];
     for (let axis = 0; axis < 3; axis++) {
         for (const side of [-1, 1]) {
@@ -39,21 +40,7 @@ function boxModel() {
             indices.push(base, base + 1, base + 2, base, base + 2, base + 3);
         }
     }
-    const bytes = Buffer.concat([Buffer.from(new Float32Array(positions).buffer), Buffer.from(new Float32Array(normals).buffer),
-        Buffer.from(new Uint16Array(indices).buffer)]);
-    const at = positions.length * 4;
-    return JSON.stringify({
-        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ name: 'box', mesh: 0 }],
-        meshes: [{ primitives: [{ attributes: { POSITION: 0, NORMAL: 1 }, indices: 2 }] }],
-        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }],
-        bufferViews: [{ buffer: 0, byteOffset: 0, byteLength: at }, { buffer: 0, byteOffset: at, byteLength: at },
-            { buffer: 0, byteOffset: 2 * at, byteLength: indices.length * 2 }],
-        accessors: [
-            { bufferView: 0, componentType: 5126, count: 24, type: 'VEC3', min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5] },
-            { bufferView: 1, componentType: 5126, count: 24, type: 'VEC3' },
-            { bufferView: 2, componentType: 5123, count: indices.length, type: 'SCALAR' },
-        ],
-    });
+    return JSON.stringify(gltfModel(positions, [{ name: 'box', mesh: 0 }], { indices, normals }));
 }
 
 const plantYaml = (port) => `plant:
@@ -137,7 +124,7 @@ export class TinyPlant {
         plant.folder = mkdtempSync(join(tmpdir(), 'plantcast-tiny-'));
         plant.file = join(plant.folder, 'plant.yaml');
         plant.modbusPort = await freePort();
-        writeFileSync(join(plant.folder, 'box.gltf'), boxModel());
+        writeFileSync(join(plant.folder, 'box.gltf'), facedBox());
         writeFileSync(plant.file, plantYaml(plant.modbusPort));
         writeFileSync(join(plant.folder, 'tags.csv'), TAGS);
         return plant;
@@ -264,6 +251,12 @@ export class TinyPlant {
         this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before, this.bin);
         const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/[\d.]+:(\d+)\/$/m);
         this.port = Number(port);
+    }
+
+    // Returns a number of /metrics; NaN: there is no such number.
+    async metric(name, headers = {}) {
+        const text = await (await fetch(`http://127.0.0.1:${this.port}/metrics`, { headers })).text();
+        return Number(text.split('\n').find((line) => line.startsWith(`${name} `))?.split(' ').at(-1));
     }
 
     async destroy() {

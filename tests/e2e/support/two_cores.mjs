@@ -8,7 +8,7 @@ import { join } from 'node:path';
 import { Network } from './network_thread.mjs';
 import { Node, Nodes, sleep, until } from './nodes.mjs';
 import { freePort } from './ports.mjs';
-import { missingPostgres } from './postgres_server.mjs';
+import { missingPostgres, PostgresServer } from './postgres_server.mjs';
 import { promise } from './promise.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
 
@@ -35,6 +35,24 @@ export class TwoCores {
         Object.assign(two, { server, access });
         try {
             await two.make(more);
+        } catch (error) {
+            await two.destroy().catch(() => {});
+            throw error;
+        }
+        return two;
+    }
+    // Starts a database and two cores, of which one leads and the other follows. prepare: called before the cores start. destroy() ends the
+    // database too.
+    static async running(prepare = () => {}, ...more) {
+        const server = await PostgresServer.start();
+        let two = server;
+        try {
+            server.makeDatabase('plants');
+            two = await TwoCores.create(server, ...more);
+            two.destroys = server;
+            await prepare(two);
+            await Promise.all([two.start('one'), two.start('two')]);
+            await two.followed(await two.leader());
         } catch (error) {
             await two.destroy().catch(() => {});
             throw error;
@@ -175,6 +193,7 @@ ${more}`);
             await this.nodes?.destroy();
         } finally {
             await this.network?.close();
+            await this.destroys?.destroy();
         }
     }
 }
