@@ -41,7 +41,8 @@ import * as toolbar from '../../clients/web/app/toolbar/toolbar.js';
 
 const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlight, camera_moves: cameraMoves, clip_gizmo: clipGizmo,
     declutter, format, gestures, history, instant, labels, legend, limit_names: limitNames, list_window: listWindow, measure, meters,
-    nearest, patterns, pins, query, scroll, section, split_view: splitView, sun, timings, trend_range: trendRange, trend_values: trendValues, vector, wall, wire,
+    nearest, patterns, pins, query, scroll, section, split_view: splitView, sun, timings, trend_range: trendRange,
+    trend_values: trendValues, vector, wall, wire,
     'app/alarm_bar': alarmBar, 'app/chart_style': chartStyle, 'app/drift': drift, 'app/toolbar': toolbar };
 globalThis.devicePixelRatio = 1; // charts are drawn in device pixels
 export const CASES = [];
