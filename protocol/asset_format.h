@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The asset file: geometry, materials, sensors and distances of one prepared asset. Layout: ASSET.md. Little-endian; every section starts
-   at a multiple of 64 bytes. This header reads and writes no files. */
+/* The asset file: geometry, materials, sensors and distances of one prepared asset. Layout: ASSET.md. Little-endian; every
+   section starts at a multiple of 64 bytes. The functions here do no file I/O. */
 #ifndef PROTOCOL_ASSET_FORMAT_H
 #define PROTOCOL_ASSET_FORMAT_H
 #include <stdbool.h>
@@ -42,7 +42,7 @@ struct asset_header {
     uint32_t version, header_bytes;
     uint64_t file_bytes;
     uint64_t checksum; /* XXH3-64 of the file computed with this field set to 0 */
-    /* XXH3-64 of everything from which the file was made: model bytes, node pattern, units, sensor positions, and the format version of
+    /* XXH3-64 of all inputs of the file: model bytes, node pattern, units, sensor positions, and the format version of
        plantcast-prep. An asset whose key is unchanged need not be prepared again */
     uint64_t key;
     double origin_m[3];                     /* in the asset frame */
@@ -60,8 +60,7 @@ struct asset_primitive {               /* a range of triangles with one material
 /* a level of detail: its range of primitives, and its number of vertices, which are always the first ones of the file */
 struct asset_level {
     uint32_t first_primitive, primitive_count, vertex_count;
-    /* number of vertices that subdividing triangles added; these are the last vertices of the level that the next coarser level does not
-       have */
+    /* number of vertices made by subdividing triangles; they come last among the vertices that this level adds to the next coarser one */
     uint32_t added_count;
     float error_m; /* largest distance in metres of the level's surface from that of the finest level; 0 for the finest level */
 };
@@ -98,8 +97,8 @@ struct asset_sensor {
     float surface_m[3];       /* point of the surface nearest to position_m, relative to header.origin_m */
     float surface_distance_m; /* distance between position_m and surface_m */
     uint32_t nearest_vertex;
-    /* hash (XXH3-64) of the model node or of the assumed place that gave the position, by which the daemon checks that the file fits the
-       plant; 0: the position was configured as X, Y, Z */
+    /* hash (XXH3-64) of the model node or of the assumed place that gave the position; the daemon uses it to check that the
+       file fits the plant; 0: the position was configured as X, Y, Z */
     uint64_t node_hash;
 };
 
@@ -140,7 +139,7 @@ void asset_cluster_measure(struct asset_cluster *cluster, const float (*position
 /* Returns true if an eye at eye_m (relative to header.origin_m) sees all triangles of the cluster only from behind. */
 bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
 
-/* Contents of an asset file that asset_build() shall make. The caller keeps ownership of all arrays. Zero-initialise. */
+/* Contents of the asset file that asset_build() makes. The caller keeps ownership of all arrays. Zero-initialise. */
 struct asset_parts {
     uint64_t key;
     double origin_m[3];
@@ -152,7 +151,7 @@ struct asset_parts {
     const uint32_t *indices;
     const struct asset_primitive *primitives;
     const struct asset_level *levels;     /* levels of detail; NULL: the asset has one level, with all primitives */
-    const struct asset_cluster *clusters; /* NULL: one for each primitive */
+    const struct asset_cluster *clusters; /* NULL: one cluster for each primitive */
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;

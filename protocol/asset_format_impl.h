@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Declarations that the code for checking and the code for building asset files share. Private to protocol/asset_*.c. */
+/* Declarations shared by the code that checks and the code that builds asset files. Private to protocol/asset_*.c. */
 #ifndef PROTOCOL_ASSET_FORMAT_IMPL_H
 #define PROTOCOL_ASSET_FORMAT_IMPL_H
 #include "protocol/asset_format.h"

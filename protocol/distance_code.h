@@ -11,10 +11,10 @@
 
 #define ASSET_DISTANCE_BLOCK 256u       /* number of vertices per block; the last block is padded (ASSET.md) */
 #define ASSET_DISTANCE_NONE 0xffffu     /* infinity: not reachable */
-#define ASSET_DISTANCE_MOST_M 130000.0f /* largest distance in metres that a code can have; longer distances are stored as this one */
+#define ASSET_DISTANCE_MOST_M 130000.0f /* largest distance in metres that a code can represent; longer distances are stored as this one */
 
-/* Returns the distance in metres that a code encodes; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that loops that are compiled for
-   several kinds of processors contain it. */
+/* Returns the distance in metres that a code encodes; INFINITY for ASSET_DISTANCE_NONE. Always inlined into loops that are
+   compiled for several types of processors. */
 static inline __attribute__((always_inline)) float asset_distance_of(uint16_t code)
 {
     uint32_t bits = (uint32_t)code << 12;

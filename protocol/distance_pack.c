@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs distance codes. Each code is predicted from the code eight vertices before, and from how the distance from a similar sensor
-   changes. The differences are stored with as few bits as the largest one of a group needs. */
+/* Packs distance codes. Each code is predicted from the code eight vertices before, and from the change of a similar sensor's
+   distance. A group's differences from the predictions are stored with as few bits as its largest difference needs. */
 #include "protocol/distance_pack.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "protocol/distance_code.h"
 
 #define BLOCK ASSET_DISTANCE_BLOCK
-/* number of vertices that are computed at a time, with vector instructions: each code is predicted from the code LANES vertices before */
+/* number of vertices processed at a time, with vector instructions: each code is predicted from the code LANES vertices before */
 #define LANES 8u
 #define GROUP 128u
 #define GROUPS (BLOCK / GROUP)
@@ -65,7 +65,7 @@ static bool all_reached(const uint16_t *codes)
     return reached;
 }
 
-/* Writes, for SAMPLES vertices, how much the sensor's distance changes over LANES vertices; sensors with like changes are similar. */
+/* Writes how much the sensor's distance changes over LANES vertices, at SAMPLES vertices; similar changes mean similar sensors. */
 static void sample_slopes(const uint16_t *codes, float slope_m[SAMPLES])
 {
     for (size_t i = 0; i < SAMPLES; i++) {

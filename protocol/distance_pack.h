@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lossless packing of geodesic distances in asset files of many sensors (ASSET.md). Packed codes take 40 % of the bytes. One call packs one
-   block of ASSET_DISTANCE_BLOCK vertices with the codes of all sensors (distance_code.h). Thread: any. */
+/* Lossless packing of geodesic distances in asset files of many sensors (ASSET.md). It reduces the codes to 40 % of their size.
+   One call packs one block of ASSET_DISTANCE_BLOCK vertices with the codes of all sensors (distance_code.h). Thread: any. */
 #ifndef PROTOCOL_DISTANCE_PACK_H
 #define PROTOCOL_DISTANCE_PACK_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* assets with fewer sensors have distance codes that are not packed, which readers use without a copy */
+/* assets with fewer sensors have unpacked distance codes, which readers use without a copy */
 #define DISTANCE_PACK_MIN_SENSORS 64u
-#define DISTANCE_PACK_NEAR 12u        /* maximum number of similar sensors among which the packer chooses a sensor's `parent` */
+#define DISTANCE_PACK_NEAR 12u        /* maximum number of similar sensors from which the packer chooses a sensor's `parent` */
 
 /* Returns the largest size in bytes of a packed block. */
 size_t distance_pack_bound(size_t sensor_count);
@@ -17,7 +17,7 @@ size_t distance_pack_bound(size_t sensor_count);
    similar to those of s, from which the packer chooses the one that predicts best; unused entries are s. out: distance_pack_bound() bytes.
    Returns the number of bytes used, a multiple of 16, or 0 if out of memory. */
 size_t distance_pack(const uint16_t *codes, size_t sensor_count, const uint16_t (*near)[DISTANCE_PACK_NEAR], uint8_t *out);
-/* Returns whether the memory of `bytes` bytes from `block` on holds a valid block, so that distance_unpack() reads nothing beyond it. */
+/* Returns whether the `bytes` bytes from `block` on hold a valid block, so that distance_unpack() reads nothing beyond them. */
 bool distance_pack_good(const uint8_t *block, size_t bytes, size_t sensor_count);
 /* Unpacks a block for which distance_pack_good() returned true. codes: [sensor][ASSET_DISTANCE_BLOCK]. */
 void distance_unpack(const uint8_t *block, size_t sensor_count, uint16_t *codes);

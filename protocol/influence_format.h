@@ -12,12 +12,13 @@
 struct influence_header {
     uint32_t entry_count, vertex_count;
 };
-/* Value of influence_entry.interpolation for an entry that has no weights: its `shares` are distances by the heat method on a point cloud,
-   in metres, INFINITY where there is no path. Its precision matrix is 0. */
+/* Value of influence_entry.interpolation for an entry without weights: its `shares` are distances by the heat method on a point
+   cloud, in metres, INFINITY where there is no path. Its precision matrix is 0. */
 #define INFLUENCE_HEAT 1000
-/* Value of influence_entry.interpolation for an entry that has no weights: its `shares` are angles in radians of a direction that was
-   carried along the surface from the sensor to each vertex, from the first to the second axis that vec_frame() gives for the vertex's
-   normal; INFINITY where there is no path. Its precision matrix is 0. Only differences between two vertices have a meaning. */
+/* Value of influence_entry.interpolation for an entry without weights: its `shares` are angles in radians, one for each sensor
+   and vertex. The angle is the direction that results from carrying a fixed direction along the surface from the sensor to the
+   vertex. It is measured from the first to the second axis that vec_frame() gives for the vertex's normal; INFINITY where there
+   is no path. The precision matrix is 0. Only differences between two vertices have a meaning. */
 #define INFLUENCE_TRANSPORT 1001
 /* Entry of an influence file: the weights of the sensors of one group for one interpolation. Offsets of arrays are in bytes from the start
    of the file and multiples of 8. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes and decodes what the legend strip says about the colour scale, with Reed-Solomon over GF(256) (polynomial 0x11d, first root
-   alpha^0). */
+/* Encodes and decodes the legend strip's description of the colour scale, with Reed-Solomon over GF(256) (polynomial 0x11d,
+   first root alpha^0). */
 #include "protocol/strip_format.h"
 
 #include <math.h>

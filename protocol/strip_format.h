@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend strip: rows of coloured cells along a picture's lower edge. From them programs read which value a colour means, also after
-   JPEG compression or from a screenshot. Layout and code: HTTP.md, *Legend strip*. Pure. Thread: any. */
+/* The legend strip: rows of coloured cells along a picture's lower edge. Programs read from them which value a colour means,
+   even after JPEG compression or from a screenshot. Layout and code: HTTP.md, *Legend strip*. Pure. Thread: any. */
 #ifndef PROTOCOL_STRIP_FORMAT_H
 #define PROTOCOL_STRIP_FORMAT_H
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sizes in cells. At the left and right end is a finder, a pattern of columns by which programs find the strip: dark, light, dark, light,
-   dark columns 1, 1, 3, 1, 1 cells wide, between light ones. Between the finders are three rows of colours, each two cells high and in a
-   different brightness, then the rows of dark and light cells that contain the code. A light row is above all these rows and one is
-   below. */
+/* Sizes in cells. Programs find the strip by a finder at each end, a pattern of columns: dark, light, dark, light, dark columns
+   1, 1, 3, 1, 1 cells wide, between light ones. Between the finders are three rows of colours, each two cells high and in a
+   different brightness, then the rows of dark and light cells that contain the code. A light row is above all these rows and
+   one is below. */
 enum { STRIP_COLUMNS = 200, STRIP_FINDER = 9, STRIP_INNER = STRIP_COLUMNS - 2 * STRIP_FINDER };
 enum { STRIP_SHADES = 3, STRIP_SHADE_CELLS = 2, STRIP_CODE_ROWS = 3, STRIP_ROWS = 2 + STRIP_SHADES * STRIP_SHADE_CELLS + STRIP_CODE_ROWS };
 /* Columns of the legend strip between its finders. STRIP_BEYOND: number at each end with the colour of values beyond the colour scale;
    STRIP_RAMP: number with the colours of the scale. */
 enum { STRIP_BEYOND = 4, STRIP_RAMP = STRIP_INNER - 2 * STRIP_BEYOND };
-enum { STRIP_LEAST_PX = 3 }; /* smallest size of a cell */
+enum { STRIP_LEAST_PX = 3 }; /* minimum size of a cell */
 /* Sizes of the strip's code in bytes: STRIP_DATA of contents, then STRIP_PARITY of Reed-Solomon parity, which can correct up to
    STRIP_PARITY / 2 wrong bytes. */
 enum { STRIP_DATA = 44, STRIP_PARITY = 24, STRIP_BYTES = STRIP_DATA + STRIP_PARITY };

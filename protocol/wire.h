@@ -38,7 +38,7 @@ struct wire_frame { /* header of the binary message with a frame; the members ar
     uint32_t oldest_age_ms; /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
     /* time of the readings, and time at which the frame was sent: microseconds since 1970, UTC, by the server's clock */
     uint64_t data_time_us, sent_time_us;
-    /* durations in microseconds: from the client's input to the start of rendering, then of computing the field, rendering and encoding */
+    /* durations in microseconds: from client input to start of rendering, computing the field, rendering, encoding */
     uint32_t wait_us, field_us, render_us, encode_us;
     uint16_t x_px, y_px, width_px, height_px; /* rectangle of the view that the payload contains */
     uint16_t full_width_px, full_height_px;
@@ -68,8 +68,7 @@ void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADE
 /* Reads the header of a message. bytes: the whole message, header and payload. Checks length, ranges and finiteness; accepts unknown flags.
    Returns false if the message is no frame of this protocol; *frame is then undefined. */
 bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame);
-/* Returns true if a message of `count` bytes is a frame that the server cut short: it is shorter than the header in its first bytes
-   says. */
+/* Returns true if a message of `count` bytes is a frame that the server cut short: the message is shorter than its header says. */
 bool wire_is_given_up(const uint8_t bytes[WIRE_FRAME_HEADER_BYTES], size_t count);
 
 #endif

@@ -57,7 +57,8 @@ float opening(vec3 p, vec2 slope, int i)
     return sum / float(TAPS);
 }
 
-// Returns which fraction (0..1) of the sky and ground that the surface faces no asset hides, weighted by the brightness of a typical sky.
+// Returns the fraction (0..1) of the sky and ground in front of the surface that no asset hides, weighted by the brightness of
+// a typical sky.
 float openness(vec3 place, vec3 normal)
 {
     float open = 0.0, all = 0.0;
@@ -88,8 +89,8 @@ vec3 vertex_normal(uint i)
 #endif
 
 #ifdef FACES
-// Computes the light at sample i % 6 of large triangle i / 6 and adds it to the sums of the triangle's corners. Three of the six samples
-// are towards the corners, three near the middles of the edges.
+// Computes the light at sample i % 6 of large triangle i / 6 and adds it to the sums of the triangle's corners. Three of the
+// six samples are near the corners, three near the middles of the edges.
 void look_within(int i)
 {
     int k = i % 6, first = i / 6 * 3;

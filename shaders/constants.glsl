@@ -4,7 +4,7 @@
 #ifndef CONSTANTS_GLSL
 #define CONSTANTS_GLSL
 
-// Weights of the light from sky and ground, and of sunlight, in the brightness of a surface (light_scalar() in light.glsl).
+// Weights in a surface's brightness of the light from sky and ground, and of sunlight (light_scalar() in light.glsl).
 #define LIGHT_AMBIENT 0.52
 #define LIGHT_SUN 0.48
 // Brightness of the light from sky and sun, relative to white.
@@ -15,7 +15,7 @@
 // Parameters of the Khronos PBR Neutral tone mapper.
 #define TONE_START 0.76
 #define TONE_DESATURATION 0.15
-// Assets without a field are muted: MUTED_PART of their colour is this grey.
+// Assets without a field are muted: their colour is mixed with this grey, whose share is MUTED_PART.
 #define MUTED_GREY 0.88
 #define MUTED_PART 0.48
 // Weights of the sRGB channels in the brightness of a colour.
@@ -25,14 +25,14 @@
 // A normal is flipped towards the viewer if its cosine to the viewer is less than this. At smoothed rims, slightly negative cosines are
 // expected.
 #define MOST_AWAY -0.3
-// Minimum openness of surfaces seen from behind, because the baked openness is that of the front side.
+// Minimum openness of surfaces seen from behind, because the baked openness applies to the front.
 #define OPEN_BEHIND 0.7
 // Frames in the glossy look use softer light, so that colours of the field stay recognisable in shadow.
 #define GLOSSY_OPEN 0.3
 #define GLOSSY_SKY 1.45
 #define GLOSSY_SUN 0.75
 #define GLOSSY_DARKEST 0.22
-// Strength of the ground's shadow: from the sun, from the sky, and the maximum of both together.
+// Strength of the ground's shadow: from the sun, from the sky, and the maximum of their sum.
 #define GROUND_SUN 0.20
 #define GROUND_SKY 0.42
 #define GROUND_MOST 0.5

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reduces a depth buffer to the cells of a depth grid, which tells clients the distances of a picture's surfaces at a coarse resolution.
-// One cell per invocation; server/render/soft/depth_cells.c gives the same cells.
+// Reduces a depth buffer to the cells of a depth grid, which tells clients the distances of a picture's surfaces at a coarse
+// resolution. One cell per invocation; server/render/soft/depth_cells.c computes the same cells.
 layout(local_size_x = 64) in;
 struct Cell {
     float near, far;
@@ -8,7 +8,7 @@ struct Cell {
 };
 layout(std430, binding = 0) buffer Cells { Cell cells[]; };
 layout(location = 0) uniform ivec2 grid; // columns and rows of the depth grid
-layout(location = 1) uniform vec2 steps; // x, y: a difference of depth that is larger than x * depth + y counts as a step
+layout(location = 1) uniform vec2 steps; // x, y: a difference of depth larger than x * depth + y counts as a step
 layout(binding = 0) uniform sampler2D depth;
 const int SIDE = 8;
 const float LEAST_GAP = 0.25;

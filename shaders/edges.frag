@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Feature edges: thin dark lines where depth has a step, on the farther side, so that they do not cover the field in front. Lines on both
-// sides would hide shapes a few pixels wide; thinner shapes get fainter lines, so that along a pole, whose width varies by a pixel, a line
-// does not flicker.
+// Feature edges: thin dark lines where depth has a step, on the farther side, so that they do not cover the field in front.
+// Lines on both sides would hide shapes only a few pixels wide. Thinner shapes get fainter lines, because a pole's width varies
+// by a pixel and its line would flicker.
 #include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2D depth;
@@ -13,7 +13,7 @@ float at(ivec2 pixel)
     return texelFetch(depth, clamp(pixel, ivec2(0), textureSize(depth, 0) - 1), 0).r;
 }
 
-// Returns the opacity (0..1) of the line for a step of depth, relative to distance.
+// Returns the opacity (0..1) of the line at a depth step; `rise`: the step relative to distance.
 float line(float rise)
 {
     return smoothstep(EDGE_FROM, EDGE_TO, rise);

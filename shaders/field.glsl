@@ -5,7 +5,7 @@
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
-layout(binding = 15) uniform sampler2D lines; // lookup table by position on the scale: the nearest position that has an isoline
+layout(binding = 15) uniform sampler2D lines; // lookup table by position on the scale: position of the nearest isoline
 #endif
 
 const int PLACES = COLORMAP_PLACES, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,

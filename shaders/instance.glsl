@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data that differ between the assets that one draw call draws: placement, and light and field per vertex, in buffers that many assets
-// share (gpu/pool.h). The layout must match struct draw_instance.
+// Per-asset data for draw calls that draw several assets: placement, and light and field per vertex, in buffers that many
+// assets share (gpu/pool.h). The layout must match struct draw_instance.
 
 // rows of the matrix for normals. Their fourth elements: index of the asset's first block in `lights`; index of its first block in
 // `scalars` (-1: no field); unused

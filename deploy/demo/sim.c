@@ -226,7 +226,7 @@ static int run_sim(struct sim_options *options)
     bool good = false;
     struct plant *plant = plant_load(options->plant, &diag);
     if (plant) {
-        timestamp_use_zone(plant->time_zone); /* recorded series state times in the plant's time zone */
+        timestamp_use_zone(plant->time_zone); /* recorded series have times in the plant's time zone */
         read_map_file(options, &diag);
         values = sim_values_create(plant, &options->map, options->loop || options->map.loop, &diag);
     }

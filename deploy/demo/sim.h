@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The simulated Modbus devices of a plant, one for each port that its sources name, and its MQTT publisher. Thread: one. */
+/* The simulated Modbus devices of a plant, one for each port in its sources, and its MQTT publisher. Thread: one. */
 #ifndef DEMO_SIM_H
 #define DEMO_SIM_H
 #include "sim_modbus.h"
@@ -8,7 +8,7 @@
 
 struct sim_device {
     struct sim_modbus modbus;
-    int port;        /* TCP port of the device as the plant file states it */
+    int port;        /* TCP port of the device in the plant file */
     int listen_port; /* port on which the simulator listens for this device */
     size_t tag_count;
 };

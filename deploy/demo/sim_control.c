@@ -20,7 +20,7 @@ const char sim_control_help[] =
     "  The answer to each command is one line: `ok`, `ok ...` or `error: ...`.\n";
 
 struct sim_command {
-    const char *name, *tag, *value; /* the three parts of the command; "": the command lacks the part */
+    const char *name, *tag, *value; /* the three parts of the command; "": the part is missing */
 };
 
 static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, size_t bytes)
@@ -38,7 +38,7 @@ static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, 
         sim_values_force(sim->values, tag, value);
 }
 
-/* Executes the commands for tags that are published over MQTT, which have no device. */
+/* Executes commands for tags published over MQTT, which have no device. */
 static void do_with_published(struct sim *sim, const struct sim_command *command, size_t tag, char *reply, size_t bytes)
 {
     char *end;
@@ -122,7 +122,7 @@ static void execute(struct sim *sim, const struct sim_command *command, char *re
         snprintf(reply, bytes, "error: unknown command %s", command->name);
 }
 
-/* Splits a line into command, tag and value. The value is the last word, so that a tag's name may contain blanks. */
+/* Splits a line into command, tag and value. The value is the last word, so that a tag's name may contain spaces. */
 static struct sim_command parse(char *line)
 {
     struct sim_command command = { "", "", "" };

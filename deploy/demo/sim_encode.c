@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes a value as a device does: reverses the scaling, makes bytes with the most significant first, and places them by the byte
-   order. */
+/* Encodes a value as a device does: reverses the scaling, splits the result into bytes (most significant first), and arranges
+   them in the tag's byte order. */
 #include "sim_encode.h"
 
 #include <math.h>

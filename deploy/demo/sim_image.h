@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The registers of one simulated device, in each of its units. Only registers that some tag names exist. Thread: one. */
+/* The registers of one simulated device, in each of its units. Only registers used by a tag exist. Thread: one. */
 #ifndef DEMO_SIM_IMAGE_H
 #define DEMO_SIM_IMAGE_H
 #include <modbus.h>
@@ -20,7 +20,7 @@ void sim_image_add(struct sim_image *image, int unit, const struct plant_tag *ta
 bool sim_image_set(struct sim_image *image, int unit, const struct plant_tag *tag, double value);
 /* Makes the device refuse requests that include the tag, or accept them again. */
 void sim_image_fail(struct sim_image *image, int unit, const struct plant_tag *tag, bool failing);
-/* Returns 0, or the exception code with which a request for these registers is refused. */
+/* Returns 0, or the Modbus exception code of the reply to a request for these registers. */
 int sim_image_refusal(const struct sim_image *image, int unit, enum register_table table, int first, int count);
 /* Returns the registers of a unit for libmodbus; NULL if there is no such unit. */
 modbus_mapping_t *sim_image_mapping(struct sim_image *image, int unit);

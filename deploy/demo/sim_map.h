@@ -21,7 +21,7 @@ struct sim_map { /* zero-initialise */
     size_t file_count, file_capacity;
     char **map_files;
     size_t map_file_count, map_file_capacity;
-    double speed; /* speed of the replay, as a factor; 0: not stated */
+    double speed; /* replay speed as a factor; 0: not given */
     bool loop;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Publishes one message per topic; a JSON message has the values of all tags of the topic. */
+/* Publishes one message per topic; a JSON message contains the values of all tags of the topic. */
 #include "sim_mqtt.h"
 
 #include <jansson.h>
@@ -97,7 +97,7 @@ size_t sim_mqtt_tag_count(const struct sim_mqtt *mqtt)
 
 /* --- publishing ------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the object that a filter's comparisons describe, such as {"id": "A.T2"}; NULL if a path in them has several steps. */
+/* Returns an object that passes a filter's comparisons, such as {"id": "A.T2"}; NULL if a path in them has several steps. */
 static json_t *described(const struct json_path_step *filter)
 {
     json_t *object = json_object();
@@ -185,8 +185,8 @@ static void put(json_t **root, const char *path, json_t *value)
         json_array_set_new(*root, (size_t)at, made);
 }
 
-/* Puts a value at a path that the source states (value, time or quality). A path that begins with `@` starts in the object that contains
-   the value at the path `of`. */
+/* Puts a value at a path that the source configures (for value, time or quality). A path that begins with `@` starts in the
+   object that contains the value at the path `of`. */
 static void put_stated(json_t **root, const char *path, const char *of, json_t *value)
 {
     struct json_path_step step;

@@ -14,7 +14,7 @@ static const double MAX_STEP_S = 1.0, TAU = 6.283185307179586;
 #define T PROCESS_TEMPERATURE
 #define P PROCESS_PRESSURE
 #define V PROCESS_VIBRATION
-#define MACHINE "machine" /* pseudo loop name: the effect applies to machines, in each cycle to another one */
+#define MACHINE "machine" /* pseudo loop name: the effect applies to machines, to a different one in each cycle */
 
 struct effect {
     const char *word; /* the effect applies to loops whose names contain this word; or MACHINE */

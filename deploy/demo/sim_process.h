@@ -11,9 +11,9 @@ enum process_kind { PROCESS_TEMPERATURE, PROCESS_PRESSURE, PROCESS_VIBRATION, PR
 struct process_tag {
     enum process_kind kind;
     double normal;    /* operating value of the tag, around which it drifts */
-    double span;      /* width of the tag's range; drifts and upsets are stated as fractions of this width */
+    double span;      /* width of the tag's range; drifts and upsets are given as fractions of this width */
     const char *name; /* name and loop may be freed after the call */
-    const char *loop; /* any word: upsets affect the loops that --help lists; others drift with a phase derived from the word */
+    const char *loop; /* any word: upsets affect the loops listed by --help; other loops drift with a phase derived from the word */
 };
 
 struct process;

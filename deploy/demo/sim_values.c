@@ -53,7 +53,7 @@ static enum process_kind kind_of(const struct plant *plant, const struct plant_t
     return mentions(quantity, vibration) || mentions(unit, speeds) ? PROCESS_VIBRATION : PROCESS_OTHER;
 }
 
-/* Chooses a tag's range in the device's own unit. Without stated values, the tag runs at 40 % of its range. */
+/* Chooses a tag's range in the device's own unit. The operating value is 40 % of the range, unless the tag list has a `Sim Value`. */
 static void choose_range(const struct plant *plant, const struct plant_tag *tag, struct process_tag *out)
 {
     double low = 0, high = 100;
@@ -114,7 +114,7 @@ static const struct series *find_series(struct sim_values *values, const struct 
     return found ? &values->series[values->series_count++] : NULL;
 }
 
-/* Sets the unit conversion of a tag with a series: from the unit that the file states to the unit of the tag's row. */
+/* Sets the unit conversion of a tag with a series: from the unit in the series' file to the unit in the tag's row of the tag list. */
 static void take_unit(struct sim_values *values, const struct sim_map_entry *entry, size_t tag, struct diag *diag)
 {
     const char *unit = values->tags[tag].series ? values->tags[tag].series->unit : NULL, *own = values->plant->tags[tag].scale.own_unit;

@@ -139,7 +139,7 @@ function squares(picture, makeCanvas) {
     });
 }
 
-// Decodes both test frames and compares the colours of their squares. Returns null, or a text that says what is wrong.
+// Decodes both test frames and compares the colours of their squares. Returns null, or a text that describes the fault.
 export async function whatIsWrong(decoder, makeCanvas = (w, h) => new OffscreenCanvas(w, h)) {
     try {
         (await decoder.decode({ key: true, payload: decodeBase64(PROOF_KEY) })).close();

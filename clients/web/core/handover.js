@@ -3,17 +3,17 @@
 import { fieldInstant, fieldText } from './instant.js';
 
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
-const SAME_ACT_US = 1e6; // an operator's equal actions on several alarms of a tag count as one action if they are less than this apart
+const SAME_ACT_US = 1e6; // an operator's equal actions on several alarms of a tag within this time count as one action
 
-// Puts the alarms of /api/v1/alarms into a model, so that they are counted and sorted as on the page: one alarm for each tag.
+// Puts the alarms of /api/v1/alarms into a model, which counts and sorts them as the page does: one alarm for each tag.
 export function hearAlarms(model, { mode, alarms }) {
     const rows = alarms.map((one) => [one.kind === 'LINK' ? one.tag : model.tag(one.tag)?.index, one.kind, one.state, one.priority,
         one.raised_us, one.value, one.limit, one.active, one.held, one.until_us, one.who, one.reason]);
     model.alarms.hear({ mode, all: true, alarms: rows });
 }
 
-// Adds a row of the journal that raises an alarm to the map `raised`. An alarm that rises from H to HH is still the same alarm of its tag,
-// and is not counted again.
+// Adds a row of the journal that raises an alarm to the map `raised`. An alarm that rises from H to HH remains the same alarm
+// of its tag and is not counted again.
 function addRaise(raised, { tag, kind, priority, value, limit, unit, time_us: us }) {
     const known = raised.get(tag) ?? { tag, kinds: [], priority, count: 0, first: us, active: new Set() };
     const isNew = known.active.size === 0 || known.active.has(kind);

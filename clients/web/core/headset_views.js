@@ -8,11 +8,11 @@ import { add, along, cross, dot, length, middle, scale, subtract, unit } from '.
 
 // MAX_TAN, LEAST_TAN: bounds for the tangent of half the field of view, because the server accepts 1 to 120 degrees
 const MAX_TAN = Math.tan(60 * RADIANS), LEAST_TAN = 0.02;
-// factor by which the picture is wider than the field that both eyes see, so that a turned head finds most of its view drawn
+// ratio of the picture's width to the field that both eyes see, so that a turned head finds most of its view drawn
 const MARGIN = 1.15;
 // MOST_PX: maximum number of pixels of a picture that is requested; STEP_PX: step along a ray in hitOf(), in pixels
 const MOST_PX = 4e6, STEP_PX = 2;
-// largest plausible resolution of an eye, in pixels per tangent of 1; higher values of a device are replaced by this one
+// largest plausible resolution of an eye, in pixels per tangent of 1; larger values from a device are replaced by this one
 const MOST_DENSITY = 4096;
 const NEAREST_M = 0.05, FARTHEST_M = 1000; // ends of a ray
 export const STAND_M = 1.6; // height of the eyes above the floor in metres, for devices that do not report it
@@ -62,8 +62,8 @@ export function clipOf({ axes, projection: p }, [v, h], nearest) {
     return [across(0), across(1), w * (1 - 1e-6) - 2 * nearest * h, w];
 }
 
-// Returns the 4x4 matrix, column by column, from [x, y, depth, 1] of a depth grid to clip coordinates of an eye. camera: that of the
-// picture to which the grid belongs.
+// Returns the 4x4 matrix, column by column, from [x, y, depth, 1] of a depth grid to clip coordinates of an eye. camera: camera
+// of the grid's picture.
 export const eyeMatrix = (grid, camera, eye, nearest) =>
     gridColumns(grid, camera, eye.at).flatMap((column) => clipOf(eye, column, nearest));
 
@@ -111,7 +111,7 @@ export function pointAt(grid, camera, x, y, depth) {
     return scale(v, 1 / h);
 }
 
-// Returns the part [from, to] (0 to 1) of the segment from a to b that is within a picture of that size; null: no part.
+// Returns the part [from, to] (0 to 1) of the segment from a to b that is within a picture of size `size`; null: no part.
 function within(a, b, size) {
     let from = 0, to = 1;
     for (const i of [0, 1]) {
@@ -124,8 +124,8 @@ function within(a, b, size) {
     return from < to ? [from, to] : null;
 }
 
-// Returns where a ray first meets a surface of a perspective picture: { point, x, y }; null if the picture shows none there. In pixels and
-// 1/z, a ray is a straight line, too.
+// Returns where a ray first meets a surface that a perspective picture shows: { point, x, y }; null if it meets none. A ray is
+// also a straight line in pixels and 1/z.
 export function hitOf(grid, camera, origin, direction) {
     const { forward, right, up } = basis(camera), { width, height } = grid, px = height / heightAt(camera, 1);
     const seen = (v, h) => {

@@ -44,7 +44,8 @@ export function simulatedText({ model, picture, time }) {
     return say(simulated < links.length ? 'simulated.partly' : 'simulated.all');
 }
 
-// Describes that a past instant is shown: that of the picture on the screen if it shows the past, otherwise the requested one.
+// Describes the past instant that is shown: the picture's instant if the picture on the screen shows the past, otherwise the
+// requested one.
 function past({ picture, time, model }) {
     const us = picture?.past ? picture.dataTimeUs : time.atUs;
     const { date, time: clock, offset } = zoneClock(model.plant.time_zone)(us / 1000);

@@ -42,8 +42,8 @@ export function line(series, fromUs, toUs) {
     return [xs, ys];
 }
 
-// Adds a recorded point to a chart's line. Where no straight line leads to the point (HISTORY.md), the value before holds until just before
-// the point.
+// Adds a recorded point to a chart's line. Where no straight line leads to the point (HISTORY.md), the previous value holds
+// until just before the point.
 function putPoint(put, [us, value, quality], before, step) {
     const shown = severityOf(quality) === BAD ? null : value, isJoined = !step && shown !== null && before?.[2] === quality;
     if (!isJoined && before && before[1] !== null && severityOf(before[2]) !== BAD)
@@ -55,7 +55,7 @@ function putPoint(put, [us, value, quality], before, step) {
 // ends without a value (`last` null) breaks the line, even at the end of the series.
 function putInterval(put, [us, low, , mean, first, last], length, before, after) {
     const adjoins = (other) => other && other[1] !== null && Math.abs(other[0] - us) <= length * 1.001;
-    if (low === null && first !== null) // the value before holds until the start of the interval
+    if (low === null && first !== null) // the previous value holds until the start of the interval
         put(us - 1, first);
     if (low === null)
         return put(us, null);
@@ -114,8 +114,8 @@ export function lost(all, fromUs, toUs) {
     return all.length > 0 ? common : [];
 }
 
-// Returns the different alarm limits of tags, to be drawn as lines: [{ scale, name, value, tags }]. scaleOf(tag) returns the tag's axis.
-// tags: those that have the limit; empty if all tags on that axis have it.
+// Returns the distinct alarm limits of tags, to be drawn as lines: [{ scale, name, value, tags }]. scaleOf(tag) returns the
+// tag's axis. tags: those that have the limit; empty if all tags on that axis have it.
 export function limitLines(tags, scaleOf) {
     const lines = new Map();
     for (const tag of tags) {
@@ -172,7 +172,7 @@ export function density(marks, fromUs, toUs, count) {
     return { bins, most: bins.reduce((most, bin) => Math.max(most, bin.count), 0) };
 }
 
-// Returns by how many seconds an arrow key moves a time slider that covers spanS seconds; at most a minute.
+// Returns how many seconds one press of an arrow key moves a time slider that covers spanS seconds; at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
 
 const MOST_TICKS = 1000;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Decides which sensor labels are shown next to their markers, and where (protocol/LABELS.md).
 
-// SPACINGS: smallest distances between labels, as fractions of the area's width, tried in this order; HELD: factor on spacing and depth for
-// labels that were in the previous picture, so that they tend to stay
+// SPACINGS: minimum distances between labels, as fractions of the area's width, tried in this order; HELD: factor on spacing
+// and depth for labels of the previous picture, which makes them tend to stay
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8;
 const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
 export const CLEARANCE = 3;
@@ -46,8 +46,8 @@ class Taken {
             this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    // Returns true if the box meets an occupied one. over: which markers do not count: 1: markers without an alarm ring; 2: all markers.
-    // owner: item whose own marker does not count.
+    // Returns true if the box meets an occupied one. over: markers to ignore: 1: those without an alarm ring; 2: all. owner:
+    // item whose own marker is ignored.
     meets(box, owner, over = 0) {
         return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) =>
             other.owner !== owner && !(other.mark <= over) && meets(box, other)));

@@ -69,7 +69,7 @@ export function edges(scale) {
     return count <= 64 && Number.isFinite(min) ? Array.from({ length: count - 1 }, (_, i) => min + (i + 1) * interval) : [];
 }
 
-// Returns the position on the colour map (0..1) whose colour a value's band has. The last band includes its upper end.
+// Returns the position on the colour map (0..1) of the colour of a value's band. The last band includes its upper end.
 function bandPlace(scale, value) {
     const { min, max, interval } = scale;
     if (scale.breaks?.length > 0) {

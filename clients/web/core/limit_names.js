@@ -63,7 +63,7 @@ export function placeNames({ limits, bbox, extents, widthOf, height, gap }) {
         box.top >= other.bottom || box.bottom <= other.top);
     const isFree = (box) => isApart(box) && !extents.some((extent) => extent.isIn(box));
     const crosses = (box, own) => limits.some(({ y }) => y !== own && y > box.top && y < box.bottom);
-    // Returns the first free place with that distance from the limit's line to the name's middle.
+    // Returns the first free place whose middle is `away` from the limit's line.
     const placeOf = (limit, text, away) => {
         const highest = bbox.top + height / 2, lowest = bbox.top + bbox.height - height / 2, wide = widthOf(text);
         const middle = Math.min(lowest, Math.max(highest, limit.y + away));

@@ -16,7 +16,7 @@ export function shareLinks({ location, session, tag }) {
         links.tag = page + writeAddress({ tag });
     if (asset)
         links.asset = page + writeAddress({ params: { selected: asset } });
-    // name of this server among several behind a load balancer: with it, the load balancer sends followers to the same server
+    // name of this server behind a load balancer, which uses the name to send followers to the same server
     const { node } = session.model?.plant ?? {};
     links.follow = `${page}${node ? `?node=${node}` : ''}#follow=${session.following?.session ?? session.id}`;
     return links;

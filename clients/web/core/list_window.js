@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes which rows of a long list must be in the document, because they can be seen. Rows may differ in height.
+// Computes which rows of a long list are visible and therefore must be in the document. Rows may differ in height.
 
-// Returns the upper edges of rows from their heights: { tops }, a Float64Array with the total height as its last element.
+// Returns the top edges of rows, computed from their heights: { tops }, a Float64Array with the total height as its last
+// element.
 export function stack(heights) {
     const tops = new Float64Array(heights.length + 1);
     heights.forEach((height, i) => { tops[i + 1] = tops[i] + height; });

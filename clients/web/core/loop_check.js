@@ -3,8 +3,8 @@
 // relative to its noise.
 
 const KEEP = 0.9;        // weight of the old noise estimate when a new value updates the estimate
-const FLOOR = 0.002;     // smallest change of a reading that counts, as a fraction of the tag's range
-const LEAST_RATIO = 8;   // smallest change of a reading that counts, as a multiple of the tag's noise
+const FLOOR = 0.002;     // minimum change of a reading, as a fraction of the tag's range; smaller changes are ignored
+const LEAST_RATIO = 8;   // minimum change of a reading, as a multiple of the tag's noise; smaller changes are ignored
 
 export class LoopCheckSession {
     constructor() {
@@ -21,7 +21,7 @@ export class LoopCheckSession {
             const before = this.last.get(index);
             this.last.set(index, value);
             if (before === undefined || this.base)
-                return; // while a check is armed, changes are what the check looks for, and do not count as noise
+                return; // the check looks for changes while it is armed, so they do not count as noise
             const step = Math.abs(value - before), known = this.noise.get(index);
             this.noise.set(index, known === undefined ? step : Math.max(known * KEEP, KEEP * known + (1 - KEEP) * step, step / 2));
         });

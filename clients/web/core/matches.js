@@ -41,7 +41,8 @@ export function readMatches(text) {
     }));
 }
 
-// Returns the pattern of a tag name: the name with # for each digit. Decisions about one tag are offered for tags of the same pattern.
+// Returns the pattern of a tag name: the name with # for each digit. A decision about one tag is also offered for tags of the
+// same pattern.
 export const patternOf = (tag) => tag.replace(/\d/g, '#');
 
 // The matches, and decisions about them that are not saved yet.
@@ -97,8 +98,8 @@ export class Matches {
             this.decisions.set(match.tag, { status, asset });
     }
 
-    // Returns the undecided matches whose tags have the same pattern, which the user can accept together, as [match, asset]. asset: the
-    // proposed one, or the one that the user chose for another tag of the pattern, if it is a candidate.
+    // Returns the undecided matches of tags with the same pattern, which the user can accept together, as [match, asset].
+    // asset: the proposed one, or the one that the user chose for another tag of the pattern, if it is a candidate.
     alike({ tag }) {
         const pattern = patternOf(tag), decided = [...this.decisions].filter(([name, { asset }]) => asset && patternOf(name) === pattern);
         return this.all.filter((one) => patternOf(one.tag) === pattern && this.kindOf(one) === 'likely').map((one) => [one, one.asset ||
@@ -120,8 +121,8 @@ export class Matches {
     }
 }
 
-// sizeOf() returns the plant's width, depth and height in metres, multiplied by `times`. timesOf() returns that factor for a model whose
-// unit was taken for `from` and is `to`.
+// sizeOf() returns the plant's width, depth and height in metres, multiplied by `times`. timesOf() returns that factor for a
+// model whose unit was assumed to be `from` but is `to`.
 const METRES = { m: 1, mm: 0.001, cm: 0.01, in: 0.0254, ft: 0.3048 };
 export const sizeOf = ({ min, max }, times = 1) => max.map((x, i) => (x - min[i]) * times);
 export const timesOf = (from, to) => (METRES[to] && METRES[from] ? METRES[to] / METRES[from] : 1);

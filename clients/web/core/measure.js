@@ -11,7 +11,7 @@ export function measure(from, to, up) {
     return { metres, level: Math.sqrt(Math.max(0, metres ** 2 - rise ** 2)), rise };
 }
 
-// Formats metres; short distances to the millimetre.
+// Formats a distance in metres, to the millimetre if it is short.
 export const metresText = (metres) => numberText(metres, Math.abs(metres) < 10 ? 3 : Math.abs(metres) < 100 ? 2 : 1);
 
 // Formats a long distance with its unit, which is km from 10 km on.

@@ -29,8 +29,8 @@ export class LatencyMeter {
         this.inputs.set(seq, inputTime);
     }
 
-    // Handles a picture that was drawn. It answers the input of its own camera and all earlier inputs. Only the latency of its own input is
-    // measured, and only once.
+    // Handles a drawn picture, which answers the input of its own camera and all earlier inputs. Only the latency of its own
+    // input is measured, and only once.
     drawn(seq, now) {
         const input = this.inputs.get(seq);
         if (input !== undefined)
@@ -41,7 +41,7 @@ export class LatencyMeter {
         }
     }
 
-    // Returns the age in milliseconds of the oldest input whose picture has not been drawn yet; 0: none is waiting.
+    // Returns the age in milliseconds of the oldest input whose picture has not been drawn yet; 0: there is none.
     behindMs(now) {
         const [oldest = now] = this.inputs.values();
         return now - oldest;

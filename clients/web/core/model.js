@@ -30,7 +30,7 @@ export class Model {
         // true: a past instant is shown (stop())
         this.stopped = false;
         this.clockSet = true; // true: the server's clock is synchronised
-        this.clockErrorMs = null; // maximum clock error; null: unknown
+        this.clockErrorMs = null; // maximum error of the server's clock; null: unknown
         this.leapS = 0; // leap second announced for the end of the month: 1: will be inserted, -1: will be removed, 0: none
         // { ms, at }: at the time `at`, each good or uncertain reading was at most `ms` old; null: unknown
         this.oldest = null;
@@ -103,13 +103,14 @@ export class Model {
         return changed;
     }
 
-    // Stores an upper bound for the ages of all readings. The server sends a reading only when it changes, so unchanged readings would seem
-    // to get old.
+    // Stores an upper bound for the ages of all readings. The server sends a reading only when it changes, so unchanged
+    // readings would otherwise seem to age.
     notOlder(ms, now) {
         this.oldest = ms === null ? null : { ms, at: now };
     }
 
-    // Returns the age of a tag's reading, continued by the page's own clock since the server's message; null if the tag never had a value.
+    // Returns the age of a tag's reading: the age that the server sent, plus the time since then by the page's clock; null if
+    // the tag never had a value.
     ageMs(index, now) {
         const { ageMs, at, quality } = this.readings[index];
         if (ageMs === null)

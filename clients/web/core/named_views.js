@@ -11,8 +11,9 @@ export const textOf = (session, tag = null) => {
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
-// Returns { camera, params, tag } that change a session from any state to the saved view. A view without a camera gets the home camera,
-// which shows the whole plant. id: id of the saved view; from it, the server takes the parameters that only engineers may send.
+// Returns { camera, params, tag } that turn any state of a session into the saved view. A view without a camera gets the home
+// camera, which shows the whole plant. id: id of the saved view. If the user is no engineer, params contain this id instead of
+// the engineer-only parameters, which the server then takes from the saved view.
 export function viewOf(session, text, id) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? group.breaks : null,
@@ -23,24 +24,24 @@ export function viewOf(session, text, id) {
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: sent, tag };
 }
 
-// Returns whether a view has parameters that only engineers may send.
+// Returns true if a view has engineer-only parameters.
 export function isEngineers(text) {
     const { params } = readAddress(text);
     return ENGINEERS.some((name) => params[name] !== undefined);
 }
 
-// Returns those of a session's parameters that only engineers may send, as text; null: all have their default values.
+// Returns a session's engineer-only parameters as text; null: all have their default values.
 export function engineersOf({ params, ownParams: own }) {
     const textFrom = (from) => JSON.stringify(ENGINEERS.map((name) => from[name] ?? {})), text = textFrom(params);
     return text === textFrom(own) ? null : text;
 }
 
-// Returns the session's current parameters, with those that only engineers may send taken from the saved view `id`.
+// Returns the session's current parameters, with the engineer-only ones taken from the saved view `id`.
 export function regained(session, id) {
     return { ...withoutEngineers(viewOf(session, textOf(session)).params), named: id };
 }
 
-// Returns an id made from a title. No other saved view has this id.
+// Makes an id from a title. No other saved view has this id.
 export function idFor(title, views) {
     const plain = title.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '');
     const base = (plain || 'view').slice(0, ID_CHARS - 4), taken = new Set(views.map(({ id }) => id));

@@ -8,7 +8,7 @@ export function halfAt(params, width, x) {
     return all.find((half) => x < half.left + half.width) ?? all[all.length - 1];
 }
 
-// Returns the marker nearest to a position, at most reachPx away, or null. Visible markers are preferred to occluded ones.
+// Returns the marker nearest to a position, at most reachPx away, or null. Visible markers take precedence over occluded ones.
 export function nearestMarker(markers, x, y, reachPx) {
     let best = null, bestRank = Infinity;
     for (const marker of markers) {

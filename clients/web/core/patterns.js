@@ -12,7 +12,7 @@ const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
 // Returns the period of the patterns in pixels, for a picture that is heightPx high.
 export const patternPeriodPx = (heightPx) => Math.max(PATTERNS.PATTERN_LEAST_PX, heightPx / PATTERNS.PATTERN_PERIODS);
 
-// Returns which part (0 to 1) of a pixel is covered by stripes. In this and the functions below, y is upwards, as in OpenGL.
+// Returns how much of a pixel (0 to 1) the stripes cover. In this and the functions below, y points up, as in OpenGL.
 const stripes = (place, edge, period) => clamp((Math.abs(fract(place) - 0.5) - edge) * period + 0.5);
 const hatch = (x, y, period) => stripes((x + y) / (period * PATTERNS.HATCH_SLANT), PATTERNS.HATCH_EDGE, period);
 

@@ -2,10 +2,10 @@
 // Places the pins of shift notes next to their points, where they cover neither legends nor alarm rings nor other pins.
 import { meets } from './labels.js';
 
-// length of a pin's stem in CSS pixels (larger on a wall) if the pin is at its usual position, above and to the right of its point
+// length of a pin's stem in CSS pixels (larger on a wall) at the pin's usual position, above and to the right of its point
 export const STEM = 9;
 const GAP = 2; // units: space between two pins
-const ROWS = 40; // number of heights at which a pin is tried if it must cover alarm rings or markers
+const ROWS = 40; // number of heights to try for a pin that must cover alarm rings or markers
 const FAR = 150; // in CSS pixels (larger on a wall): rather than moving farther than this, a pin covers a marker without an alarm
 
 const enlarge = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
@@ -24,9 +24,9 @@ function slide(box, boxes, step, { top, bottom }) {
     return null;
 }
 
-// Returns the box of a pin in the area, as near as possible to its usual position. x, y: the note's point; wide, high: size of the pin.
-// fixed: boxes of legends and of other pins, which the pin never covers. rings: boxes of alarm rings, of which the pin covers as few as
-// possible. marks: boxes of other markers, which the pin covers if all other room is far.
+// Returns the box of a pin in the area, as near as possible to its usual position. x, y: the note's point; wide, high: size of
+// the pin. fixed: boxes of legends and of other pins, which the pin never covers. rings: boxes of alarm rings, of which the pin
+// covers as few as possible. marks: boxes of other markers, which the pin covers rather than move farther than FAR.
 export function placePin({ x, y, wide, high }, area, fixed, rings, marks = []) {
     const left = Math.max(area.left, Math.min(area.right - wide, x));
     const top = Math.max(area.top, Math.min(area.bottom - high, y - STEM - high));
@@ -35,7 +35,7 @@ export function placePin({ x, y, wide, high }, area, fixed, rings, marks = []) {
         .filter((at) => at >= area.left && at + wide <= area.right), lefts = [left, ...sides];
     const far = (box) => Math.hypot(box.left - left, box.top - top);
     const least = (boxes, cost) => boxes.map((box) => [cost(box), box]).reduce((best, one) => (one[0] < best[0] ? one : best))[1];
-    // room around the ring of the pin's own point, in which the stem is seen
+    // space around the ring of the pin's own point, in which the stem stays visible
     const room = rings.filter((ring) => meets(ring, { left: x, right: x, top: y, bottom: y })).map((ring) => enlarge(ring, STEM));
     const avoided = [...marks, ...room];
     const slid = (boxes) => lefts.flatMap((at) => [-1, 1].map((step) => slide(boxAt(at), boxes, step, area))).filter(Boolean);

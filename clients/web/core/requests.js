@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests to the server that users cause only now and then. (session.js sends the frequent ones: cameras, parameters and
+// Requests to the server that users cause only occasionally. (session.js sends the frequent ones: cameras, parameters and
 // acknowledgements.)
 import { cameraMessage } from './camera.js';
 import { asAsked } from './session.js';
@@ -41,8 +41,8 @@ export function tellAsEngineer(session, type, fields = {}) {
     return session.toldSeq;
 }
 
-// Hands the lead to another session that follows this session's view: this session then follows the other one's view. The server confirms
-// with `following`.
+// Hands the lead to a session that follows this one: from then on, this session follows the other. The server confirms with
+// `following`.
 export function giveLead(session, other) {
     session.post({ type: 'lead', session: other });
 }

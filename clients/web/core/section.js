@@ -20,13 +20,14 @@ export function readCut(clip) {
     return { axis: AXES[index], at: turned ? plane[3] : -plane[3], turned };
 }
 
-// Returns a clip box with the same centre as the bounds. part: each side of the box relative to that of the bounds; 1: the same size.
+// Returns a clip box with the same centre as the bounds. part: ratio of the box's sides to those of the bounds.
 export function boxAround({ min, max }, part) {
     const side = (i, turn) => (min[i] + max[i]) / 2 + (turn * part * (max[i] - min[i])) / 2;
     return { box: { min: [0, 1, 2].map((i) => side(i, -1)), max: [0, 1, 2].map((i) => side(i, 1)) } };
 }
 
-// Returns the argument `part` of a box that boxAround() made; null for other clips, and for boxes that the user dragged to another shape.
+// Returns the `part` with which boxAround() made a box; null for other clips, and for boxes that the user dragged to another
+// shape.
 export function readBox(clip, bounds) {
     if (!clip?.box)
         return null;

@@ -13,10 +13,10 @@ export const PARAMS = [
     'show', 'split',
 ];
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // parameters that the server reports
-// Parameters that only engineers may send. The build makes the server's list from this line.
+// Parameters that only engineers may send. The build generates the server's list from this line.
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors'];
 export const withoutEngineers = (params) => Object.fromEntries(Object.entries(params).filter(([name]) => !ENGINEERS.includes(name)));
-// parameters that are the same for both halves of a split view
+// parameters shared by both halves of a split view
 const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split'];
 // parameters with lists of assets: an empty list is sent, too, because the default list of the plant file may not be empty
 const SETS = ['hidden', 'isolate', 'ghost'];
@@ -55,7 +55,7 @@ export class Session {
         // sequence number -> view parameters sent with it: pictures on the way may still show earlier ones
         this.asked = new Map();
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
-        this.cameraNews = false; // true: the camera has changed and was not sent yet
+        this.cameraNews = false; // true: the camera has changed but has not been sent yet
         this.cameraInput = null; // time of the input that set the camera, from which latency is measured
         this.markers = new Map();
         // { us, at }: the server's time, and the page's time when it arrived
@@ -182,7 +182,7 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
         if (this.picture)
-            // the parameters of the picture on the screen have a number of the previous connection, which may occur again; -1 never occurs
+            // the shown picture's parameter number is from the previous connection and may occur again; -1 never occurs
             this.picture.paramsSeq = -1;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs,
@@ -217,8 +217,8 @@ export class Session {
         return { ...this.model?.start, ...own };
     }
 
-    // Returns the view's parameters to send after a reconnect, without those that equal the defaults, since the plant's defaults may have
-    // changed. baseline false: without the baseline, which the server may have forgotten.
+    // Returns the view's parameters to send after a reconnect. Parameters equal to the defaults are left out, because the
+    // plant's defaults may have changed. baseline false: without the baseline, which the server may have lost.
     carried({ baseline = true } = {}) {
         const { params, ownParams: own } = this;
         const may = (name) => !this.role || this.role === 'engineer' || !ENGINEERS.includes(name);
@@ -283,7 +283,8 @@ export class Session {
         this.post({ type: 'visible', visible });
     }
 
-    // Sends the newest camera, unless none is new or the connection's send buffer is full. Called once per animation frame.
+    // Sends the newest camera, if it has not been sent yet and the connection's send buffer has room. Called once per animation
+    // frame.
     flush() {
         if (!this.cameraNews || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
             return;

@@ -78,8 +78,8 @@ export function readRange(text, nowUs, timeZone) {
     return until - fromUs >= LEAST_US && until - fromUs <= LONGEST_US ? { fromUs, toUs: until } : null;
 }
 
-// Returns the span in seconds of a new trend: the shortest that shows all that is recorded, at most a shift. recordedS: seconds since the
-// first record; null: unknown.
+// Returns the span in seconds of a new trend: the shortest that shows the whole record, at most a shift. recordedS: seconds
+// since the first record; null: unknown.
 export const newSpanS = (recordedS) => NEW_SPANS_S.find((spanS) => recordedS !== null && recordedS <= spanS) ?? NEW_SPANS_S.at(-1);
 
 // Returns [from, to] with its length limited and no time after nowUs. If the length changes, the instant `at` keeps its relative position.

@@ -88,8 +88,8 @@ export function valueAt({ points, bucket_us: length, step }, us) {
     return first + ((last - first) * (us - begin)) / (next[0] - begin);
 }
 
-// Returns the alarms of journal rows (newest first): [{ us, endUs (null: still active), tag, kind, priority, value, limit }], oldest first.
-// value and limit are null if the row has another unit than `unit`.
+// Returns the alarms of journal rows (newest first): [{ us, endUs (null: still active), tag, kind, priority, value, limit }],
+// oldest first. value and limit are null if the row's unit is not `unit`.
 export function alarmSpans(rows, unit) {
     const open = new Map(), out = [];
     for (const { time_us: us, tag, kind, event, state, before, priority, unit: was, ...row } of [...rows].reverse()) {

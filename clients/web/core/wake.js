@@ -4,7 +4,8 @@
 const SLEPT_MS = 3000;
 
 export class Wake {
-    // now(): monotonic clock; date(): wall clock, which may be set at any time. Only changes of the difference between both are used.
+    // now(): monotonic clock; date(): wall clock, which may be set at any time. Only changes in the difference between the
+    // clocks are used.
     constructor({ now, date, onWake }) {
         Object.assign(this, { now, date, onWake });
         this.apart = date() - now();

@@ -18,8 +18,8 @@ export function readWall(search) {
     return { inches: sane(inches, 10, 400, USUAL.inches), metres: sane(metres, 0.5, 50, USUAL.metres) };
 }
 
-// Returns by what factor the page must be larger than on an ordinary screen. screen: size in CSS pixels; with the diagonal in inches it
-// gives the size of a pixel.
+// Returns how many times larger the page must be than on an ordinary screen. screen: size in CSS pixels; with the diagonal in
+// inches it gives the size of a pixel.
 export function wallScale({ inches, metres }, screen) {
     const needed = metres * 1000 * Math.tan((MINUTES / 60) * (Math.PI / 180));
     const larger = needed / (CAPITAL * SMALLEST_PX * millimetresPerPx(inches, screen));
@@ -28,11 +28,11 @@ export function wallScale({ inches, metres }, screen) {
 
 export const millimetresPerPx = (inches, { width, height }) => (inches * 25.4) / Math.hypot(width, height);
 
-// smallest page size, in pixels before scaling, that has room for name, alarms, picture, legend, clock and age
+// minimum page size, in pixels before scaling, that has room for name, alarms, picture, legend, clock and age
 export const LEAST = { width: 440, height: 250 };
 
-// Returns { scale, metres }. scale: the needed factor, or a smaller one with which everything fits; metres: largest distance from which
-// text is then readable.
+// Returns { scale, metres }. scale: the required factor, or a smaller one at which everything fits; metres: largest distance
+// from which the text is then readable.
 export function wallFit(wall, screen, { width, height }, least = LEAST) {
     const needed = wallScale(wall, screen), fits = Math.min(needed, width / least.width, height / least.height);
     const scale = fits > 0.5 ? fits : 0.5;
@@ -42,8 +42,8 @@ export function wallFit(wall, screen, { width, height }, least = LEAST) {
 // All displays of a wall reconnect at the same time, so each waits for a random time up to this many milliseconds.
 export const SPREAD_MS = 2000;
 
-// Returns a display's brightness: 1, or less within its dimming hours. minute: minute of the day; calls true: an unacknowledged alarm is
-// shown, which causes full brightness.
+// Returns a display's brightness: 1, or less within its dimming hours. minute: minute of the day; calls true: an unacknowledged
+// alarm is shown, which requires full brightness.
 export function brightness(dim, minute, calls) {
     const { from_min: from, to_min: to, percent } = dim ?? { from_min: 0, to_min: 0 };
     const within = from <= to ? minute >= from && minute < to : minute >= from || minute < to;

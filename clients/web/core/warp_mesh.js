@@ -5,13 +5,14 @@ import { basis, heightAt, isParallel, RADIANS } from './camera.js';
 import { distance } from './camera_moves.js';
 import { add, dot, length, scale, subtract } from './vector.js';
 
-// steepest slope of a surface along the view, as a tangent: neighbouring cells whose depths differ by more show two surfaces
+// steepest slope of a surface along the view, as a tangent: neighbouring cells with a larger difference in depth show two
+// surfaces
 const STEEPEST = 6;
 // cells are merged into one quad if their depth codes deviate from a plane by at most FLAT_CODES, or FLAT_SHARE of the depth
 const FLAT_SHARE = 0.002, FLAT_CODES = 0.8;
-const BLOCK = 16; // largest side of a block of merged cells, in cells
+const BLOCK = 16; // maximum side of a block of merged cells, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
-export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step in depth, those behind
+export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the depth step, those behind it
 const ORDER = [0, 2, 1, 1, 2, 3]; // corners of a quad's two triangles, by index of the vertex
 export const FLOATS = 4; // number of floats per vertex: x and y in pixels of the half of the picture, depth, kind (WHOLE, NEAR or FAR)
 
@@ -19,7 +20,7 @@ class Sheets {
     constructor(grid, camera) {
         Object.assign(this, grid);
         const step = STEEPEST * heightAt(camera, 1) / grid.height * grid.cellPx / Math.abs(grid.unit);
-        // Largest difference between depth codes of one surface in neighbouring cells, by code.
+        // Maximum difference between the depth codes of one surface in neighbouring cells, as a function of the code.
         const mostAt = (code) => Math.max(2, grid.parallel ? step : step * this.depthOf(code));
         this.most = Float32Array.from({ length: grid.levels + 1 }, (_, code) => mostAt(code));
     }
@@ -43,8 +44,8 @@ class Sheets {
         return isNear ? near : -1;
     }
 
-    // Returns how much the depth code changes from the centre of a cell to its edge in the direction (dx, dy): half of the change from the
-    // opposite neighbour to the cell. 0: that neighbour does not continue the surface.
+    // Returns the change of the depth code from the centre of a cell to its edge in the direction (dx, dy): half the change
+    // from the opposite neighbour to the cell. 0: that neighbour does not continue the surface.
     half(code, x, y, dx, dy) {
         const before = this.continuing(code, x - dx, y - dy);
         return before < 0 ? 0 : (code - before) / 2;
@@ -67,8 +68,8 @@ class Sheets {
     }
 }
 
-// Returns the depth code at each corner of the grid where the farthest sheets (surfaces within a cell) of the four cells around are one
-// surface; NaN at other corners.
+// Returns the depth code at each corner of the grid around which the farthest sheets (surfaces within a cell) of the four cells
+// form one surface; NaN at other corners.
 function sharedCorners({ columns, rows }, back, sheets) {
     const wide = columns + 1, corners = new Float32Array(wide * (rows + 1)).fill(NaN);
     for (let y = 0; y <= rows; y++)
@@ -83,7 +84,7 @@ function sharedCorners({ columns, rows }, back, sheets) {
     return corners;
 }
 
-// Collects quads as vertices and indices. `most`: largest number of quads that a grid can need.
+// Collects quads as vertices and indices. `most`: maximum number of quads that a grid can need.
 class Quads {
     constructor(most) {
         this.vertices = new Float32Array(most * 4 * FLOATS);
@@ -190,8 +191,8 @@ class Mesher {
     }
 }
 
-// Returns { vertices, indices, count } of quads over a depth grid: merged where the surface is plane, apart where the depth has a step.
-// camera: that of the picture to which the grid belongs.
+// Returns { vertices, indices, count } of quads over a depth grid: merged where the surface is plane, separate where the depth
+// has a step. camera: camera of the grid's picture.
 export function meshOf(grid, camera) {
     const mesher = new Mesher(grid, camera);
     for (let y = 0; y < grid.rows; y += BLOCK)
@@ -202,7 +203,7 @@ export function meshOf(grid, camera) {
     return { vertices: vertices.subarray(0, count * 4 * FLOATS), indices: indices.subarray(0, count * 6), count };
 }
 
-// Returns the depth that the grid has at a pixel of its half of the picture; null outside.
+// Returns the grid's depth at a pixel of its half of the picture; null outside.
 export function depthAt(grid, px, py) {
     const { columns, rows, cellPx, maskSide, masks, near, far, base, unit, parallel } = grid;
     const x = Math.floor(px / cellPx), y = Math.floor(py / cellPx), i = y * columns + x, bit = cellPx / maskSide;
@@ -215,8 +216,8 @@ export function depthAt(grid, px, py) {
 
 const halfHeight = (camera) => (isParallel(camera) ? camera.height_m / 2 : Math.tan(camera.fov * RADIANS / 2));
 
-// Returns the columns of the matrix that maps [x, y, depth, 1] of a depth grid to homogeneous plant positions relative to `origin`. Each
-// column is [vector, homogeneous coordinate]. camera: that of the grid's picture.
+// Returns the columns of the matrix that maps [x, y, depth, 1] of a depth grid to homogeneous plant positions relative to
+// `origin`. Each column is [vector, homogeneous coordinate]. camera: camera of the grid's picture.
 export function gridColumns({ width, height }, camera, origin) {
     const old = basis(camera), tall = halfHeight(camera), wide = tall * width / height;
     const eye = subtract(camera.eye, origin), corner = add(scale(old.right, -wide), scale(old.up, tall));
@@ -224,8 +225,8 @@ export function gridColumns({ width, height }, camera, origin) {
     return [[scale(old.right, 2 * wide / width), 0], [scale(old.up, -2 * tall / height), 0], depth, rest];
 }
 
-// Returns the 4x4 matrix, column by column as WebGL takes it, from [x, y, depth, 1] of a depth grid to clip coordinates of another camera,
-// for a picture of the same shape. nearest: surfaces nearer to the new eye than so many metres are not drawn.
+// Returns the 4x4 matrix, column by column as WebGL takes it, from [x, y, depth, 1] of a depth grid to clip coordinates of
+// another camera, for a picture of the same shape. nearest: surfaces closer to the new eye than this are not drawn (metres).
 export function warpMatrix({ width, height }, from, to, nearest) {
     const now = basis(to), up = halfHeight(to), across = up * width / height, reach = 2 * distance(to) + 1e4 * up;
     return gridColumns({ width, height }, from, to.eye).flatMap(([v, h]) => {

@@ -3,33 +3,33 @@
 // times as long. Pixels are 32-bit numbers as in an ImageData, with red in the lowest byte; 0: not drawn.
 import { FAR, FLOATS, NEAR } from './warp_mesh.js';
 
-// a rectangle of the source picture is drawn as a parallelogram if its projection deviates by at most SKEW_PX from one, or if it is at most
-// LEAST_PX large
+// a rectangle of the source picture is drawn as a parallelogram if its projection deviates by at most SKEW_PX from one, or
+// measures at most LEAST_PX
 const SKEW_PX = 1, LEAST_PX = 4;
 const LAP_PX = 0.1; // overlap of neighbouring parallelograms, which hides cracks between them
 const LEAST_AREA = 1e-3; // parallelograms of fewer pixels are not drawn
-const TINY = 1e-7; // least change of the position in the source picture from one screen pixel to the next; avoids divisions by zero
-// greys for places that the picture does not show are computed for blocks of REDUCED x REDUCED pixels (fillUndrawn() divides by REDUCED by
-// shifting)
+const TINY = 1e-7; // minimum change of the position in the source picture from one screen pixel to the next; avoids divisions by zero
+// the greys of undrawn places are computed for blocks of REDUCED x REDUCED pixels (fillUndrawn() divides by REDUCED with a
+// shift)
 const REDUCED = 4;
-const WIDE_LEVEL = 3; // index of the reduced picture from which fillUndrawn() tells how wide a place is that the picture does not show
+const WIDE_LEVEL = 3; // index of the reduced picture in which fillUndrawn() looks up how wide an undrawn place is
 const BITS = 16, ONE = 2 ** BITS; // fixed-point source positions
 const NEAR_ONE = 2 ** 30 - 1; // factor from nearness (1 - z of a drawn surface, below 2) to a 32-bit integer
-// least distance in pixels of a position in the source picture from the right and lower edge of its quad, so that rounding does not lead
-// beyond the edge
+// minimum distance in pixels of a position in the source picture from the right and lower edge of its quad, so that rounding
+// does not cross the edge
 const INSIDE = 4e-3;
 const OPAQUE = -0x1000000;
-// brightness of the lines of the lattice that marks wide places that the picture does not show, and the lines' width as a fraction of their
-// distance
+// brightness of the lattice lines over wide undrawn places, and the lines' width as a fraction of their spacing
 const MARK = 0.08 * 255, MARK_SHARE = 0.1;
 
 const lightOf = (pixel) => (77 * (pixel & 255) + 150 * (pixel >> 8 & 255) + 29 * (pixel >> 16 & 255)) >> 8;
 const greyPixel = (light) => (OPAQUE | Math.floor(light) * 0x10101);
 
-// The pixels of a picture, separated by surfaces: `all`, and for depth cells with two surfaces `near` and `far`, in which pixels of the
-// other surface are 0. In `far`, pixels next to the nearer surface are grey, because they contain a part of its colour.
+// The pixels of a picture, separated by surfaces: `all`, and for depth cells with two surfaces `near` and `far`, in which
+// pixels of the other surface are 0. In `far`, pixels next to the nearer surface are grey, because they contain part of its
+// colour.
 export class Layers {
-    // pixels: those of the whole picture, `width` pixels wide.
+    // pixels: those of the whole picture, which is `width` pixels wide.
     constructor(pixels, width, grids) {
         Object.assign(this, { all: pixels, width, far: pixels.slice(), near: new Int32Array(pixels.length) });
         for (const grid of grids)
@@ -105,7 +105,8 @@ export class Raster {
         this.nearness = new Int32Array(width * height);
         // corners of the quad being drawn on the screen, and their nearness
         [this.x, this.y, this.n] = [0, 1, 2].map(() => new Float64Array(4));
-        // reduced pictures, each of half the width and height of the one before: brightness multiplied by the drawn part, and drawn part
+        // reduced pictures, each half as wide and high as the one before: brightness multiplied by the drawn fraction, and
+        // drawn fraction
         this.levels = [];
         for (let [w, h] = [width, height].map((px) => Math.ceil(px / REDUCED)); ; [w, h] = [(w + 1) >> 1, (h + 1) >> 1]) {
             this.levels.push({ width: w, height: h, light: new Float32Array(w * h), part: new Float32Array(w * h) });
@@ -119,8 +120,8 @@ export class Raster {
         this.nearness.fill(0);
     }
 
-    // Draws the mesh of a half of the picture. matrix: from warpMatrix(); layers: those of the picture; box: { left, top, width, height }
-    // of the half in drawn pixels.
+    // Draws the mesh of a half of the picture. matrix: from warpMatrix(); layers: the picture's Layers; box: { left, top,
+    // width, height } of the half in drawn pixels.
     draw({ grid, mesh: { vertices, count } }, matrix, layers, box) {
         Object.assign(this, { grid, matrix: Float64Array.from(matrix), box, stride: layers.width });
         const picked = [layers.all, layers.near, layers.far], most = 4 * FLOATS;
@@ -133,8 +134,9 @@ export class Raster {
         }
     }
 
-    // Draws a rectangle of the source picture with these depths at its top left, top right, bottom left and bottom right corner. On the
-    // screen, it is drawn as a parallelogram. If perspective makes it differ too much from one, its quarters are drawn separately.
+    // Draws a rectangle of the source picture, with these depths at its top left, top right, bottom left and bottom right
+    // corner, as a parallelogram on the screen. If perspective distorts it too much for that, its quarters are drawn
+    // separately.
     quad(left, top, right, bottom, d0, d1, d2, d3) {
         const { matrix: m, box, x, y, n } = this, halfWidth = box.width / 2, halfHeight = box.height / 2;
         let behind = 0;
@@ -173,7 +175,7 @@ export class Raster {
         let row = Math.max(clip.top, Math.ceil(cy - reach));
         if (row >= last)
             return;
-        // changes of source position and nearness from pixel to pixel of a row, and from row to row
+        // change of source position and nearness from one pixel of a row to the next, and from one row to the next
         const e = (n[1] - n[0] + n[3] - n[2]) / 2, f = (n[2] - n[0] + n[3] - n[1]) / 2, slope = high * -ey / area;
         const ux = wide * fy / area || TINY, vx = Math.abs(slope) < TINY ? TINY : slope, nx = (e * fy - f * ey) / area;
         const uy = -wide * fx / area, vy = high * ex / area, ny = (f * ex - e * fx) / area;
@@ -206,7 +208,7 @@ export class Raster {
         }
     }
 
-    // Fills pixels that are not drawn with a grey as light as their surroundings, and draws a lattice over wide undrawn places. period: of
+    // Fills undrawn pixels with a grey as light as their surroundings, and draws a lattice over wide undrawn places. period: of
     // the lattice, in pixels.
     fillUndrawn(period) {
         const { pixels, width, height, levels } = this, first = this.greys(), { light } = first;
@@ -229,8 +231,8 @@ export class Raster {
             }
     }
 
-    // Makes a part (0 to 1) of the pixels transparent, in a dither pattern, so that the picture on the canvas below shows there while this
-    // picture fades out.
+    // Makes a fraction (0 to 1) of the pixels transparent, in a dither pattern, so that the canvas below shows through while
+    // this picture fades out.
     leaveOut(part) {
         const { pixels, width, height } = this;
         for (let y = 0, i = 0; y < height; y++)
@@ -241,7 +243,7 @@ export class Raster {
             }
     }
 
-    // Returns the first reduced picture, with a brightness also for places that are not drawn: that of the nearest coarser reduced picture
+    // Returns the first reduced picture, with a brightness for undrawn places, too: that of the nearest coarser reduced picture
     // that shows something there.
     greys() {
         const { levels } = this, top = levels.at(-1);
@@ -261,7 +263,7 @@ export class Raster {
         return levels[0];
     }
 
-    // Computes brightness and drawn part of the first reduced picture, for speed from only a quarter of the pixels.
+    // Computes brightness and drawn fraction of the first reduced picture; for speed, from only a quarter of the pixels.
     reduce({ width: columns, height: rows, light, part }) {
         const { pixels, width, height } = this;
         for (let y = 0, at = 0; y < rows; y++) {

@@ -12,7 +12,7 @@ import { language, learnWords, say } from '../core/words.js';
 import { byId, make } from '../app/common/dom.js';
 import { store, stored } from '../app/common/storage.js';
 
-const HOURS = [8, 12, 24], MOST = 200; // maximum rows of a table
+const HOURS = [8, 12, 24], MOST = 200; // MOST: maximum number of rows in a table
 const query = new URLSearchParams(location.search), token = stored('token');
 document.documentElement.lang = language;
 await learnWords();
@@ -29,7 +29,7 @@ const timeOf = (us) => {
     const { date, time } = clock(us / 1000);
     return `${date} ${time.slice(0, 5)}`;
 };
-const dayTimeOf = (us) => { // without the year, which the head of the page shows
+const dayTimeOf = (us) => { // without the year, which is in the page's heading
     const { day, time } = clock(us / 1000);
     return `${day} ${time.slice(0, 5)}`;
 };
@@ -110,13 +110,13 @@ function pageOf(model, notes, journal, [fromUs, toUs], missing) {
     ];
 }
 
-// Shows the handover page, but only to operators and engineers, because the page names users.
+// Shows the handover page, but only to operators and engineers, because it contains users' names.
 async function show() {
     const { role } = await get('me');
     if (!['operator', 'engineer'].includes(role))
         throw new Error(say('handover.denied'));
     const span = { from: query.get('from') ?? '-8h', to: query.get('to') ?? 'now' };
-    const missing = []; // names of the data that could not be loaded; the page lists them
+    const missing = []; // names of data that could not be loaded, which the page lists
     const orElse = (empty) => (error) => {
         missing.push(error.message);
         return empty;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reloads a wall's page whose main thread hangs. This code runs in a frame of that page and waits for a message from the page's worker
-// (app/common/watchdog_worker.js). It then makes the top window load keeper.html in place of the page. The hanging process would load the
-// page's own URL, but in Chromium another process loads keeper.html and, from there, the page.
+// Reloads a wall's page whose main thread hangs. This code runs in a frame of that page and waits for a message from the page's
+// worker (app/common/watchdog_worker.js). It then makes the top window load keeper.html in place of the page. The page's own
+// URL would load in the hanging process. Chromium loads keeper.html in another process, which then loads the page.
 'use strict';
 
-// interval of attempts while the server does not answer; from the browser's own error page this code could not return to the wall
+// retry interval while the server does not answer: loading a page now would end on the browser's error page, from which this
+// code cannot return
 const RETRY_MS = 5000;
 const ENDED_MS = 2000;
 

@@ -20,8 +20,8 @@ import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
 const TICK_MS = 250, LOST_MS = 3000;
-// LEAST: smallest size of a display in units of the page (CSS pixels before scaling); LETTERS_MM: height in millimetres of the letters that
-// say that the connection is lost
+// LEAST: minimum size of a display in units of the page (CSS pixels before scaling); LETTERS_MM: height in millimetres of the
+// letters of the message that the connection is lost
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100;
 const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
 
@@ -62,7 +62,7 @@ function sayWrong(text) {
     byId('grid').replaceChildren(make('p', { class: 'wrong' }, text));
 }
 
-// Sets the size of a unit of the page, on which all font sizes depend.
+// Sets the page's size unit, on which all font sizes depend.
 function fit() {
     if (!wall)
         return;

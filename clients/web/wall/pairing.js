@@ -5,7 +5,7 @@ import { make, setText } from '../app/common/dom.js';
 import { say } from '../core/words.js';
 
 const ASK_MS = 2000, SECRET_BYTES = 32;
-// HTTP status of the pairing request -> text that is shown instead of the code
+// HTTP status of the pairing request -> text shown instead of the code
 const WHY = { 200: 'walls.asks', 400: 'walls.nowhere', 503: 'walls.crowded' };
 
 export class Pairing {
@@ -37,8 +37,8 @@ export class Pairing {
         this.enter(token);
     }
 
-    // Shows the code and asks the server until an engineer has paired the display. A typed token was refused, so it is deleted; the
-    // display's own secret stays, because the display may be paired again.
+    // Shows the code and asks the server until an engineer has paired the display. A typed token is deleted, because the server
+    // has refused it. The display's own secret stays, because the display may be paired again.
     show() {
         if (!this.element.hidden)
             return;

@@ -27,7 +27,7 @@ export function paneOf(pane, context) {
     return { element, kind: pane.kind, tick };
 }
 
-// Returns an alarm's values as the alarm bar shows them, without the present value while no messages arrive from the server.
+// Returns an alarm's values as in the alarm bar, but without the present value while the server sends no messages.
 const nowText = (session, alarm) => limitText(session, alarm, !['lost', 'silent'].includes(health(session, clock.now()).kind));
 
 const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
@@ -76,7 +76,7 @@ function pageIn({ wall, theme, lang, body }, kind, place) {
     };
 }
 
-// a pane that shows views, and during an alarm the alarm's position
+// a pane with views; during an alarm it shows the alarm's position
 
 function ViewsPane(pane, context) {
     const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
@@ -85,13 +85,14 @@ function ViewsPane(pane, context) {
     // the views that the display's token may show, if it is limited to some; else all saved views
     const viewsOf = ({ model, views }) => model?.plant.only ?? views;
     const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
-    // the heading of a view whose picture has not arrived yet: until then the heading must name the view that is still in the picture
+    // the heading of a view whose picture has not arrived yet: until then, the heading must name the previous view, which is
+    // still in the picture
     let due = null, isOpened = false;
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
     context.body.append(why);
 
-    // Returns a text that says which user sent the view to the pane or holds the pane on it, and since when.
+    // Returns a text that names the user who sent the view to the pane or holds the pane on it, and the time since then.
     function byWhom({ desk, by, held, time_us: us }) {
         const who = [desk, by].filter(Boolean).join(', '), time = timeOf(session, us);
         return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
@@ -200,13 +201,13 @@ function TrendPane(pane, context) {
     const { session, wall, display, title, element } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
     const about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     context.body.append(why);
-    // the iframe's page in which the trend was started; a reloaded iframe has another page, in which it must be started again
+    // the page in the iframe in which the trend was opened; a reloaded iframe has a new page, which must open the trend again
     let begun = null;
     title.replaceChildren(pane.title ?? pane.items.join(', '), about);
     return { tick() {
         const { page } = inner;
         setText(about, aboutTags(session, pane.items));
-        // says why the pane is empty; once the trend has an error of its own, the page in the iframe shows it
+        // says why the pane is empty; errors of the trend itself are shown by the page in the iframe
         const isUnknown = (name) => Boolean(session.model) && !session.model.tag(name);
         const unknown = pane.items.filter(isUnknown), awaited = pane.items.filter((name) => !isUnknown(name));
         const isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
@@ -249,8 +250,8 @@ function AlarmsPane(pane, { session, call, title, body }) {
 
     const isFull = () => body.scrollHeight > body.clientHeight + 1;
 
-    // Shows as many rows as fit, and the number of the other alarms. brief(alarm) makes a short row, used if the normal rows do not all
-    // fit; if the first lines of the short rows alone all fit, only these are shown.
+    // Shows as many rows as fit, and the number of alarms left out. brief() makes short rows, used if the normal rows do not
+    // all fit; if only the first lines of all short rows fit, only these lines are shown.
     function fill(rows, brief = null) {
         list.replaceChildren(...rows);
         let hidden = 0;
@@ -320,7 +321,7 @@ function TilesPane(pane, { session, body, title }) {
         }
     }
 
-    // Says in a tile that the plant does not have the tile's tag.
+    // Shows in a tile that the plant does not have the tile's tag.
     function lose(tile) {
         setText(tile.value, say('walls.untagged'));
         Object.assign(tile.element.dataset, { quality: 'bad', alarm: '' });
@@ -379,7 +380,7 @@ function fitIn(body) {
 
 const shareOf = ({ min, max }, value) => Math.max(0, Math.min(1, (value - min) / (max - min)));
 
-// a pane with the plant's time, and below a pane with a text
+// a pane with the plant's time, and a pane with a text
 
 function ClockPane(pane, { session, body, title }) {
     const day = make('span', {}), hour = make('b', {});

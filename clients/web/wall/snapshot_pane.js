@@ -6,7 +6,7 @@ import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';
 
-// UNHEARD_MS: if this plant's server has been silent for longer, the state of the other plant is unknown
+// UNHEARD_MS: after a longer silence of this plant's server, the state of the other plant is unknown
 const ASK_MS = 1000, UNHEARD_MS = 5000;
 
 // Returns { tick(now) }. timeOf(us) formats a time in the plant's time zone.
@@ -30,7 +30,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     }
 
     async function look() {
-        // time of the request and not of the answer, so that the duration of the request counts as age of the picture
+        // time of the request, not of the answer: the picture's age includes the duration of the request
         const at = askedAt = clock.now();
         asks = true;
         try {

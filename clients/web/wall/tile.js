@@ -209,7 +209,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         marks.replaceChildren(...out);
     }
 
-    // Draws the marks again when a picture arrives or a marked reading changes.
+    // Redraws the marks when a picture arrives or a marked reading changes.
     let marksOf = '';
     function lookAtMarks() {
         if (pointer && clock.now() > pointer.until)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session of one tile of a picture across many displays: it holds decoded frames back until the instant, chosen by the server, at which
-// all tiles show them.
+// The session of one tile of a picture across many displays: it holds decoded frames back until the instant, set by the server,
+// at which all tiles show them.
 import { DecodeQueue } from '../core/decode_queue.js';
 import { Session } from '../core/session.js';
 
-// EARLY_MS: how early a picture may be shown, in milliseconds, because the screen's next refresh is only 17 ms later
+// EARLY_MS: how many milliseconds early a picture may be shown, because the screen's next refresh is 17 ms later
 const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4;
 
 export class TileSession extends Session {
@@ -89,8 +89,8 @@ export class TileSession extends Session {
         this.pongs.push({ at: now, roundTripMs, us: us - (now - roundTripMs / 2) * 1000 });
     }
 
-    // The server's time, by the shortest round trip of the last minute: older measurements are wrong because clocks drift, and longer round
-    // trips because queues add delay.
+    // The server's time, from the shortest round trip of the last minute: older measurements are wrong because clocks drift,
+    // and longer round trips because queues add delay.
     get serverUs() {
         const best = this.pongs.reduce((a, b) => (!a || b.roundTripMs < a.roundTripMs ? b : a), null);
         return best ? best.us + this.now() * 1000 : this.clockUs();

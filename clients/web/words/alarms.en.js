@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of the alarm list, the journal and the moment before an alarm, in English.
+// Texts of the alarm list, the alarm journal and the replay of the time around an alarm, in English.
 export default `
 [alarms]
 close: Close alarms

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of the fleet page, in German.
+// Texts of the fleet page, in German.
 export default `
 answer: {count} von {all} Anlagen antworten
 only: Nur was Aufmerksamkeit braucht

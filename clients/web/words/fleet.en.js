@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of the fleet page, in English.
+// Texts of the fleet page, in English.
 export default `
 answer: {count} of {all} plants answer
 only: Only what needs attention

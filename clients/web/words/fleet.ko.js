@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of the fleet page, in Korean.
+// Texts of the fleet page, in Korean.
 export default `
 answer: 플랜트 {all}곳 중 {count}곳 응답
 only: 조치가 필요한 곳만

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of the import panel, in German.
+// Texts of the import panel, in German.
 export default `
 [import]
 close: Schließen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of the import panel, in English.
+// Texts of the import panel, in English.
 export default `
 [import]
 close: Close

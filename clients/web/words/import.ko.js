@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of the import panel, in Korean.
+// Texts of the import panel, in Korean.
 export default `
 [import]
 close: 닫기

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words that the page needs at once, in Korean. [section] prefixes the keys below it, then key: text. {name} is replaced, [X] is a key to
-// press, (one) is a plural form.
+// Texts that the page needs immediately, in Korean. [section] prefixes the keys below it, then key: text. {name} is replaced,
+// [X] is a key to press, (one) is a plural form.
 export default `
 none: 없음
 novalue: 값 없음

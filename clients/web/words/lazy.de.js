@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of parts of the page that are loaded on first use, in German.
+// Texts of parts of the page that are loaded on first use, in German.
 export default `
 accept: Angenommene Orte bestätigen
 close: Schließen

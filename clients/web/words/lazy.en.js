@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of parts of the page that are loaded on first use, in English.
+// Texts of parts of the page that are loaded on first use, in English.
 export default `
 accept: Accept assumed locations
 close: Close

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of parts of the page that are loaded on first use, in Korean.
+// Texts of parts of the page that are loaded on first use, in Korean.
 export default `
 accept: 추정 위치 확정
 close: 닫기

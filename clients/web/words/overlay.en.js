@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words that the server draws over pictures, in English. The build makes a C header from this file; {} is replaced by a value.
+// Texts that the server draws over pictures, in English. The build makes a C header from this file; {} is replaced by a value.
 export default `
 no_limits: no limits
 no_data: no data

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words that the server draws over pictures, in Korean. The build makes a C header from this file; {} is replaced by a value.
+// Texts that the server draws over pictures, in Korean. The build makes a C header from this file; {} is replaced by a value.
 export default `
 no_limits: 한계 없음
 no_data: 데이터 없음

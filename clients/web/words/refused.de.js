@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals of the server, in German. Keys before the first [section] are the server's refusal codes, with the arguments of PROTOCOL.md.
+// Texts for the server's refusals, in German. Keys before the first [section] are the server's refusal codes, with the
+// arguments of PROTOCOL.md.
 export default `
 role_operator: dafür ist die Rolle Operator nötig
 role_engineer: dafür ist die Rolle Engineer nötig

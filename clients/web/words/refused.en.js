@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals of the server, in English. Keys before the first [section] are the server's refusal codes, with the arguments of PROTOCOL.md.
+// Texts for the server's refusals, in English. Keys before the first [section] are the server's refusal codes, with the
+// arguments of PROTOCOL.md.
 export default `
 role_operator: this needs the role operator
 role_engineer: this needs the role engineer

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals of the server, in Korean. Keys before the first [section] are the server's refusal codes, with the arguments of PROTOCOL.md.
+// Texts for the server's refusals, in Korean. Keys before the first [section] are the server's refusal codes, with the
+// arguments of PROTOCOL.md.
 export default `
 role_operator: 운전원 권한이 필요합니다
 role_engineer: 엔지니어 권한이 필요합니다

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of plantcast-video, in English. The build makes a C header from this file; {} is replaced by a value.
+// Texts of plantcast-video, in English. The build makes a C header from this file; {} is replaced by a value.
 export default `
 starting: STARTING
 not_let_in: ACCESS DENIED

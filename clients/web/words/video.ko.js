@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of plantcast-video, in Korean. The build makes a C header from this file; {} is replaced by a value.
+// Texts of plantcast-video, in Korean. The build makes a C header from this file; {} is replaced by a value.
 export default `
 starting: 시작하는 중
 not_let_in: 접근 거부

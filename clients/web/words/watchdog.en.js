@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Warning over a page whose main thread hangs, in English.
+// Texts of the warning over a page whose main thread hangs, in English.
 export default `
 hangs: This page does not respond
 hangs.reload: The picture stopped {n} s ago. Reload it.

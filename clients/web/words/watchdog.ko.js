@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Warning over a page whose main thread hangs, in Korean.
+// Texts of the warning over a page whose main thread hangs, in Korean.
 export default `
 hangs: 이 페이지가 응답하지 않습니다
 hangs.reload: {n}초 전부터 화면이 멈춰 있습니다. 페이지를 새로 고치세요.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of headsets, in German.
+// Texts shown on headsets, in German.
 export default `
 [xr]
 enter: VR starten

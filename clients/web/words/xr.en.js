@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of headsets, in English.
+// Texts shown on headsets, in English.
 export default `
 [xr]
 enter: Enter VR

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of headsets, in Korean.
+// Texts shown on headsets, in Korean.
 export default `
 [xr]
 enter: VR 시작
