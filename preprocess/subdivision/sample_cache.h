@@ -32,13 +32,13 @@ struct sample_cache_notes { /* lookups recorded by one thread; zero-initialise *
 void sample_cache_open(struct sample_cache *sample_cache, struct log *log, const char *folder, uint64_t key);
 /* Unmaps the cache file and frees the recorded lookups. */
 void sample_cache_close(struct sample_cache *sample_cache);
-/* Writes the lookups of this run to the cache file if too many were missing from it. Ignores errors: then nothing is cached. */
+/* Writes this run's lookups to the cache file if too many were missing from it. Ignores errors: nothing is cached then. */
 void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key);
 
-/* Looks up the surface triangle that a sample point projects onto; *tri is TRIMESH_NONE if it projects onto none. key: a hash of everything
- * the projection depends on, except the surface. Returns false if it is not cached. Thread: any. */
+/* Looks up the surface triangle that a sample point projects onto; *tri is TRIMESH_NONE if there is none. key: a hash of
+ * everything that the projection depends on, except the surface. Returns false if the lookup is not cached. Thread: any. */
 bool sample_cache_find(const struct sample_cache *sample_cache, uint64_t key, uint32_t *tri);
-/* Records a lookup of a sample point in the calling thread's notes: the key, the triangle, and whether the cache answered the lookup. Moves
+/* Records a lookup of a sample point in the calling thread's notes: its key, the triangle, and whether the cache had it. Moves
  * full notes to the cache. Thread: any, one at a time per notes object. */
 void sample_cache_note(struct sample_cache *sample_cache, struct sample_cache_notes *notes, uint64_t key, uint32_t tri, bool known);
 /* Moves a thread's notes into the cache, for sample_cache_write(). Thread: any. */

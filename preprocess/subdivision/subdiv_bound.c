@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Predicts which coarser levels of detail will need too many triangles, before they are split completely. */
+/* Predicts which coarser levels of detail will need too many triangles, so that these need not be split completely. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -9,13 +9,12 @@
 
 #define SAMPLE_OF 8 /* one block of triangles in every SAMPLE_OF is sampled; a power of 2 */
 #define BLOCK 8     /* triangles per block */
-#define GRAIN 4096  /* triangles per unit of work of a thread: takes a few tenths of a millisecond */
-/* number of standard deviations by which the estimated triangle count must exceed the level's triangle limit before the level is given
- * up */
+#define GRAIN 4096  /* number of triangles that a thread processes per unit of work, which takes a few tenths of a millisecond */
+/* a level is given up if its estimated triangle count exceeds its limit by this many standard deviations */
 #define SURE 1.5
 
-/* Returns the number of triangles that will replace one triangle once its interpolation errors are small enough. Each split of an edge
- * leaves a quarter of the edge's error where the field bends evenly, and more at a peak, so an edge may need several splits. */
+/* Returns the number of triangles that will replace a triangle once its interpolation errors are small enough. Splitting an
+ * edge leaves a quarter of its error where the field bends evenly, and more at a peak, so an edge may need several splits. */
 static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *tri)
 {
     size_t needed = 1;
@@ -25,8 +24,8 @@ static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *
     return needed;
 }
 
-/* Returns a lower bound of the triangles that the whole level of detail will have, estimated from the triangles of the sampled blocks. The
- * variance between the sample's blocks gives the uncertainty. */
+/* Returns a lower bound of the whole level's final triangle count, estimated from the sampled blocks. The variance between
+ * these blocks gives the uncertainty. */
 static double least_needed_by_sample(const struct subdiv *subdiv)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -79,7 +78,7 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level)
         to->first_index = sample->index_count;
         for (uint32_t i = 0; i + 3 * BLOCK <= level->primitives[p].index_count; i += 3 * BLOCK) {
             uint32_t at = level->primitives[p].first_index + i;
-            /* choose the blocks to sample by a hash, because every eighth block could be the same part of a repeated shape */
+            /* choose the sampled blocks by a hash: every eighth block could be the same part of a repeated shape */
             if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1))
                 continue;
             memcpy(sample->indices + sample->index_count, level->indices + at, 3 * BLOCK * sizeof(*sample->indices));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores findings (measured errors of edges and triangles), with a hash of the corners' positions as key. Decides whether a finding of the
- * last run is still valid. */
+/* Stores findings (measured errors of edges and triangles), keyed by a hash of the corners' positions. Decides whether a
+ * finding of the last run is still valid. */
 #include "preprocess/subdivision/subdiv_cache.h"
 
 #include <math.h>
@@ -13,16 +13,17 @@
 #include "preprocess/cache/build_cache.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MAX_CHANGES 16 /* with more added and removed sensors than this, the last run's findings (measured errors) are not used */
-#define FEW 16         /* findings (measured errors) of the last run are used only if fewer than one sensor in FEW has changed */
-/* largest doubt (subdiv_cache.h: weight of the sensors that changed since the measurement) of a finding that is used. Measured: with this
- * doubt, one in a thousand edges with an error of about one colour step is wrong by a tenth of a colour step or more. */
+#define MAX_CHANGES 16 /* maximum number of added and removed sensors with which the last run's findings (measured errors) are used */
+#define FEW 16         /* the last run's findings (measured errors) are used only if fewer than one in FEW sensors has changed */
+/* largest doubt of a finding (subdiv_cache.h: weight of the sensors changed since the measurement) with which it is used.
+ * Measured: with this doubt, one in a thousand edges with an error of about one colour step is wrong by a tenth of a colour
+ * step or more. */
 #define MAX_DOUBT 0.05f
-/* Largest doubt of a finding that may be used at all. Between MAX_DOUBT and this doubt, a finding (the measured error of an edge) is used
- * only if the changed sensors cannot move its error across a limit that decides whether the edge is split. With more doubt, the edge is
- * measured again. */
+/* Largest doubt with which a finding (measured error) may be used at all. Above MAX_DOUBT, a finding is used only if the
+ * changed sensors cannot move its error across a limit that decides whether the edge is split; otherwise the edge is measured
+ * again. */
 #define MAX_SETTLED 0.5f
-#define LITTLE 0.4f /* share of SUBDIV_AIM; an edge whose interpolation error at the midpoint is smaller was not measured at other points */
+#define LITTLE 0.4f /* share of SUBDIV_AIM; an edge with a smaller error at its midpoint was not measured at other points */
 
 struct subdiv_cache_entry {
     uint64_t key;
@@ -30,25 +31,24 @@ struct subdiv_cache_entry {
     uint32_t jumps;
 };
 
-struct sensor { /* the parameters of a sensor that determine its interpolation weights */
+struct sensor { /* the parameters of a sensor that its interpolation weights depend on */
     float place_m[3], strength, power;
     uint32_t group;
 };
 
 struct subdiv_head {
     uint64_t sensors, findings, rest; /* numbers of records of each kind that follow in the file */
-    /* levels dropped by earlier runs (bit mask), and number of sensors added or removed since these levels were last tried */
+    /* bit mask of levels dropped by earlier runs; number of sensors added or removed since these levels were last tried */
     uint64_t given_up, changes_since;
 };
 
-/* Flags that say which optional numbers of a finding (measured error) follow in the file, in the order of these flags. Most findings have
- * only a key and an error. */
+/* Flags for the optional numbers of a finding (measured error) that follow in the file, in the order of the flags. Most
+ * findings have only a key and an error. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
-/* two numbers follow: the doubt of the finding (weight of the sensors that changed since, subdiv_cache.h), and the amount by which its
- * error may be wrong */
+/* two numbers follow: the finding's doubt (weight of the sensors changed since, subdiv_cache.h), and by how much its error may be wrong */
 #define DOUBT_FOLLOWS 4
-#define SHARE_IS_HALF 8 /* the fraction at which the edge is best split is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
+#define SHARE_IS_HALF 8 /* the best split fraction of the edge is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */
@@ -93,8 +93,8 @@ static uint32_t column_of(const struct linear_error *linear, const struct sensor
     return UINT32_MAX;
 }
 
-/* Lists the sensors that were added or removed since the last run, by comparing both runs' sorted lists of sensors. Returns false if there
- * are too many, or if one belongs to a group that no longer exists. */
+/* Finds the sensors added or removed since the last run by comparing the two runs' sorted lists of sensors. Returns false if
+ * there are too many, or if one belongs to a group that no longer exists. */
 static bool find_changes(struct subdiv_cache *cache, const struct linear_error *linear, const struct sensor *old, size_t old_count)
 {
     const struct sensor *now = (const struct sensor *)(const void *)cache->sensors.at;
@@ -143,8 +143,7 @@ static void index_findings(struct subdiv_cache *cache, size_t count)
     }
 }
 
-/* Computes for each finding (measured error) the index of its first optional number in `rest`. Returns the number of optional numbers of
- * all findings. */
+/* Computes, by finding (measured error), the index of its first optional number in `rest`. Returns the total number of optional numbers. */
 static size_t index_rest(struct subdiv_cache *cache, size_t count)
 {
     size_t rest = 0;
@@ -205,7 +204,7 @@ void subdiv_cache_close(struct subdiv_cache *cache)
     *cache = (struct subdiv_cache){ 0 };
 }
 
-/* arrays of this run's findings (measured errors), in the layout of the cache file */
+/* this run's findings (measured errors) as arrays, in the layout of the cache file */
 struct packed_findings {
     uint64_t *keys;
     float *errors, *rest;
@@ -270,7 +269,7 @@ void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, ui
 
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns a cache key for the edge or triangle with these corners, which does not depend on the corners' order. */
+/* Returns a cache key for the edge or triangle with these corners, independent of their order. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count)
 {
     if (!subdiv->in->cache || !subdiv->in->cache->applies)
@@ -288,14 +287,14 @@ uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, 
 
 /* Distances in metres between an edge or triangle and a sensor that was added or removed. */
 struct change_range {
-    double wide_m; /* largest distance from the middle of the edge or triangle to one of its corners */
-    double near_m; /* largest distance from a corner to the group's sensor that is nearest to this corner */
+    double wide_m; /* largest distance from the centre of the edge or triangle to a corner */
+    double near_m; /* largest distance from a corner to the nearest sensor of the group */
     double far_m;  /* lower bound of the distance from the edge or triangle to the changed sensor */
 };
 
-/* Returns an upper bound of the interpolation error that an added sensor's weight causes between these corners: from the weight's
- * curvature, and from a kink where two paths along the surface are equally long. On an edge, a kink is possible only if the distance to the
- * sensor grows by less than the edge's length. share: the weight's upper bound. */
+/* Returns an upper bound of the interpolation error between these corners that an added sensor's weight causes: through the
+ * weight's curvature, and through a kink where two paths along the surface are equally long. An edge can have a kink only if
+ * the distance to the sensor grows along it by less than its length. share: upper bound of the weight. */
 static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_change *change, const uint32_t *corners, size_t count,
                      const struct change_range *range, double share)
 {
@@ -312,8 +311,8 @@ static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_cha
     return (float)(share * (p * (p - 1) / 2 * near * near + p * p * near * far + p * (p + 1) / 2 * far * far) + kink);
 }
 
-/* Returns an upper bound of the total weight that all added and removed sensors have at any point between these corners. Uses straight-line
- * distances, which are at most the distances along the surface. */
+/* Returns an upper bound of the total weight of all added and removed sensors at any point between these corners. Uses
+ * straight-line distances, which are at most the distances along the surface. */
 static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corners, size_t count, float *off)
 {
     const struct subdiv_cache *cache = subdiv->in->cache;
@@ -341,8 +340,8 @@ static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corne
     return share;
 }
 
-/* Returns whether a cached error is so far from the limits SUBDIV_AIM and LITTLE that the added and removed sensors cannot have moved it
- * across one. doubt: weight of these sensors (subdiv_cache.h). */
+/* Returns whether a cached error is so far from the limits SUBDIV_AIM and LITTLE that the added and removed sensors cannot have
+ * moved it across either. doubt: weight of these sensors (subdiv_cache.h). */
 static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float off)
 {
     const float matters = (float)SUBDIV_AIM, error = fmaxf(old->error, old->barred);
@@ -367,8 +366,9 @@ static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct su
     }
 }
 
-/* Looks up a finding (measured error) by key and unpacks it to *found. *next: guess of the finding's index, tried first, because most
- * findings are looked up in the order of the last run; receives the index after the found one. Returns false if the key is absent. */
+/* Looks up a finding (measured error) by key and unpacks it to *found. *next: guess of its index, which is tried first, because
+ * most findings are looked up in the order of the last run; receives the index after the one found. Returns false if the key is
+ * absent. */
 static bool find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next, struct subdiv_cache_entry *found)
 {
     if (*next >= cache->finding_count || cache->keys[*next] != key) {

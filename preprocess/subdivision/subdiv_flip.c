@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Flips edges: replaces the common edge of two triangles by the other diagonal. Where that reduces the interpolation error as much as a
- * split of the edge would, it saves a triangle. */
+/* Flips edges: replaces the common edge of two triangles by the other diagonal. Where that reduces the interpolation error as
+ * much as splitting the edge would, it saves a triangle. */
 #include <math.h>
 #include <string.h>
 
@@ -8,19 +8,19 @@
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MAX_FLIP_ROUNDS 4  /* maximum number of rounds of edge flips in a row */
-#define FLAT_OF_ERROR 0.02 /* maximum distance by which a flip may move the surface, as a share of error_m of the level of detail */
-#define GAIN 0.7           /* maximum ratio of the interpolation error after a flip to the error before it */
-#define CROSSING 0.02      /* share of an edge's length; the old and the new diagonal must cross at least this far from the ends of both */
+#define MAX_FLIP_ROUNDS 4  /* maximum number of consecutive rounds of edge flips */
+#define FLAT_OF_ERROR 0.02 /* how far a flip may move the surface, as a share of the level's error_m */
+#define GAIN 0.7           /* a flip must reduce the interpolation error at least by this factor */
+#define CROSSING 0.02      /* share of an edge's length; the diagonals must cross at least this far from the ends of each */
 
-#define GRAIN 1024 /* number of flips per unit of work of a thread: takes a few tenths of a millisecond */
+#define GRAIN 1024 /* number of flips that a thread processes per unit of work, which takes a few tenths of a millisecond */
 
 struct edge_flip {
     uint32_t edge, tris[2], across;
-    bool may; /* true: the flip is allowed: old and new diagonal cross, and the surface moves by less than FLAT_OF_ERROR permits */
+    bool may; /* true: the flip is allowed: the diagonals cross, and the surface moves by no more than FLAT_OF_ERROR allows */
 };
 
-/* Lists the edges with an error above the limit that belong to triangles made since the last call: mesh->made.at[first] and later. */
+/* Lists the edges with an error above the limit in triangles made since the last call: mesh->made.at[first] and later. */
 static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct subdiv_list *edges)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -33,7 +33,7 @@ static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct
     subdiv_mesh_sort(edges);
 }
 
-/* Finds the two triangles at an edge. Returns false if the edge does not have exactly two triangles. */
+/* Finds the two triangles at an edge. Returns false if the edge has more or fewer triangles. */
 static bool find_tris(const struct subdiv_mesh *mesh, uint32_t edge, uint32_t tris[2])
 {
     uint32_t first = mesh->cuts[edge].corner, second = first == TRIMESH_NONE ? first : mesh->next[first];
@@ -52,8 +52,7 @@ static void position_of(const struct subdiv *subdiv, uint32_t vertex, double at[
         at[i] = (double)subdiv_position(subdiv, vertex)[i];
 }
 
-/* Returns whether the points at which the edges a-b and c-d are closest to each other lie inside both edges and at most apart_m from each
- * other. */
+/* Returns whether the closest points of the edges a-b and c-d lie inside both edges and at most apart_m from each other. */
 static bool cross(const double a[3], const double b[3], const double c[3], const double d[3], double apart_m)
 {
     double ab[3], cd[3], ac[3], normal[3], side[3];
@@ -130,7 +129,7 @@ static float error_of(const struct subdiv_edge *edge)
     return fmaxf(edge->error, edge->barred);
 }
 
-/* Applies the flips that reduce the error, at most one per triangle. Returns the number of flips. */
+/* Applies the flips that reduce the error, at most one per triangle. Returns their number. */
 static size_t turn_better(struct subdiv *subdiv, const struct edge_flip *turns, size_t count)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the field at points between vertices, its deviation from linear interpolation, and the best point at which to split an edge of
- * the mesh. */
+/* Measures the field at points between vertices, its deviation from linear interpolation, and the best split point of an edge. */
 #include <math.h>
 #include <string.h>
 #include <xxhash.h>
@@ -11,22 +10,22 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 
-/* share of SUBDIV_AIM; if the interpolation error at an edge's midpoint is smaller, the error is assumed small along the whole edge */
+/* share of SUBDIV_AIM; if the interpolation error at an edge's midpoint is smaller, the whole edge is assumed to be good */
 #define PROBABLE 0.4
-/* share of the distance to the nearest sensor; edges longer than this are measured at all their sample points, without the PROBABLE test */
+/* share of the distance to the nearest sensor; longer edges are measured at all their sample points, without the PROBABLE test */
 #define CLOSE 0.5
-/* share of the distance to the nearest sensor; longer edges are split at their middle, so that the split points of neighbouring edges line
- * up */
+/* share of the distance to the nearest sensor; longer edges are split in the middle, so that the split points of neighbouring
+ * edges line up */
 #define WIDE 0.3
-#define GRAIN 256  /* minimum number of edges, triangles or positions per unit of work of a thread: takes half a millisecond */
-#define POINTS 16  /* maximum number of points at which the error along one edge is measured */
+#define GRAIN 256  /* minimum number of edges, triangles or positions per unit of work of a thread, which takes half a millisecond */
+#define POINTS 16  /* maximum number of points at which the error of an edge is measured */
 #define CORNERS 61 /* number of triangle corners whose samples are cached */
-#define STEPS 2    /* number of refinement steps in the search for the best split point of an edge */
-/* share of the edge's error that remains after the best split; if more remains, the edge is checked for a jump. A smooth bend leaves a
- * quarter, a kink nothing. */
+#define STEPS 2    /* number of refinement steps in the search for an edge's best split point */
+/* if more than this share of an edge's error remains after the best split, the edge is checked for a jump; a smooth bend leaves
+ * a quarter of the error, a kink nothing */
 #define NO_GAIN 0.5
-#define ROUNDING 1e-9 /* relative margin in comparisons of distances, larger than their rounding error */
-/* a distance that grows along a path by more than this multiple of the path's length has a jump: the surface is not connected there */
+#define ROUNDING 1e-9 /* relative margin for comparing distances, larger than their rounding error */
+/* a distance that grows along a path by more than this many times the path's length has a jump: the surface is not connected there */
 #define JUMP 1.5
 
 static uint32_t place_of(const struct subdiv *subdiv, uint32_t vertex)
@@ -67,14 +66,13 @@ bool subdiv_find_parts(struct subdiv *subdiv)
     return list_faces(subdiv);
 }
 
-struct origin_sight { /* which triangles of the original model a sample point may be projected onto */
+struct origin_sight { /* the triangles of the original model that a sample point may be projected onto */
     const struct subdiv *subdiv;
-    uint32_t origin[2]; /* used in the finest level of detail: the point is projected onto one of these two triangles */
-    /* used in coarser levels of detail: the point is projected onto a triangle of this connected component that faces the same way as
-     * `normal` */
+    uint32_t origin[2]; /* finest level of detail: the point is projected onto one of these two triangles */
+    /* coarser levels of detail: the point is projected onto a triangle of this connected component that faces the same way as `normal` */
     uint32_t part;
     double normal[3];
-    struct sample_cache_notes *notes; /* notes for the sample cache, one set for each thread */
+    struct sample_cache_notes *notes; /* notes for the sample cache, one set per thread */
 };
 
 static bool is_in_sight(const void *arg, uint32_t triangle)
@@ -108,8 +106,9 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-/* Finds the surface point onto which a sample point is projected. In a coarser level of detail, searches the connected component of the
- * sample point first, then all others: a point that protrudes slightly may belong to the component that hides the sample point's own. */
+/* Finds the surface point that a sample point projects onto. In a coarser level of detail, searches the sample point's
+ * connected component first, then all others: a slightly protruding point may belong to the component that hides the sample
+ * point's own. */
 static bool search(const struct origin_sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -120,7 +119,7 @@ static bool search(const struct origin_sight *sight, const double at[3], struct 
     return surface_find_point_within(subdiv->in->surface, at, sight->normal, subdiv->on_surface_m, hit);
 }
 
-/* Returns a hash of everything on which the projection of a point depends, except the surface. */
+/* Returns a hash of everything that the projection of a point depends on, except the surface. */
 static uint64_t key_of(const struct origin_sight *sight, const float point[3])
 {
     struct {
@@ -137,7 +136,7 @@ static uint64_t key_of(const struct origin_sight *sight, const float point[3])
     return XXH3_64bits(&all, sizeof(all));
 }
 
-/* Projects a sample point onto the surface, using the cached triangle if there is one. */
+/* Projects a sample point onto the surface, using the cached triangle if any. */
 static bool project(const struct origin_sight *sight, const float point[3], const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -154,9 +153,10 @@ static bool project(const struct origin_sight *sight, const float point[3], cons
     return seen;
 }
 
-/* Finds the visible point nearest to the position `from` inside a partly hidden triangle: only a part of a large triangle may protrude from
- * other connected components. hit->tri on entry: result of the search for another position, or TRIMESH_NONE. On return: result for `from`,
- * even if it is too far away to count; TRIMESH_NONE if the whole triangle is hidden. Returns whether the result is near enough to count. */
+/* Finds the visible point nearest to the position `from` inside a partly hidden triangle: a large triangle may protrude from
+ * other connected components only in part. hit->tri on entry: result of the search for another position, or TRIMESH_NONE. On
+ * return: result for `from`, even if it is too far away to count; TRIMESH_NONE if the whole triangle is hidden. Returns whether
+ * the result is near enough to count. */
 static bool find_seen(const struct origin_sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_point *hit)
 {
@@ -180,8 +180,8 @@ static bool find_seen(const struct origin_sight *sight, const double corners[3][
     return vec_distance(at, hit->point_m) <= subdiv->on_surface_m;
 }
 
-/* Computes the distances of a point from all sensors along the surface, at the point's projection. Returns false if the point is hidden
- * deep inside another part, where no error is visible. */
+/* Computes the distances along the surface from all sensors to a point's projection. Returns false if the point is hidden deep
+ * inside another part, where no error is visible. */
 static bool measure(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -194,8 +194,7 @@ static bool measure(const struct origin_sight *sight, const float point[3], floa
     return true;
 }
 
-/* Computes the distances of a point from all sensors along the surface, also if the point is hidden: then those of the nearest visible
- * point. */
+/* Computes the distances along the surface from all sensors to a point, or, if it is hidden, to the nearest visible point. */
 static void measure_always(const struct origin_sight *sight, const float point[3], float *geodesic_m)
 {
     struct surface_point hit;
@@ -221,7 +220,7 @@ struct line { /* sample points along a mesh edge, in order from its end a to its
     struct interp_norm *norms;
 };
 
-/* Returns the interpolation error at sample point `point` of an edge if the field is interpolated linearly between sample points `from` and
+/* Returns the error at sample point `point` of an edge if the field is interpolated linearly between sample points `from` and
  * `to`. modes: kinds of distance to include. */
 static double error_at(const struct line *line, enum linear_error_modes modes, int from, int to, int point)
 {
@@ -265,8 +264,8 @@ static bool jumps(const struct line *line, double length_m)
     return false;
 }
 
-/* Returns the largest interpolation error that remains on the edge if it is split at its sample point `cut`. Stops early once the error
- * exceeds `enough`. */
+/* Returns the largest interpolation error that remains on the edge after splitting it at its sample point `cut`. Stops as soon
+ * as the error exceeds `enough`. */
 static double left_after(const struct line *line, int cut, double enough)
 {
     double most = 0;
@@ -278,8 +277,8 @@ static double left_after(const struct line *line, int cut, double enough)
     return most;
 }
 
-/* Returns the index of the edge's sample point at which a split leaves the smallest error, *left. Prefers the middle if it is about as
- * good. */
+/* Returns the index of the sample point at which splitting the edge leaves the smallest error, *left. Prefers the middle if it
+ * is about as good. */
 static int best_cut(const struct line *line, double *left)
 {
     int best = 0;
@@ -300,8 +299,8 @@ static void add_eighths(struct line *line, struct subdiv_finding *finding)
         finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
 }
 
-/* Finds the point at which to split an edge. Where a field bends evenly, the middle is best. At a kink, where two paths are equally long,
- * the kink is best. If the distance jumps, no split helps; halving the edge repeatedly narrows the jump down to a short edge. */
+/* Finds the point at which to split an edge: the middle where the field bends evenly; the kink where two paths are equally
+ * long. If the distance jumps, no split helps; halving the edge repeatedly narrows the jump down to a short edge. */
 static void find_cut(struct line *line, double length_m, double enough, struct subdiv_finding *finding)
 {
     double left;
@@ -327,15 +326,15 @@ struct measure_job {
     double enough;
 };
 
-/* Buffers of one thread: points of the current edge, and a cache of the samples (linear_error.h) at recently used corners, because the next
- * edge probably shares a corner. */
+/* Buffers of one thread: points of the current edge, and a cache of the samples (linear_error.h) at recently used corners,
+ * because the next edge probably shares a corner with an earlier one. */
 struct measure_room {
     float *points, *corners;
     struct interp_norm *norms; /* normalisations of the sensors' weights at the last sample point */
-    /* by cache slot: the position whose sample is stored; the last three slots serve corners whose regular slot another corner of the same
-     * edge or triangle occupies */
+    /* by cache slot: the position whose sample is stored; the last three slots are for corners whose regular slot is occupied
+     * by another corner of the same edge or triangle */
     uint32_t of[CORNERS + 3];
-    uint32_t taken[3]; /* by corner of the current edge or triangle: index of its slot in the thread's cache of samples */
+    uint32_t taken[3]; /* by corner of the current edge or triangle: index of its slot in the cache of samples */
     struct sample_cache_notes notes;
 };
 
@@ -357,7 +356,7 @@ static void room_finish(struct measure_room *room, const struct subdiv *subdiv)
     mem_free(room->norms);
 }
 
-/* Returns the sample (linear_error.h) at a corner of the current edge or triangle, from the cache of this thread if possible. */
+/* Returns the sample (linear_error.h) at a corner of the current edge or triangle, from the thread's cache if possible. */
 static const float *shares_at(const struct subdiv *subdiv, uint32_t vertex, uint32_t corner, struct measure_room *room)
 {
     uint32_t place = place_of(subdiv, vertex), number = place % CORNERS;
@@ -381,8 +380,8 @@ static void bar_short(struct subdiv_finding *finding)
     finding->error = 0;
 }
 
-/* Moves an edge's error from finding->error to finding->barred if the geodesic distance jumps across the edge, because no split fixes a
- * jump. Errors of straight-line distances, which do not jump, stay in finding->error. */
+/* If the geodesic distance jumps across the edge, moves the edge's error from finding->error to finding->barred, because no
+ * split fixes a jump. Errors of straight-line distances, which do not jump, stay in finding->error. */
 static void bar_jump(struct subdiv_finding *finding, const struct line *line)
 {
     finding->jumps = true;
@@ -393,8 +392,8 @@ static void bar_jump(struct subdiv_finding *finding, const struct line *line)
     }
 }
 
-/* Returns the distance from the edge's midpoint to the nearest sensor, or to the nearest point where a group's data ends. Reuses the
- * midpoint's normalisations if the midpoint was the last point measured. */
+/* Returns the distance from the edge's midpoint to the nearest sensor, or to the nearest point where a group's data ends.
+ * Reuses the midpoint's normalisations if it was the last point measured. */
 static double nearest_to_middle(const struct line *line, uint32_t end)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -468,8 +467,8 @@ static void try_edges(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Returns whether a split would not help: the geodesic distance jumps between a point inside a triangle and one of the corners, and the
- * triangle's edges are short. */
+/* Returns whether splitting would not help: the geodesic distance jumps between a point inside a triangle and one of its
+ * corners, and the triangle's edges are short. */
 static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *tri, const float middle[3], const float *geodesic_m)
 {
     for (int c = 0; c < 3; c++) {
@@ -484,7 +483,7 @@ static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *t
     return false;
 }
 
-struct inside { /* state while a triangle's interpolation error is measured at inner points */
+struct inside { /* state for measuring the interpolation error at points inside a triangle */
     struct origin_sight sight;
     const struct subdiv_tri *tri;
     const float *interp[3]; /* samples (weights of the sensors) at the triangle's corners */
@@ -499,8 +498,7 @@ static void place_in(const struct inside *inside, const double weights[3], doubl
         at[i] = weights[0] * inside->corners[0][i] + weights[1] * inside->corners[1][i] + weights[2] * inside->corners[2][i];
 }
 
-/* Returns the interpolation error at the point of a triangle with these barycentric weights. hit: the point's projection onto the
- * surface. */
+/* Returns the interpolation error at a triangle's point with these barycentric weights. hit: the point's projection onto the surface. */
 static double error_inside(const struct inside *inside, const double weights[3], const struct surface_point *hit)
 {
     const struct subdiv *subdiv = inside->sight.subdiv;
@@ -518,7 +516,7 @@ static double error_inside(const struct inside *inside, const double weights[3],
     return linear_error_in_triangle(linear, modes, inside->interp, weights, interp, wide_m, subdiv->slack_m);
 }
 
-/* Measures a triangle's interpolation error at its centre. If the centre is hidden inside another part, measures at the visible points
+/* Measures a triangle's interpolation error at its centre, or, if this is hidden inside another part, at the visible points
  * nearest to the centre and to three points near the corners. */
 static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct measure_room *room)
 {
@@ -563,8 +561,8 @@ static void try_insides(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Rounds distances beyond a group's reach to the precision of the asset file. There the nearest sensor has all the weight. Where two
- * sensors are about equally near, rounding decides between them, and must decide as it does in the file. */
+/* Rounds distances beyond a group's reach to the asset file's precision. There the nearest sensor has all the weight, and where
+ * two sensors are about equally near, rounding must choose the same one as in the file. */
 static void round_beyond_reach(const struct linear_error *linear, float *geodesic_m)
 {
     for (size_t g = 0; g < linear->group_count; g++) {
@@ -602,8 +600,8 @@ static void measure_places(void *arg, size_t begin, size_t end)
         sample_cache_hand_over(subdiv->in->sample_cache, &notes);
 }
 
-/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and edges with such an error get no split
- * point. */
+/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and edges with such errors get
+ * no split point. */
 static void measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
 {
     struct measure_job job = { .subdiv = subdiv, .findings = findings, .enough = enough };

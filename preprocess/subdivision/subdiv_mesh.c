@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits edges of the mesh at new vertices, and the triangles at these edges. */
+/* Splits mesh edges at new vertices, and the triangles at these edges. */
 #include "preprocess/subdivision/subdiv_mesh.h"
 
 #include <math.h>
@@ -112,8 +112,8 @@ static uint32_t edge_of(struct subdiv_mesh *mesh, uint32_t a, uint32_t b, uint32
 
 #define LOOK_UP TRIMESH_NONE
 
-/* Creates a triangle with corners v; other properties are copied from `like`. known: indices of its three edges; TRIMESH_NONE for an edge
- * that must be looked up by its vertices, which is slow. */
+/* Creates a triangle with corners v; its other properties are copied from `like`. known: indices of its three edges;
+ * TRIMESH_NONE: the edge must be looked up by its vertices, which is slow. */
 static struct subdiv_tri make_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
     struct subdiv_tri tri = { .v = { v[0], v[1], v[2] }, .primitive = like->primitive, .origin = like->origin };
@@ -183,8 +183,7 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    /* edges that were not proven to need no split must be measured again for this level of detail, because the error limit depends on the
-     * level */
+    /* edges not proven to need no split must be measured again for this level of detail, because the error limit depends on the level */
     for (size_t e = 0; e < mesh->edges.count; e++) {
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;
@@ -243,7 +242,7 @@ static void add_texcoord(float (**texcoords)[2], size_t *capacity, uint32_t vert
     memcpy((*texcoords)[vertex], mixed, sizeof(mixed));
 }
 
-/* Adds a vertex at a position, with attributes interpolated from other vertices. */
+/* Adds a vertex at a position, interpolating its attributes from other vertices. */
 static uint32_t add_vertex(struct subdiv_mesh *mesh, uint32_t place, const uint32_t *from, const double *weights, int count)
 {
     struct geometry *g = mesh->geometry;
@@ -273,7 +272,7 @@ static uint32_t add_vertex(struct subdiv_mesh *mesh, uint32_t place, const uint3
     return vertex;
 }
 
-/* Returns the vertex at the split point of an edge, for the face whose vertices at the edge's ends are a and b. */
+/* Returns the vertex at an edge's split point, for the face whose vertices at the edge's ends are a and b. */
 static uint32_t middle_vertex(struct subdiv_mesh *mesh, uint32_t edge, uint32_t a, uint32_t b)
 {
     const struct subdiv_edge *cut = &mesh->cuts[edge];
@@ -310,8 +309,8 @@ static double distance2(const struct subdiv_mesh *mesh, uint32_t a, uint32_t b)
     return x * x + y * y + z * z;
 }
 
-/* Splits a triangle in two: corners v, edges e, of which e[0] is split at vertex m. Appends one piece and returns the other. Each keeps an
- * unsplit edge, and they share a new one. */
+/* Splits a triangle in two. The triangle has corners v and edges e; e[0] is split at vertex m. Appends one piece and returns
+ * the other. Each piece keeps an unsplit edge, and they share a new one. */
 static struct subdiv_tri cut_once(struct subdiv_mesh *mesh, const struct subdiv_tri *old, const uint32_t v[3], const uint32_t e[3],
                                   uint32_t m)
 {
@@ -343,7 +342,7 @@ static struct subdiv_tri cut_thrice(struct subdiv_mesh *mesh, const struct subdi
     return piece;
 }
 
-/* Splits a triangle at all its split edges: the first of the new triangles takes its index, the others are appended. */
+/* Splits a triangle at all its split edges: the first piece replaces it, the others are appended. */
 static void split_tri(struct subdiv_mesh *mesh, size_t t)
 {
     struct subdiv_tri old = mesh->tris[t];
@@ -375,7 +374,7 @@ static bool is_open(const struct subdiv_mesh *mesh, size_t t)
     return subdiv_mesh_is_split(mesh, e[0]) || subdiv_mesh_is_split(mesh, e[1]) || subdiv_mesh_is_split(mesh, e[2]);
 }
 
-/* Triangles that need further splits are appended to mesh->open and split in the next round. */
+/* triangles that need further splits are appended to mesh->open and split in the next round */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh)
 {
     size_t before = mesh->tri_count;
@@ -404,8 +403,8 @@ uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double w
 
 /* --- flipping ------------------------------------------------------------------------------------------------------------- */
 
-/* Writes the triangle's three corners in winding order, starting with the two corners of `edge`, and to `e` its three edges, starting with
- * `edge`. */
+/* Writes the triangle's three corners in winding order, beginning with the two at `edge`, and its three edges to `e`, beginning
+ * with `edge`. */
 static void corners_from(const struct subdiv_tri *tri, uint32_t edge, uint32_t v[3], uint32_t e[3])
 {
     int first = tri->e[0] == edge ? 0 : tri->e[1] == edge ? 1 : 2;

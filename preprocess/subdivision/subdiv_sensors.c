@@ -8,13 +8,13 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor this close to a vertex or an edge gets its vertex there */
-/* maximum number of edges that are split at one sensor because another level of detail has split them at a different point */
+#define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor this close to a vertex or an edge has its vertex there */
+/* maximum number of edges split at one sensor because another level of detail has split them elsewhere */
 #define MAX_CUTS 30
-/* maximum number of sensors for which every triangle is compared with every sensor instead of building a bounding volume hierarchy */
+/* up to this number of sensors, every triangle is compared with every sensor; for more, a bounding volume hierarchy is built */
 #define FEW 32
 
-struct sensor_hit { /* the point of a level of detail that is nearest to a sensor */
+struct sensor_hit { /* point of a level of detail nearest to a sensor */
     size_t tri;
     double weights[3], point[3];
 };
@@ -48,8 +48,8 @@ static double try_piece(const struct subdiv *subdiv, size_t t, const double poin
     return distance_m;
 }
 
-/* Finds, among the triangles into which original triangle `tri` has been divided, the one nearest to a point. One of these triangles has
- * the index of the original; the others were appended. Returns the distance. */
+/* Finds the piece of original triangle `tri` that is nearest to a point. One piece has the index of the original; the others
+ * were appended. Returns the distance. */
 static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double point[3], struct sensor_hit *hit)
 {
     double best_m = try_piece(subdiv, tri, point, INFINITY, hit);
@@ -71,7 +71,7 @@ static void know_place(struct subdiv *subdiv, uint32_t place, uint32_t part, con
     subdiv_measure_places(subdiv, place, edge, 1);
 }
 
-/* Splits that edge of the triangle on which the point lies. Returns false if the point is on none of its edges. */
+/* Splits the edge of the triangle on which the point lies. Returns false if the point is on none of its edges. */
 static bool cut_edge_at(struct subdiv *subdiv, const struct sensor_hit *hit, const float point[3])
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -102,8 +102,9 @@ static uint32_t put_into_triangle(struct subdiv *subdiv, const struct sensor_hit
     return vertex;
 }
 
-/* Finds or creates the vertex at a sensor: an existing one, or a new one on an edge or inside a triangle. An edge that another level of
- * detail split elsewhere is split there first. Returns false if the current level omits the connected component that the sensor sits on. */
+/* Finds or creates the vertex at a sensor: an existing one, or a new one on an edge or inside a triangle. If another level of
+ * detail split an edge elsewhere, splits it there first. Returns false if the current level omits the connected component that
+ * the sensor is on. */
 static bool find_vertex(struct subdiv *subdiv, uint32_t tri, const double point[3], double error_m, uint32_t *vertex)
 {
     struct sensor_hit hit = { 0 };
@@ -141,7 +142,7 @@ static void stand(struct subdiv *subdiv, uint32_t tri, size_t sensor, double err
     subdiv_measure_places(subdiv, place, NULL, 1);
 }
 
-/* --- nearest triangle to each sensor; of equally near ones the triangle with the lowest index ----------------------------------- */
+/* --- the triangle nearest to each sensor; if several are equally near, the one with the lowest index ------------------------------ */
 
 static void look_at_all(const struct subdiv *subdiv, uint32_t *nearest)
 {

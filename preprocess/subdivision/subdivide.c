@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds edges along which the field is not linear and splits them, those with the largest error first, until the error is small enough. */
+/* Finds edges along which the field is not linear and splits them, largest error first, until the errors are small enough. */
 #include "preprocess/subdivision/subdivide.h"
 
 #include <math.h>
@@ -11,56 +11,56 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_ROUNDS 16
-#define GRAIN 2048 /* triangles per unit of work of a thread: takes a few tenths of a millisecond */
-/* A sample is the list of the sensors' interpolation weights at one point (linear_error.h). If it has at most this many numbers, the
- * samples at all vertex positions are kept in memory; longer samples are computed each time they are needed. */
+#define GRAIN 2048 /* number of triangles that a thread processes per unit of work, which takes a few tenths of a millisecond */
+/* A sample is the list of the sensors' interpolation weights at one point (linear_error.h). Samples of up to this many numbers
+ * are kept in memory for all vertex positions; longer samples are computed each time they are needed. */
 #define MAX_STORED 512
-#define LARGE 0.25 /* share of the distance to the nearest sensor; a triangle is large if it has a longer edge */
-/* sum of a triangle's edge errors, in multiples of the error limit; below this sum, only one of 500 large triangles has an error inside
- * above the limit */
+#define LARGE 0.25 /* share of the distance to the nearest sensor; triangles with a longer edge count as large */
+/* sum of a triangle's edge errors, in multiples of the error limit; below it, only one in 500 large triangles has an error
+ * inside above the limit */
 #define LIKELY 1.0
-/* in multiples of the minimum edge length shortest_m; the inside of a triangle whose longest edge is at most this long is not measured */
+/* in multiples of the minimum edge length shortest_m; triangles whose longest edge is at most this long are not measured inside */
 #define MIN_INSIDE 2.0
-#define FLAT 1e-3 /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
-/* share of the longest edge; a flat triangle's longest edge is split near the opposite corner only if that corner is at least this far from
- * the edge's ends */
+#define FLAT 1e-3 /* a triangle is flat if the sum of its two shorter edges exceeds its longest edge by at most this share */
+/* share of the longest edge; a flat triangle's longest edge is split next to the opposite corner only if this corner is at
+ * least this far from its ends */
 #define ASIDE 0.1
-/* height relative to the asset's size, a few rounding errors of a float; a triangle below this height is degenerate */
+/* height relative to the asset's size, a few rounding errors of a float; triangles with less height are degenerate */
 #define LINE_OF_SIZE 2.5e-7
-/* number of positions for which address space is reserved, in multiples of the model's number of positions */
+/* number of positions for which address space is reserved, in multiples of the model's */
 #define MORE_PLACES 12.0
-#define MAX_REPORTED_EDGES 2000 /* maximum number of short edges of a coarser level that are measured for the report */
-/* share of a level's triangles; subdivision of the level stops when a round of splits may add fewer triangles than this. A round may add
- * half of the triangles that the level's limit leaves */
+#define MAX_REPORTED_EDGES 2000 /* maximum number of a coarser level's short edges that are measured for the report */
+/* share of a level's triangles; subdividing the level stops when a round of splits may add fewer triangles than this. A round
+ * may add half of the triangles that remain within the level's limit */
 #define FULL 2e-4
 
-/* limits of the triangles added to the finest level: as a multiple of its triangles, and as a count; the larger limit applies */
+/* limits of the number of triangles added to the finest level, as a multiple of its triangles and as a count; the larger limit applies */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
-#define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer one's triangles */
-/* used in place of WORTH if there are at least MANY_SENSORS, whose distances then take most of a file, or if the finest level reached its
- * limit */
+#define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer level's triangles */
+/* replaces WORTH if there are at least MANY_SENSORS, whose distances then take up most of a file, or if the finest level
+ * reached its limit */
 #define WORTH_MANY 0.5
 #define MANY_SENSORS 128
-/* minimum number of triangles for which a level's size is first estimated from a sample; smaller samples are unreliable */
+/* a level's size is first estimated from a sample only if it has at least this many triangles; smaller samples are unreliable */
 #define SAMPLE_WORTH 9000
-#define SAMPLE_ROUNDS 4 /* maximum rounds of splits on a sample; more rounds would not change the estimate */
-/* minimum length of the two parts of a split edge in the finest level of detail, in multiples of the model's tolerance; short because
- * sensors may be close together */
+#define SAMPLE_ROUNDS 4 /* maximum number of rounds of splits on a sample; more would not change the estimate */
+/* minimum length of the two parts of a split edge in the finest level of detail, in multiples of the model's tolerance; short
+ * because sensors may be close together */
 #define SHORTEST_NEAR 0.125
-/* minimum length of the two parts of a split edge in a coarser level of detail, in multiples of its error_m: at most a pixel where the
- * level is drawn */
+/* minimum length of the two parts of a split edge in a coarser level of detail, in multiples of its error_m; at most a pixel
+ * where the level is drawn */
 #define SHORTEST 1.0
-/* longest edge that is not split at a jump of the distance: in multiples of the tolerance, in coarser levels of error_m */
+/* an edge up to this length is not split at a jump of the distance; in multiples of the tolerance, in coarser levels of error_m */
 #define JUMP_WIDTH 8
-#define ON_SURFACE 0.25 /* distance from the surface, in multiples of the tolerance, up to which a point counts as on the surface */
-/* in multiples of the level's error_m; a coarser level of detail may show at a point the field of another point up to this distance away */
+#define ON_SURFACE 0.25 /* in multiples of the tolerance; points up to this distance from the surface count as on it */
+/* in multiples of the level's error_m; at any point, a coarser level of detail may show the field of a point up to this far away */
 #define SLACK 0.7
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
 #define BINS (1u << 16)
-/* Returns the histogram bin of an error: positive floats compare like their bit patterns, so the upper 16 bits are a monotonic index. */
+/* Returns the histogram bin of an error: positive floats sort like their bit patterns, so the upper 16 bits are a monotonic index. */
 static uint32_t bin_of(float error)
 {
     uint32_t bits;
@@ -68,8 +68,8 @@ static uint32_t bin_of(float error)
     return bits >> 16;
 }
 
-/* Keeps the `most` findings (measured errors) with the largest errors, in their order. The threshold comes from a histogram of errors; of
- * findings in the threshold's bin, the first ones are kept. Returns the number of findings kept. */
+/* Keeps the `most` findings (measured errors) with the largest errors, in their order. The threshold comes from a histogram of
+ * errors; of the findings in the threshold's bin, keeps the first ones. Returns the number of findings kept. */
 static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t most)
 {
     if (count <= most)
@@ -90,7 +90,7 @@ static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t m
     return kept;
 }
 
-/* Returns whether a triangle is too narrow to be visible in a picture. */
+/* Returns whether a triangle is too narrow to be visible. */
 static bool is_line(const struct subdiv *subdiv, const struct subdiv_tri *tri)
 {
     double p[3][3], normal[3], longest_m = 0;
@@ -103,20 +103,20 @@ static bool is_line(const struct subdiv *subdiv, const struct subdiv_tri *tri)
     return vec_length(normal) <= LINE_OF_SIZE * subdiv->size_m * longest_m;
 }
 
-/* Returns whether an edge of a coarser level is too short to be split whatever its error. */
+/* Returns whether an edge of a coarser level is too short to split, whatever its error. */
 static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *edge)
 {
     return !subdiv->finest && subdiv_is_short(subdiv, subdiv_length(subdiv_position(subdiv, edge->a), subdiv_position(subdiv, edge->b)));
 }
 
-/* Flags of a triangle that the last round of splits made. SIDE_* flags exist per edge, shifted left by the edge's index 0 to 2. */
+/* Flags of a triangle made by the last round of splits. SIDE_* flags are per edge, shifted left by the edge's index (0 to 2). */
 #define SIDE_IS_NEW 1u
 #define SIDE_IS_TOO_SHORT 8u
-#define ASKS 64u /* flag: the triangle has edges that were not measured yet, and is not degenerate */
+#define ASKS 64u /* flag: the triangle is not degenerate and has edges that have not been measured */
 
 struct sides {
     const struct subdiv *subdiv;
-    unsigned char *of; /* by triangle of the last round of splits: flags of its edges (SIDE_*) */
+    unsigned char *of; /* by triangle from the last round of splits: flags of its edges (SIDE_*) */
 };
 
 static void look_at_sides(void *arg, size_t begin, size_t end)
@@ -138,9 +138,9 @@ static void look_at_sides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Sets the error of unmeasured edges of new triangles to 0 until they are measured. asks = ASKS: visits triangles with this flag, lists in
- * findings[] the edges that must be measured, and returns their number. asks = 0: visits degenerate triangles, whose edges need no
- * measurement, and returns 0. */
+/* Sets the error of unmeasured edges of new triangles to 0 until they are measured. asks = ASKS: visits triangles with this
+ * flag, lists the edges to be measured in findings[], and returns their number. asks = 0: visits degenerate triangles, whose
+ * edges need no measurement, and returns 0. */
 static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, unsigned asks, struct subdiv_finding *findings)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -161,9 +161,9 @@ static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, u
     return count;
 }
 
-/* Measures the edges that the last round of splits made. Edges that only degenerate triangles have are invisible, and splitting them would
- * add degenerate triangles, so they get error 0. Half of the edges of coarser levels of detail are too short to split, so their error does
- * not matter. */
+/* Measures the edges made by the last round of splits. Edges of degenerate triangles only get error 0: they are invisible, and
+ * splitting them would add degenerate triangles. Half of the edges of coarser levels of detail are too short to split, so their
+ * error does not matter. */
 static void measure_edges(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -192,10 +192,10 @@ static int longest_edge(const struct subdiv *subdiv, const struct subdiv_tri *tr
     return longest;
 }
 
-/* Returns whether the field's error inside a triangle may exceed the limit although its edges are good. Where a field bends evenly, the
- * error at the centre is 4/9 of the sum of the three edges' errors. In a triangle that is large compared with the distance to the nearest
- * sensor, the error inside may have any size. Such a triangle with small edge errors is measured only in the last pass over the level,
- * which has the smallest limit (SUBDIV_AIM). */
+/* Returns whether the field's error inside a triangle may exceed the limit although its edges are good. Where a field bends
+ * evenly, the error at the centre is 4/9 of the sum of the three edges' errors. In a triangle that is large compared with the
+ * distance to the nearest sensor, the error inside may have any size. Such a triangle with small edge errors is measured only
+ * in the last pass over the level, which has the smallest limit (SUBDIV_AIM). */
 static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri *tri, double limit)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -215,7 +215,7 @@ static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri 
 struct insides {
     const struct subdiv *subdiv;
     double limit;
-    char *asked; /* by triangle of the last round of splits: whether the error inside it must be measured */
+    char *asked; /* by triangle from the last round of splits: nonzero if the error inside must be measured */
 };
 
 static void choose_insides(void *arg, size_t begin, size_t end)
@@ -231,8 +231,8 @@ static void choose_insides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Measures the error inside triangles that the last round of splits made and whose edges need no split. If it exceeds the limit, records it
- * at the triangle's longest edge, so that this edge is split. */
+/* Measures the error inside triangles made by the last round of splits whose edges need no split. An error above the limit is
+ * recorded at the triangle's longest edge, which is then split. */
 static void measure_insides(struct subdiv *subdiv, double limit)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -281,8 +281,8 @@ static void cut_edges(struct subdiv *subdiv, const struct subdiv_finding *findin
     mem_free(edges);
 }
 
-/* Finds the longest edge of a flat triangle and the fraction at which to split it: next to the opposite corner, which is close to that
- * edge. Returns false if the triangle is not flat. */
+/* Finds the longest edge of a flat triangle and the fraction at which to split it: next to the opposite corner, which is close
+ * to the edge. Returns false if the triangle is not flat. */
 static bool find_aim(const struct subdiv *subdiv, const struct subdiv_tri *tri, uint32_t *edge, float *share)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -323,7 +323,7 @@ static void find_flat(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Moves the split points of the longest edges of flat triangles that the last round made next to the triangles' opposite corners. */
+/* In flat triangles made by the last round, moves the longest edge's split point next to the opposite corner. */
 static void aim_at_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -338,8 +338,7 @@ static void aim_at_corners(struct subdiv *subdiv)
     mem_free(aims.flat);
 }
 
-/* Also splits the longest edge of a flat triangle if another of its edges is split; otherwise the resulting triangles would stay as long as
- * the longest edge. */
+/* If an edge of a flat triangle is split, also splits its longest edge; otherwise the pieces would be as long as the longest edge. */
 static void cut_beside_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -358,7 +357,7 @@ static void cut_beside_corners(struct subdiv *subdiv)
     mem_free(findings);
 }
 
-/* Lists edges with an error above the limit, once for each triangle that has them, in ascending order of triangles. */
+/* Lists the edges with an error above the limit, once per triangle that has them, in ascending order of triangles. */
 static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double limit, size_t *count)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -385,8 +384,8 @@ static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double li
     return findings;
 }
 
-/* Splits the edges with the largest errors above the limit, as many as the level's triangle limit allows. Returns false if no edge was
- * split. */
+/* Splits the edges with the largest errors above the limit, as many as the level's triangle limit allows. Returns false if no
+ * edge was split. */
 static bool cut_worst(struct subdiv *subdiv, double limit)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -416,8 +415,8 @@ static void note_left(struct level *level, enum level_limit limit, float error, 
     level->left[limit].steps = fmaxf(level->left[limit].steps, error / (float)SUBDIV_ERROR);
 }
 
-/* Measures, for the report, a sample of the edges that were too short to split and therefore unmeasured. Returns the number of edges that
- * each measured edge represents. */
+/* For the report, measures a sample of the edges that were not measured because they are too short to split. Returns the number
+ * of edges that each measured edge represents. */
 static uint32_t ask_some(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -453,7 +452,7 @@ static void tell_left(struct subdiv *subdiv, struct level *level)
     mem_free(told);
 }
 
-/* Splits edges in rounds until no error exceeds `limit`, or the level of detail has reached its triangle limit. */
+/* Splits edges in rounds until no error exceeds `limit`, or until the level of detail has reached its triangle limit. */
 static void cut_to(struct subdiv *subdiv, double limit)
 {
     int rounds = subdiv->sample_blocks ? SAMPLE_ROUNDS : MAX_ROUNDS;
@@ -472,8 +471,8 @@ static void cut_to(struct subdiv *subdiv, double limit)
     }
 }
 
-/* Estimates the final size of a level of detail by splitting a sample of its triangles until no error exceeds the limit `large`. Returns
- * whether the whole level would certainly need too many triangles, so that its subdivision can be skipped. */
+/* Estimates the final size of a level of detail by splitting a sample of its triangles until no error exceeds the limit
+ * `large`. Returns whether the whole level would certainly need too many triangles, so that it need not be subdivided. */
 static bool is_hopeless(struct subdiv *subdiv, const struct level *level, double large)
 {
     struct level sample;
@@ -497,8 +496,8 @@ static bool is_known_hopeless(const struct subdiv *subdiv)
     return subdiv->in->cache && subdiv->in->cache->hopeless >> subdiv->level & 1;
 }
 
-/* Subdivides a level of detail in several passes, each with a smaller error limit. If the level reaches its triangle limit, the errors that
- * remain are then the smallest ones. Measures nothing if each pixel evaluates the fields of all groups. */
+/* Subdivides a level of detail in several passes, each with a smaller error limit: if the level reaches its triangle limit,
+ * only small errors remain. Measures nothing if the fields of all groups are evaluated at each pixel. */
 static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t finer_tris)
 {
     static const double limits[] = { 16 * SUBDIV_AIM, 4 * SUBDIV_AIM, 2 * SUBDIV_AIM, SUBDIV_AIM };
@@ -530,8 +529,8 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv_mesh_store(&subdiv->mesh, level);
 }
 
-/* Subdivides all levels of detail. A coarser level that reaches its triangle limit is dropped: the next finer level, which costs no more,
- * takes its place. */
+/* Subdivides all levels of detail. Drops coarser levels that reach their triangle limit: the next finer level, which costs no
+ * more, takes their place. */
 static void subdivide_all(struct subdiv *subdiv, struct levels *levels)
 {
     size_t kept = 0, finer_tris = 0;
@@ -582,7 +581,7 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
         return false;
     size_t places = subdiv->mesh.welded.count;
-    /* reserves more memory for distances than needed, because the kernel provides it only for pages that are used */
+    /* reserve more memory for distances than needed: the kernel provides it only for pages in use */
     subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors;
     subdiv->geodesic_m = mem_try_array(subdiv->geodesic_capacity, sizeof(*subdiv->geodesic_m));
     if (subdiv->samples <= MAX_STORED) {

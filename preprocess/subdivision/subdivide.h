@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Adaptive subdivision: splits triangles where linear interpolation of the field (readings interpolated between sensors) would be wrong,
- * and inserts a vertex at each sensor. The finest level shows the field within SUBDIV_ERROR for any readings (linear_error.h). A coarser
- * level, whose surface is up to error_m off, shows within SUBDIV_ERROR the field of some point at most about two thirds of error_m away,
- * and within three times SUBDIV_ERROR that of the point itself; it is drawn only where error_m is less than a pixel. Its surface is
- * unchanged, except that edges in flat regions may be flipped. An edge that a finer level also has and need not split is not measured
- * again. Edges up to an eighth of the model's tolerance (in coarser levels: up to their error) are not split. Nor are edges up to eight
- * tolerances or errors long whose error comes from a jump of the geodesic distance between unconnected surfaces, because no split fixes a
- * jump. Interior triangles (hidden inside another part, in coarser levels with an allowance for their error) and degenerate slivers are
- * ignored. The largest errors are fixed first, and the number of triangles is limited: the finest level may grow to three times its
- * triangles or by 100,000, the larger limit. A coarser level is dropped if it would need more than 0.95 of the next finer one's triangles,
- * or more than half as many if there are 128 sensors or more, whose distances take most of a file, or if the finest level reached its
- * limit. Remaining errors are counted by reason (level.left). */
+/* Adaptive subdivision: splits triangles where linear interpolation of the field (readings interpolated between sensors) would
+ * be wrong, and inserts a vertex at each sensor. The finest level shows the field within SUBDIV_ERROR for any readings
+ * (linear_error.h). A coarser level, whose surface is up to error_m off, is drawn only where error_m is less than a pixel. It
+ * shows, within SUBDIV_ERROR, the field of a point at most about two thirds of error_m away, and within three times
+ * SUBDIV_ERROR that of the point itself. Its surface is unchanged, except that edges in flat regions may be flipped. An edge
+ * that a finer level also has and need not split is not measured again. Edges up to an eighth of the model's tolerance (in
+ * coarser levels: up to their error) are not split. Nor are edges up to eight tolerances or errors long whose error comes from
+ * a jump of the geodesic distance between unconnected surfaces, because no split fixes a jump. Interior triangles (hidden
+ * inside another part, in coarser levels with an allowance for their error) and degenerate slivers are ignored. The largest
+ * errors are fixed first, and the number of triangles is limited: the finest level may grow to three times its triangles or by
+ * 100,000, the larger limit. A coarser level is dropped if it would need more than 0.95 of the next finer level's triangles.
+ * The limit is half the triangles if there are 128 sensors or more, whose distances take up most of a file, or if the finest
+ * level reached its limit. Remaining errors are counted by reason (level.left). */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #define PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #include "preprocess/levels/levels.h"
@@ -26,19 +27,19 @@ struct subdiv_input {
     struct linear_error *linear; /* error measure; subdivide_levels() calls linear_error_set_radius() */
     const struct surface *surface;
     const struct surface_field *field; /* distances from the sensors */
-    /* subdivide_levels() sets their nearest_vertex to the vertex inserted at the sensor in the finest level */
+    /* subdivide_levels() sets their nearest_vertex to the finest level's vertex inserted at the sensor */
     struct asset_sensor *sensors;
     struct workers *workers;           /* worker threads; may be NULL */
-    struct subdiv_cache *cache;        /* cache of measured errors from run to run; zeroed or NULL: nothing is cached */
+    struct subdiv_cache *cache;        /* cache of measured errors from earlier runs; zeroed or NULL: nothing is cached */
     struct sample_cache *sample_cache; /* cache of projected sample points; may be NULL */
-    /* called for each finished level; may be NULL. The level's content will not change any more, but its address in `levels` may. */
+    /* called for each finished level; may be NULL. The level's content is then final, but its address in `levels` is not. */
     void (*level_done)(void *arg, const struct level *level);
     void *arg;
 };
 
-/* Subdivides all levels and computes the distances of all vertices into *distances, which the caller frees. New vertices follow the
- * geometry's own. Both faces at an edge are split at the same vertex, so that a watertight level stays watertight. Levels that would need
- * too many triangles are dropped. Returns false if out of memory; then *distances is empty. */
+/* Subdivides all levels and computes the distances of all vertices into *distances, which the caller frees. New vertices follow
+ * the geometry's own. The faces at an edge are all split at the same vertex, so that a watertight level stays watertight.
+ * Levels that would need too many triangles are dropped. Returns false if out of memory, with *distances empty. */
 bool subdivide_levels(struct levels *levels, struct geometry *geometry, const struct subdiv_input *input, struct distance_rows *distances);
 
 #endif

@@ -7,39 +7,39 @@
 #include "preprocess/subdivision/subdiv_mesh.h"
 #include "preprocess/subdivision/subdivide.h"
 
-/* limit of the interpolation error at the sampled points, a tenth below SUBDIV_ERROR, because errors between these points may be larger */
+/* limit of the interpolation error at the sampled points; a tenth below SUBDIV_ERROR, because errors between these points may be larger */
 #define SUBDIV_AIM (0.9 * SUBDIV_ERROR)
 
 struct subdiv {
     const struct subdiv_input *in;
     struct subdiv_mesh mesh;
     const uint32_t *model; /* vertex indices of the original model's triangles (the finest level before subdivision) */
-    /* count of numbers per position: in geodesic_m (one per sensor), and in `interp` (one sample, linear_error.h) */
+    /* numbers per position: in geodesic_m (one per sensor), and in `interp` (one sample, linear_error.h) */
     size_t sensors, samples;
-    /* [position][sensor] distances along the surface in metres; [position][sample] weights, or NULL if they would be too large */
+    /* [position][sensor]: distance along the surface in metres; [position][sample]: weights; NULL: they would take too much memory */
     float *geodesic_m, *interp;
-    /* normalisations of the sensors' weights at each position, [position][norm] */
+    /* [position][norm]: normalisations of the sensors' weights */
     struct interp_norm *norms;
-    size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: number of normalisations at each position */
-    uint32_t *part;                                                      /* by position: connected component that contains it */
+    size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: number of normalisations per position */
+    uint32_t *part;                                                      /* by position: its connected component */
     struct subdiv_face {
-        double normal[3]; /* normal of the triangle, not of unit length */
+        double normal[3]; /* normal of the triangle, not normalised */
         uint32_t part;
     } * faces; /* by triangle of the original model: normal and connected component */
     size_t part_capacity;
     double size_m;
     /* State of the current level: */
-    uint32_t level; /* index of the level of detail that is being subdivided */
+    uint32_t level; /* index of the level of detail being subdivided */
     bool finest;
-    double on_surface_m; /* a point farther than this from the surface counts as hidden inside another part */
+    double on_surface_m; /* points farther than this from the surface count as hidden inside another part */
     double error_m, shortest_m, slack_m;
-    double jump_m;    /* edges shorter than this, in metres, are not split where the distance along the surface jumps */
+    double jump_m;    /* metres; shorter edges are not split where the distance along the surface jumps */
     bool finest_full; /* true: the finest level reached its triangle limit */
-    bool full;        /* true: the current level of detail has almost reached, or would certainly reach, its triangle limit */
-    /* count of blocks of triangles in the current sample (subdiv_take_sample()); 0: the whole level of detail is processed */
+    bool full;        /* true: the current level of detail has almost reached its triangle limit, or certainly would */
+    /* number of triangle blocks in the current sample (subdiv_take_sample()); 0: the whole level of detail is processed */
     size_t sample_blocks;
-    double sample_of; /* number of triangles of the level of detail that one triangle of the sample represents */
-    /* most_tris: triangle limit of the level of detail; first_count: number of its triangles before vertices were inserted at sensors */
+    double sample_of; /* number of the level's triangles per triangle of the sample */
+    /* most_tris: the level's triangle limit; first_count: number of its triangles before vertices were inserted at sensors */
     size_t most_tris, first_count;
 };
 
@@ -71,19 +71,19 @@ static inline bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
 /* The measured interpolation error of one edge or triangle. */
 struct subdiv_finding {
     uint32_t number;
-    float error, share; /* share: fraction at which a split of the edge leaves the smallest error */
-    float barred;       /* interpolation error, as a share of the range, that no split may fix */
+    float error, share; /* share: fraction at which splitting the edge leaves the smallest error */
+    float barred;       /* interpolation error that must not be fixed by a split, as a share of the range */
     bool jumps;
-    bool is_cached;   /* true: the measurement comes from the cache of the last run, so it was not measured again */
-    float doubt, off; /* doubt: weight of the sensors that changed since the measurement; off: by how much the error may be wrong */
-    uint64_t key;     /* key of the finding in the cache of measured errors */
+    bool is_cached;   /* true: the error comes from the last run's cache and was not measured again */
+    float doubt, off; /* doubt: weight of the sensors changed since the measurement; off: by how much the error may be wrong */
+    uint64_t key;     /* the finding's key in the cache of measured errors */
 };
 
 /* Writes the connected component of each vertex position to subdiv->part. Returns false if out of memory. */
 bool subdiv_find_parts(struct subdiv *subdiv);
-/* Sets the connected component of a position that a split has added. */
+/* Sets the connected component of a position added by a split. */
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
-/* Computes the samples (linear_error.h) at the positions from index `first` on. edges: for each of these positions, the edge it is on, from
+/* Computes the samples (linear_error.h) at the positions from index `first` on. edges: by position: the edge it is on, from
  * which its distances are computed first; NULL: the distances are known. */
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count);
 /* Measures the interpolation error of edges and stores the results in mesh.cuts (struct subdiv_edge). */
@@ -93,19 +93,20 @@ void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findin
 
 /* --- prediction of levels that would grow too large (subdiv_bound.c) --- */
 
-/* Returns whether a coarser level of detail, or the level that the current sample represents, will certainly need more triangles than
- * allowed. Estimated from the measured errors, before the splits are made. */
+/* Returns whether a coarser level of detail, or the level represented by the current sample, will certainly need more triangles
+ * than allowed. Estimates this from the measured errors before the splits are made. */
 bool subdiv_will_exceed_bound(const struct subdiv *subdiv);
-/* Copies some of a level's triangles into *sample, in blocks of a few consecutive triangles. The caller frees *sample with level_finish().
- * Returns the number of blocks. */
+/* Copies some of a level's triangles to *sample, in blocks of a few consecutive triangles. The caller frees *sample with
+ * level_finish(). Returns the number of blocks. */
 size_t subdiv_take_sample(struct level *sample, const struct level *level);
 
 /* --- cache (subdiv_cache.c) --- */
 
-/* Returns the cache key of the measured error of the edge or triangle with these corners, or 0 if it is not cached. Thread: any. */
+/* Returns the cache key for the measured error of the edge or triangle with these corners, or 0 if it is not cached. Thread: any. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count);
-/* Looks up the last run's finding (measured error) with this key, if it is still valid despite the sensors that changed. *next: guess of
- * its index, initially 0; updated for the next call. Returns false if the key is unknown or the finding may be out of date. Thread: any. */
+/* Looks up the last run's finding (measured error) with this key, if it is still valid despite changed sensors. *next: guess of
+ * its index, initially 0; updated for the next call. Returns false if the key is unknown or the finding may be out of date.
+ * Thread: any. */
 bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t *corners, size_t count, uint32_t *next,
                        struct subdiv_finding *finding);
 /* Records a finding (measured error) for the next run, under finding->key. */
@@ -113,14 +114,14 @@ void subdiv_cache_add(struct subdiv *subdiv, const struct subdiv_finding *findin
 
 /* --- edge flips (subdiv_flip.c) --- */
 
-/* Flips edges with an error above `limit`, each between two triangles, if the error along the other diagonal is smaller. The surface may
- * move by at most a small share of error_m of the level of detail. */
+/* Flips edges with an error above `limit` between two triangles if the error along the other diagonal is smaller. The surface
+ * may move by at most a small share of the level's error_m. */
 void subdiv_flip_edges(struct subdiv *subdiv, double limit);
 
 /* --- sensors (subdiv_sensors.c) --- */
 
-/* Inserts a vertex at each sensor into the current level of detail. error_m: largest distance of the level's surface from the finest
- * level's surface, metres. */
+/* Inserts a vertex at each sensor into the current level of detail. error_m: largest distance of the level's surface from the
+ * finest level's, metres. */
 void subdiv_place_sensors(struct subdiv *subdiv, double error_m);
 
 #endif
