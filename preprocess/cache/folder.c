@@ -224,8 +224,8 @@ static void add_resolved(json_t *asset, struct log *log, const char *folder, uin
 }
 
 /* Adds the list of the model's textures and extensions that are not drawn to an asset's manifest entry. If this run did not
- * parse the model, copies the list from the asset's entry in the old manifest, provided that its recipe (hash of model and
- * cutting parameters) is the same. */
+ * parse the model, copies the list from the asset's entry in the old manifest. That entry must have the same recipe (hash of
+ * model and cutting parameters). */
 static void add_left_out(json_t *asset, const struct folder_entry *entry, const json_t *old_assets)
 {
     json_t *texts = entry->left_out ? json_array() : NULL;

@@ -13,8 +13,8 @@ struct child_paths { /* list of paths and the access allowed to each; zero-initi
 void child_paths_add(struct child_paths *paths, const char *path, enum confine_access access);
 /* Adds the folder that contains the file `path`. */
 void child_paths_add_folder_of(struct child_paths *paths, const char *path, enum confine_access access);
-/* Adds, for reading, files with one of these endings (".bin .png", lower case) in the folder of `input` and up to three folder
- * levels below, at most 4096 files. Other files in these folders, such as keys, stay inaccessible. */
+/* Adds files with one of these endings (".bin .png", lower case) for reading: at most 4096 files, in the folder of `input` and
+ * up to three levels below. Other files in these folders, such as keys, stay inaccessible. */
 void child_paths_add_beside(struct child_paths *paths, const char *input, const char *endings);
 /* Adds everything a site's shell command needs: installed programs, the folders of $PATH, configuration in /etc except Plantcast's, and the
  * files and folders that the command names by absolute paths. */

@@ -10,10 +10,10 @@
 #define GAPS_OF_SIZE 3e-4 /* widest gap that is closed, relative to the diagonal of the bounding box */
 #define GAPS_MOST_M 0.002 /* widest gap that is closed, in metres */
 
-/* Closes gaps up to GAPS_OF_SIZE and GAPS_MOST_M by moving the vertices on one side of a gap to the open edges on the other
- * side, so that two open edges become one shared edge. Gaps whose faces overlap stay open. Vertices at the same position move
- * together. tolerance_m: further limit on the gap width; 0: none. Adds the number of moved positions to *closed. Returns false
- * if out of memory. */
+/* Closes gaps up to GAPS_OF_SIZE and GAPS_MOST_M: moves the vertices on one side to the open edges on the other side. Two open
+ * edges thus become one shared edge. Gaps whose faces overlap stay open. Vertices at the same position move together.
+ * tolerance_m: further limit on the gap width; 0: none. Adds the number of moved positions to *closed. Returns false if out of
+ * memory. */
 bool gaps_close(float (*positions_m)[3], size_t vertex_count, const uint32_t *indices, size_t index_count, double tolerance_m,
                 uint32_t *closed);
 

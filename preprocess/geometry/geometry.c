@@ -15,8 +15,8 @@
 
 #define MAX_TRIANGLES 50000000ull /* maximum number of triangles of an asset */
 #define MAX_SIZE_M 1e7
-/* metres; in a model larger than this, an asset's origin is the median of its vertices, because single-precision positions
- * would be accurate to only half a millimetre at the far ends of the model */
+/* metres; in a larger model, an asset's origin is the median of its vertices: single-precision positions would be accurate to
+ * only half a millimetre at the model's far ends */
 #define COARSE_SIZE_M 1e4
 /* metres; if a sensor names several nodes, its position is still unambiguous if they are at most this far apart */
 #define SAME_PLACE_M 1e-3

@@ -25,8 +25,8 @@ static double away_from(const struct extent *main, const double place_m[3])
     return vec_length(away_m);
 }
 
-/* Finds the vertex of a glTF primitive that is farthest from the asset's main part, and keeps it if it is farther away than
- * those found before. Includes vertices used only by triangles without area. */
+/* Finds a glTF primitive's farthest vertex from the asset's main part, and keeps it if it is farther away than those found
+ * before. Includes vertices used only by triangles without area. */
 static void look_at(struct farthest *farthest, const struct node_primitive *part, const struct geometry_params *params)
 {
     double world[16], place_m[3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of a GLB file in depth-first order. Then adds each node's triangles and bounding box to those of its parent,
- * from the last node to the first, so that a node is complete before it is added. */
+/* Reads the nodes of a GLB file in depth-first order. Then adds each node's triangles and bounding box to its parent's, from
+ * the last node to the first, so that children are complete before their parents. */
 #include "preprocess/import/model_outline.h"
 
 #include <stdio.h>

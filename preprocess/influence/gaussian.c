@@ -192,8 +192,8 @@ static double mean_variance(const struct solving *solving, size_t sensor)
     return sum;
 }
 
-/* For mesh points [begin * TILE, end * TILE), replaces the kernels k (covariances of mesh points with readings) by the
- * influence H = P k + m (P: precision matrix, m: weights of the estimated mean). */
+/* Replaces the kernels k (covariances with readings) of mesh points [begin * TILE, end * TILE) by the influence H = P k + m. P:
+ * precision matrix; m: weights of the estimated mean. */
 static void weigh_tiles(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
@@ -327,8 +327,9 @@ static double next_sign(struct signs *signs)
 }
 
 /* Simulates readings: takes a random field u, drawn from the prior, and computes each sensor's reading in units of the standard
- * deviation, negated, because callers subtract the prediction from the field. To keep digits, first subtracts each body's level
- * (the value at its first sensor, returned in levels[component]); this does not change the prediction error. */
+ * deviation. The readings are negated, because callers subtract the prediction from the field. To keep digits, first subtracts
+ * each body's level (the value at its first sensor, returned in levels[component]); this does not change the prediction error.
+ * */
 static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {
     const size_t n = solving->mesh->source_count;

@@ -4,11 +4,11 @@
  * matrix of the prior is Q = t^2 (k^2 C + G) C^-1 (k^2 C + G). C: diagonal matrix of areas; G: stiffness matrix; t: scale; k =
  * sqrt(8) / range: at a distance of one range the correlation is about 0.14. Each connected body has an independent field and
  * its own unknown mean, which is estimated by generalised least squares. The prior therefore excludes the constant part of the
- * field, and t is chosen so that the remainder has the given deviation, as a root mean square over the body's sensors. A
- * reading is the mean over the sensor's disc plus noise. The most probable field is H v for readings v; the rows of H sum to 1
- * on bodies with a sensor. Let P be the precision matrix of the readings' contrasts. Lost sensors L then get the values that
- * solve (P v)_L = 0. The other sensors predict v_i - (P v)_i / P_ii for sensor i, with standard error 1 / sqrt(P_ii). Losing
- * the sensors L increases the variance by H_L (P_LL)^-1 H_L' (H_L: columns of H for L). */
+ * field. t is chosen so that the remainder has the given deviation, as a root mean square over the body's sensors. A reading is
+ * the mean over the sensor's disc plus noise. The most probable field is H v for readings v; the rows of H sum to 1 on bodies
+ * with a sensor. Let P be the precision matrix of the readings' contrasts. Lost sensors L then get the values that solve (P
+ * v)_L = 0. The other sensors predict v_i - (P v)_i / P_ii for sensor i, with standard error 1 / sqrt(P_ii). Losing the sensors
+ * L increases the variance by H_L (P_LL)^-1 H_L' (H_L: columns of H for L). */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_H
 #include "preprocess/influence/influence.h"

@@ -108,8 +108,8 @@ static void add_bend(const struct conduct *conduct, const double *u, size_t coun
     influence_bend_add(conduct->bend, at_points, count, count);
 }
 
-/* Returns the number of sensors solved at a time, which is limited by memory, and by the number of sensors per thread so that
- * all threads have work. */
+/* Returns the number of sensors solved at a time. Memory limits it, and so does the number of sensors per thread, so that all
+ * threads have work. */
 static size_t block_of(const struct conduct *conduct, const struct workers *workers)
 {
     const size_t threads = workers ? (size_t)workers_count(workers) : 1, each = (conduct->influence->count + threads - 1) / threads;

@@ -103,8 +103,8 @@ static bool is_single(const struct influence_anchor *anchor)
     return anchor->points[0] == anchor->points[1] && anchor->points[0] == anchor->points[2];
 }
 
-/* Returns whether the place (corner of an overlap) is at a corner of the drawn triangle that has the value of a mesh point at
- * the same position. The solved field and the drawn field are then equal there, so the place needs no check. */
+/* Returns whether the place (corner of an overlap) is at a corner of the drawn triangle that takes its value from a mesh point
+ * there. The solved field and the drawn field are then equal there, so the place needs no check. */
 static bool is_corner(const struct finding *finding, const struct bend_place *place)
 {
     const struct bend_drawn *drawn = &finding->bend->drawn;
@@ -156,9 +156,9 @@ static void add_place(struct finding *finding, const double at[2], const double 
 
 /* --- passes -------------------------------------------------------------------------------------------------------------------- */
 
-/* Processes a mesh triangle whose box is near the drawn triangle: removes the area it covers from finding->cut. If the triangle
- * belongs to the solved mesh (not to the hidden triangles) and overlaps finding->left, adds the corners of the overlap as
- * places (points at which the error is measured). */
+/* Processes a mesh triangle whose box is near the drawn triangle: removes the area it covers from finding->cut. If a triangle
+ * of the solved mesh (not a hidden one) overlaps finding->left, adds the overlap's corners as places (points at which the error
+ * is measured). */
 static void visit(void *arg, uint32_t tri)
 {
     struct finding *finding = arg;

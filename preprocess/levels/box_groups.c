@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups overlapping boxes by recursively halving space. The recursion ends in a cell with few boxes, in one whose boxes
- * already form one group, or in one that a box fills, which therefore overlaps all others. A sweep along one axis, the usual
- * method, would compare all pairs of boxes along a plate perpendicular to that axis. */
+/* Groups overlapping boxes by recursively halving space. The recursion ends in a cell with few boxes, or whose boxes already
+ * form one group, or that is filled by a box, which then overlaps all others. A sweep along one axis, the usual method, would
+ * compare all pairs of boxes along a plate perpendicular to that axis. */
 #include "preprocess/levels/box_groups.h"
 
 #include <math.h>

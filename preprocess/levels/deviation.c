@@ -298,7 +298,7 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
     return distance_of(&probe, probing->expected_m);
 }
 
-/* Returns whether all of triangle t is within the largest known distance of one of the recently nearest triangles (near->tris),
+/* Returns whether one of the recently nearest triangles (near->tris) has all of triangle t within the largest known distance,
  * so that t need not be measured. The distance from a triangle is a convex function, so its maximum over t is at a corner of t.
  * */
 static bool is_covered(const struct probing *probing, size_t t, struct near *near)

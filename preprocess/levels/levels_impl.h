@@ -90,9 +90,9 @@ uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t wel
 void levels_find_contrary(const struct welds *welds, char *contrary);
 /* Repairs the shading of thin parts flattened by simplification: there, a face may have corners whose vertex normals all point
  * to its back. corners: three welds (groups of equal vertices at one position) per face. used: by vertex: nonzero if the level
- * may use it. If a corner's weld has no usable vertex with a normal to the front, moves the corner to a neighbouring weld that
- * has one, at most about most_m[part] away. contrary: from levels_find_contrary(); these parts stay unchanged. Sets moved[part]
- * for changed parts. Returns false if no corner was moved. */
+ * may use it. If a corner's weld has no usable vertex with a normal to the front, moves the corner to a neighbouring weld with
+ * such a vertex. Moves are at most about most_m[part] long. contrary: from levels_find_contrary(); these parts stay unchanged.
+ * Sets moved[part] for changed parts. Returns false if no corner was moved. */
 bool levels_face(const struct welds *welds, const char *used, const char *contrary, const float *most_m, uint32_t *corners, size_t count,
                  char *moved);
 

@@ -6,10 +6,10 @@
 #include "preprocess/levels/levels.h"
 #include "surface/mesh/trimesh.h" /* declares TRIMESH_NONE */
 
-/* Renumbers the geometry's vertices, drops unused vertices with index first_added or higher, and replaces the geometry's
- * indices and primitives by those of all levels, finest first. The levels themselves keep the old numbers. Fills out[level].
- * *new_of receives the new index of each old vertex, or TRIMESH_NONE if dropped; the caller frees it (mem_free). Returns false
- * if out of memory, leaving the geometry unchanged. */
+/* Renumbers the geometry's vertices, and drops unused ones with index first_added or higher. Replaces the geometry's indices
+ * and primitives by those of all levels, finest first. The levels themselves keep the old numbers. Fills out[level]. *new_of
+ * receives the new index of each old vertex, or TRIMESH_NONE if dropped; the caller frees it (mem_free). Returns false if out
+ * of memory, leaving the geometry unchanged. */
 bool vertex_order_apply(struct geometry *geometry, const struct levels *levels, uint32_t first_added, struct asset_level out[LEVELS_MAX],
                         uint32_t **new_of);
 

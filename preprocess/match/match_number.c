@@ -174,8 +174,8 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
 
 /* --- parts of names ----------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the tokens (runs of letters or digits) of the tag's name, except instrument letters and loop number, occur in
- * the asset's name in the same order, and include letters. */
+/* Looks for the tokens (runs of letters or digits) of the tag's name in the asset's name, except instrument letters and loop
+ * number. Returns whether they occur there in the same order and include letters. */
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {
     int at = 0;

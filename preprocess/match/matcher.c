@@ -40,8 +40,8 @@ static const char *id_of(const struct matcher *matcher, int asset)
     return matcher->site->plant->assets[asset].id;
 }
 
-/* Returns whether another method's sure proposal contradicts the chosen one. A strong proposal, such as a full name, is
- * contradicted only by equipment with a nearly equal name, because one of the two names may be misspelt. */
+/* Returns whether another method's sure proposal contradicts the chosen one. Only equipment with a nearly equal name
+ * contradicts a strong proposal, such as a full name, because one of the two names may be misspelt. */
 static bool contradicts(const struct matcher *matcher, const struct proposal *chosen, const struct proposal *other)
 {
     int asset = chosen->candidates.assets[0];

@@ -39,8 +39,8 @@ bool model_index_read(struct model_index *site, const struct plant *plant, char 
 void model_index_finish(struct model_index *site);
 /* Returns whether the CAD system generated the name ("BOX 1 of SUBSTRUCTURE ..."), so that no tag refers to it. */
 bool model_index_is_made_up(const char *name);
-/* Calls `each` for every word of a text, in upper case, except words of fewer than three letters and common words found in
- * descriptions of any equipment. */
+/* Calls `each` with every word of a text, in upper case. Skips words of fewer than three letters, and common words that occur
+ * in descriptions of any equipment. */
 void model_index_each_word(const char *text, void (*each)(const char *word, void *data), void *data);
 
 #endif

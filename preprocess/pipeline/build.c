@@ -54,8 +54,8 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
     return true;
 }
 
-/* Hashes the plant file's settings for the interpolation `gp` (Gaussian process), and the recorded readings that its parameters
- * are fitted to, for the groups that have a sensor in `sensors`. */
+/* Hashes the settings for the interpolation `gp` (Gaussian process) and the recorded readings that its parameters are fitted
+ * to. Covers the groups that have a sensor in `sensors`. */
 static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t g = 0; g < plant->group_count; g++) {

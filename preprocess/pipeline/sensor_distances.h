@@ -14,9 +14,9 @@ struct sensor_distances {
     double (*places_m)[3]; /* sensor positions relative to the origin of the asset's geometry */
 };
 
-/* Builds the asset's surface unless `measured` already has one, projects the sensors onto it and computes the distances from
- * them that are not in the distance cache. Fills in the surface part of the report. Returns false with the reason in why. In
- * either case, call sensor_distances_finish(). */
+/* Builds the asset's surface unless `measured` already has one, and projects the sensors onto it. Computes the distances that
+ * are not in the distance cache. Fills in the surface part of the report. Returns false with the reason in why. In either case,
+ * call sensor_distances_finish(). */
 bool sensor_distances_find(struct sensor_distances *measured, struct log *log, struct workers *workers, const struct build_input *input,
                            const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
 /* Returns whether any sensor has a known position. A sensor with an assumed position colours the whole asset evenly: if all

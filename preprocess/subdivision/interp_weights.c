@@ -255,9 +255,10 @@ SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const st
         fade(group, softmax->near_m, &far, weight);
 }
 
-/* Returns the largest change of the interpolated value, as a share of the range, if the nearness of each sensor (1 at the
- * sensor, 0 at the radius) changes by at most 1. A sensor changes its own term of the value through its weight and its decay.
- * It also changes the terms of the others, whose weights sum to 1 minus its own. Sensors beyond the radius change nothing. */
+/* Returns the largest change of the interpolated value, as a share of the range, if the nearness of each sensor changes by at
+ * most 1. Nearness is 1 at the sensor and 0 at the radius. A sensor changes its own term of the value through its weight and
+ * its decay. It also changes the terms of the others, whose weights sum to 1 minus its own. Sensors beyond the radius change
+ * nothing. */
 SIMD_BODY float paper_slope(const struct interp_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *interp, float all)
 {

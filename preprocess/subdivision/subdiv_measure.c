@@ -326,8 +326,8 @@ struct measure_job {
     double enough;
 };
 
-/* Buffers of one thread: points of the current edge, and a cache of the samples (linear_error.h) at recently used corners,
- * because the next edge probably shares a corner with an earlier one. */
+/* Buffers of one thread: points of the current edge, and a cache of the samples (linear_error.h) at recently used corners. The
+ * next edge probably has one of these corners. */
 struct measure_room {
     float *points, *corners;
     struct interp_norm *norms; /* normalisations of the sensors' weights at the last sample point */
@@ -516,8 +516,8 @@ static double error_inside(const struct inside *inside, const double weights[3],
     return linear_error_in_triangle(linear, modes, inside->interp, weights, interp, wide_m, subdiv->slack_m);
 }
 
-/* Measures a triangle's interpolation error at its centre, or, if this is hidden inside another part, at the visible points
- * nearest to the centre and to three points near the corners. */
+/* Measures a triangle's interpolation error at its centre. If the centre is hidden inside another part, measures at the visible
+ * points nearest to it and to three points near the corners. */
 static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct measure_room *room)
 {
     static const double places[4][3] = {

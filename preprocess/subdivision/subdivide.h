@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Adaptive subdivision: splits triangles where linear interpolation of the field (readings interpolated between sensors) would
  * be wrong, and inserts a vertex at each sensor. The finest level shows the field within SUBDIV_ERROR for any readings
- * (linear_error.h). A coarser level, whose surface is up to error_m off, is drawn only where error_m is less than a pixel. It
- * shows, within SUBDIV_ERROR, the field of a point at most about two thirds of error_m away, and within three times
- * SUBDIV_ERROR that of the point itself. Its surface is unchanged, except that edges in flat regions may be flipped. An edge
- * that a finer level also has and need not split is not measured again. Edges up to an eighth of the model's tolerance (in
- * coarser levels: up to their error) are not split. Nor are edges up to eight tolerances or errors long whose error comes from
- * a jump of the geodesic distance between unconnected surfaces, because no split fixes a jump. Interior triangles (hidden
+ * (linear_error.h). A coarser level, whose surface is up to error_m off, is drawn only where error_m is less than a pixel.
+ * Within SUBDIV_ERROR, it shows the field of a point at most about two thirds of error_m away. Within three times SUBDIV_ERROR,
+ * it shows that of the point itself. Its surface is unchanged, except that edges in flat regions may be flipped. An edge that a
+ * finer level also has and need not split is not measured again. Edges up to an eighth of the model's tolerance (in coarser
+ * levels: up to their error) are not split. Edges up to eight tolerances or errors long are not split either if their error
+ * comes from a jump of the geodesic distance between unconnected surfaces: no split fixes a jump. Interior triangles (hidden
  * inside another part, in coarser levels with an allowance for their error) and degenerate slivers are ignored. The largest
  * errors are fixed first, and the number of triangles is limited: the finest level may grow to three times its triangles or by
  * 100,000, the larger limit. A coarser level is dropped if it would need more than 0.95 of the next finer level's triangles.
- * The limit is half the triangles if there are 128 sensors or more, whose distances take up most of a file, or if the finest
- * level reached its limit. Remaining errors are counted by reason (level.left). */
+ * The limit is half the triangles if the finest level reached its limit, or with 128 sensors or more, whose distances take up
+ * most of a file. Remaining errors are counted by reason (level.left). */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #define PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #include "preprocess/levels/levels.h"

@@ -85,8 +85,8 @@ void keep_blanks(char *bytes, size_t count, bool stl)
     }
 }
 
-/* Returns the text encoding from an XML declaration, and overwrites the encoding with blanks in the text, because the text is
- * converted to UTF-8 before it is parsed. */
+/* Returns the text encoding from an XML declaration. Overwrites it with blanks in the text, which is converted to UTF-8 before
+ * it is parsed. */
 std::string take_declared(std::string *text)
 {
     size_t end = text->compare(0, 5, "<?xml") == 0 ? text->find("?>") : std::string::npos, from = text->find("encoding=");

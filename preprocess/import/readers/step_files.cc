@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies STEP files so that Open CASCADE can read assemblies of several files. Open CASCADE opens an external file only in the
- * folder of the main file, by its exact name, and only if it is declared as AP203 or AP214. So the copies get simple names and
- * refer to each other by these names. */
+/* Copies STEP files so that Open CASCADE can read assemblies of several files. Open CASCADE opens an external file only by its
+ * exact name in the main file's folder, and only if it is declared as AP203 or AP214. So the copies get simple names and refer
+ * to each other by these names. */
 #include "preprocess/import/readers/step_files.hh"
 
 #include <unistd.h>

@@ -77,8 +77,7 @@ static size_t line_end(const char *text, size_t at)
     return at + (text[at] == '\n');
 }
 
-/* Removes an item of a block-style YAML list from the text, from its first line to its last, including blank lines and comments
- * between its keys. */
+/* Removes all lines of an item of a block-style YAML list from the text, including blank lines and comments between its keys. */
 static bool remove_item(struct editor *editor, const yaml_node_t *item)
 {
     const char *text = editor->text;

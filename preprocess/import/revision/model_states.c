@@ -102,7 +102,7 @@ static void vertex_of(const struct state_part *part, uint32_t vertex, double out
     transform_point(part->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, out);
 }
 
-/* Returns whether two lists, from the indices a_first and b_first on, contain the same number of parts (primitives), and
+/* Compares two lists of parts (primitives), from the indices a_first and b_first on. Returns whether they are equally long and
  * corresponding parts have equal vertex and index counts. */
 static bool alike(const struct state_parts *a, size_t a_first, const struct state_parts *b, size_t b_first)
 {

@@ -337,8 +337,8 @@ static void add_assets(struct planning *p, const struct revision_model *model, c
     }
 }
 
-/* Adds an asset for new equipment: for a node of the new model that has no counterpart in the old model, belongs to no asset,
- * and has no asset's node below it. */
+/* Adds an asset for new equipment: for a new node without a counterpart in the old model that belongs to no asset and has no
+ * asset's node below it. */
 static void add_new(struct planning *p, const struct revision_model *model, const struct plant_asset *like)
 {
     const struct model_outline *new = &p->states.after.outline;
