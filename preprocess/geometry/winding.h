@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds triangles whose winding contradicts their neighbours' and which would look like holes from outside, and reverses them.
+/* Finds and reverses triangles whose winding contradicts that of their neighbours: from outside, they would look like holes.
  * Thread: any. */
 #ifndef PREPROCESS_GEOMETRY_WINDING_H
 #define PREPROCESS_GEOMETRY_WINDING_H

@@ -89,7 +89,7 @@ static void take_line(struct cad_model *model, int node, char *line, const char 
     }
 }
 
-/* Reads the text that separates entries from the attribute file's header line: the text after "sep:", such as "&end&". */
+/* Reads the entry separator from the attribute file's header line: the text after "sep:", such as "&end&". */
 static void take_separator(const char *line, char *separator, size_t separator_bytes)
 {
     const char *at = strstr(line, "sep:");

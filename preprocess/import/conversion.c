@@ -142,8 +142,7 @@ struct model_reading {
     char *encoding;
 };
 
-/* Runs the built-in reader for RVM or glTF; runs in the child process. Returns the child's exit status: 0, or 1 with the reason
- * on stderr. */
+/* Runs the built-in reader for RVM or glTF. Called in the child process; returns its exit status: 0, or 1 with the reason on stderr. */
 static int read_ourselves(void *arg)
 {
     const struct model_reading *reading = arg;

@@ -52,7 +52,7 @@ static bool is_printable(const char *text)
 }
 
 struct draft_choice {    /* for each node of a model's outline: does it become an asset, and is its name unique? */
-    bool *item, *unique; /* by node: item: the node becomes an asset; unique: no other node has the same name */
+    bool *item, *unique; /* by node; item: it becomes an asset; unique: no other node has its name */
     bool typed, classed; /* typed: some nodes have the type property ZONE; classed: some nodes have IFC classes */
 };
 

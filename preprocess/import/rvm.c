@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads RVM files in two passes. The first converts chunks to primitives. It is then known which faces are covered, and the
- * second converts primitives to triangles. */
+/* Reads RVM files in two passes. The first converts chunks to primitives. After that it is known which faces are covered, and
+ * the second pass converts primitives to triangles. */
 #include "preprocess/import/rvm.h"
 
 #include <math.h>

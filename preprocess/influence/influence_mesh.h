@@ -15,7 +15,7 @@ struct influence_disc {
 };
 
 struct influence_mesh {
-    struct trimesh mesh; /* mesh.tri_source: by mesh triangle: the visible surface triangle that contains it */
+    struct trimesh mesh; /* mesh.tri_source[mesh triangle]: the visible surface triangle that contains it */
     struct intrinsic intrinsic;
     double (*sources_m)[3]; /* the sensors' positions projected onto the surface */
     uint32_t *source_tris;

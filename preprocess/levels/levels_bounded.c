@@ -39,7 +39,7 @@ struct bounded {
     const struct bvh *first;
     double (*points)[3];
     float *moved_m; /* by mesh point: how far the open borders and seams there have moved so far */
-    /* corner: by mesh point: first of the list of face corners there (3 * face + 0 to 2); next: by corner: the next corner in the list */
+    /* corner[point]: head of the list of face corners at a mesh point (3 * face + 0 to 2); next[corner]: the next corner in the list */
     uint32_t *corner;
     uint32_t *next;
     /* by mesh point: incremented when the triangles around it change; a heap entry with an older value is outdated */

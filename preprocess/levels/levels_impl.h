@@ -59,7 +59,7 @@ struct versions {
  * each version. workers may be NULL. */
 void versions_make(struct versions *versions, const struct welds *welds, struct workers *workers);
 /* Prepares a surface for measuring distances of triangles from it: `count` welds (groups of equal vertices), three per
- * triangle. only: by part: nonzero: included; NULL: all parts are. */
+ * triangle. only: by part, nonzero if it is included; NULL: all parts are. */
 void levels_surface(struct deviation *surface, const struct welds *welds, const char *only, const uint32_t *corners, size_t count);
 /* Frees all versions. */
 void versions_finish(struct versions *versions);
@@ -89,7 +89,7 @@ uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t wel
  * the shading of such a part cannot be repaired. */
 void levels_find_contrary(const struct welds *welds, char *contrary);
 /* Repairs the shading of thin parts flattened by simplification: there, a face may have corners whose vertex normals all point
- * to its back. corners: three welds (groups of equal vertices at one position) per face. used: by vertex: nonzero if the level
+ * to its back. corners: three welds (groups of equal vertices at one position) per face. used: by vertex, nonzero if the level
  * may use it. If a corner's weld has no usable vertex with a normal to the front, moves the corner to a neighbouring weld with
  * such a vertex. Moves are at most about most_m[part] long. contrary: from levels_find_contrary(); these parts stay unchanged.
  * Sets moved[part] for changed parts. Returns false if no corner was moved. */

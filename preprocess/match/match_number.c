@@ -174,7 +174,7 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
 
 /* --- parts of names ----------------------------------------------------------------------------------------------------------- */
 
-/* Looks for the tokens (runs of letters or digits) of the tag's name in the asset's name, except instrument letters and loop
+/* Looks in the asset's name for the tag name's tokens (runs of letters or digits) other than instrument letters and loop
  * number. Returns whether they occur there in the same order and include letters. */
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {

@@ -16,7 +16,7 @@ struct tag_header {
 
 /* Reads a row as a header. Returns the number of recognised column names. */
 int tag_header_read(const struct table_row *row, struct tag_header *header);
-/* Returns whether a cell of the row equals the word after fold_key() of each. */
+/* Returns whether a cell of the row equals the word after fold_key() of both. */
 bool tag_header_has(const struct table_row *row, const char *word);
 
 #endif

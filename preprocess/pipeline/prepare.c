@@ -26,7 +26,7 @@
 #define FAR_M 0.25
 #define FAR_OF_SIZE 0.05
 
-/* triangles in a batch: models are parsed until their assets have this many triangles; then these assets are built */
+/* minimum number of triangles in a batch: models are parsed until their assets have this many; then these assets are built */
 #define BATCH_TRIANGLES 4e6
 /* assets with more triangles are built one at a time on all cores, because two at a time would need twice the memory */
 #define ALONE_TRIANGLES 1e6

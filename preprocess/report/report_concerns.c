@@ -9,12 +9,12 @@
 #include "preprocess/subdivision/subdivide.h"
 #include "preprocess/report/text_table.h"
 
-/* root mean square difference between an asset's distances and the heat method's above which it is reported, relative to the
- * largest distance; smaller differences come from the heat method, which smooths distances */
+/* an asset is reported if the root mean square difference between its distances and the heat method's exceeds this, relative to
+ * the largest distance; smaller differences come from the heat method, which smooths distances */
 #define METHODS_DIFFER 0.05
 /* an interpolation error above this multiple of subdivision's error limit is reported; above 1 because of single-precision rounding */
 #define FIELD_SLACK 1.05
-/* share of an asset's surface with too large or unknown bend (interpolation error inside triangles) above which it is reported */
+/* an asset is reported if the bend (interpolation error inside triangles) is too large or unknown on more than this share of its surface */
 #define BENT_SHARE 1e-3
 /* powers of inverse distance weights are reported from this one on: here the error of distances alone can exceed two colour steps */
 #define HIGH_POWER 5

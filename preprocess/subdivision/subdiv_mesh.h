@@ -28,8 +28,8 @@ struct subdiv_edge { /* an edge between two positions; shared by all levels of d
      * TRIMESH_NONE: no triangle of the level has the edge */
     uint32_t corner;
     float share;  /* split point, as a fraction of the way from a to b; for an edge not split yet, the best split point */
-    float error;  /* error of the field along the edge that may be fixed by a split, as a share of the range; below 0: not measured yet */
-    float barred; /* error of the field along the edge that must not be fixed by a split, as a share of the range */
+    float error;  /* the field's error along the edge that splitting can fix, as a share of the range; below 0: not measured yet */
+    float barred; /* the field's error along the edge that splitting cannot fix (see jumps), as a share of the range */
     bool jumps;   /* why the error is in `barred`: true: the distance jumps along the edge; false: the edge is too short */
     bool unasked; /* true: not measured, because the edge is too short to split in the current level of detail */
     bool proven;  /* true: measured; the edge needs no split in any level of detail, because coarser levels have looser limits */
@@ -75,7 +75,7 @@ static inline bool subdiv_mesh_is_split(const struct subdiv_mesh *mesh, uint32_t
 {
     return mesh->cuts[edge].load == mesh->loads;
 }
-/* Splits an edge at its stored fraction (subdiv_edge.share), whose position is position_m. Triangles change only in
+/* Splits an edge at its stored fraction (subdiv_edge.share). position_m: position of the split point. Triangles change only in
  * subdiv_mesh_apply(). Returns true if the position cuts[edge].middle is new; false if another level of detail had already
  * split the edge. */
 bool subdiv_mesh_split_edge(struct subdiv_mesh *mesh, uint32_t edge, const float position_m[3]);

@@ -72,7 +72,7 @@ static inline bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
 struct subdiv_finding {
     uint32_t number;
     float error, share; /* share: fraction at which splitting the edge leaves the smallest error */
-    float barred;       /* interpolation error that must not be fixed by a split, as a share of the range */
+    float barred;       /* interpolation error that splitting cannot fix, as a share of the range */
     bool jumps;
     bool is_cached;   /* true: the error comes from the last run's cache and was not measured again */
     float doubt, off; /* doubt: weight of the sensors changed since the measurement; off: by how much the error may be wrong */
@@ -83,7 +83,7 @@ struct subdiv_finding {
 bool subdiv_find_parts(struct subdiv *subdiv);
 /* Sets the connected component of a position added by a split. */
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
-/* Computes the samples (linear_error.h) at the positions from index `first` on. edges: by position: the edge it is on, from
+/* Computes the samples (linear_error.h) at the positions from index `first` on. edges: by position, the edge that it is on, from
  * which its distances are computed first; NULL: the distances are known. */
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count);
 /* Measures the interpolation error of edges and stores the results in mesh.cuts (struct subdiv_edge). */
