@@ -4,10 +4,8 @@
 
 #include "tests/support/test.h"
 
-#include "tests/support/rig.h"
+#include "tests/support/rig_case.h"
 #include "value/quality.h"
-
-static struct rig rig;
 
 /* Makes a wall with a sensor, and slanted plates without sensors on its faces, with different triangles. */
 static struct toy *make_wall(void)
@@ -85,9 +83,4 @@ TEST(test_one_of_two_faces_is_seen)
     assert_int_equal(all_seen_through(&stand, true, TIER_PREVIEW), 0);
     assert_int_equal(all_seen_through(&stand, true, TIER_REFINED), 0);
     stand_finish(&stand);
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

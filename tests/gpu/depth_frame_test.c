@@ -6,12 +6,10 @@
 #include "scene/camera.h"
 #include "tests/support/depth_reader.h"
 #include "tests/support/planned.h"
-#include "tests/support/rig.h"
+#include "tests/support/stand_case.h"
 #include "value/quality.h"
 
 enum { WIDTH = 437, HEIGHT = 250 };
-static struct rig rig;
-static struct stand stand;
 
 static int set_up(void **state)
 {
@@ -20,13 +18,6 @@ static int set_up(void **state)
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, 12.0 * i, QUALITY_GOOD);
     renderer_set_depth(stand.renderer, true);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    stand_finish(&stand);
     return 0;
 }
 
@@ -88,7 +79,7 @@ static void check_view(struct view *view)
         }
 }
 
-TEST_WITH(grids_are_those_of_rays, set_up, tear_down)
+TEST_WITH(grids_are_those_of_rays, set_up, stand_tear_down)
 {
     struct view view;
     for (int i = 0; i < sweep(4, 2); i++) {
@@ -98,7 +89,7 @@ TEST_WITH(grids_are_those_of_rays, set_up, tear_down)
     }
 }
 
-TEST_WITH(orthographic_grids_too, set_up, tear_down)
+TEST_WITH(orthographic_grids_too, set_up, stand_tear_down)
 {
     struct view view;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
@@ -109,7 +100,7 @@ TEST_WITH(orthographic_grids_too, set_up, tear_down)
     check_view(&view);
 }
 
-TEST_WITH(halves_have_grids_of_their_own, set_up, tear_down)
+TEST_WITH(halves_have_grids_of_their_own, set_up, stand_tear_down)
 {
     struct view view, right;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
@@ -119,7 +110,7 @@ TEST_WITH(halves_have_grids_of_their_own, set_up, tear_down)
     check_view(&view);
 }
 
-TEST_WITH(cuts_count_as_surfaces, set_up, tear_down)
+TEST_WITH(cuts_count_as_surfaces, set_up, stand_tear_down)
 {
     struct view view;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
@@ -129,7 +120,7 @@ TEST_WITH(cuts_count_as_surfaces, set_up, tear_down)
 }
 
 /* Frames that are only recoloured, because the camera stands still, keep the grid. */
-TEST_WITH(recoloured_frames_keep_the_grid, set_up, tear_down)
+TEST_WITH(recoloured_frames_keep_the_grid, set_up, stand_tear_down)
 {
     struct view view;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
@@ -147,9 +138,4 @@ TEST_WITH(recoloured_frames_keep_the_grid, set_up, tear_down)
         }
         depth_grid_unref(&first);
     }
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

@@ -5,6 +5,7 @@
 #include <limits.h>
 
 #include "tests/support/gl_calls.h"
+#include "tests/support/no_textures.h"
 #include "tests/support/planned.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
@@ -41,10 +42,10 @@ static void make_materials(void)
             texcoords[i][c] = (float)(i * (c ? 29 : 17) % 64) / 32;
     for (int i = 0; i < 4; i++) {
         struct asset_material *it = &materials[i];
-        *it = (struct asset_material){ .base_color = { 0.2f + 0.2f * (float)i, 0.5f, 0.4f, 1 }, .roughness = 0.4f };
+        *it = (struct asset_material){ .base_color = { 0.2f + 0.2f * (float)i, 0.5f, 0.4f, 1 }, .roughness = 0.4f, NO_TEXTURES };
         it->normal_scale = it->occlusion_strength = 1;
-        it->metallic_roughness_texture = it->normal_texture = it->occlusion_texture = it->emissive_texture = ASSET_NO_TEXTURE;
-        it->base_color_texture = i == 1 || i == 2 ? 0 : ASSET_NO_TEXTURE;
+        if (i == 1 || i == 2)
+            it->base_color_texture = 0;
     }
     materials[1].double_sided = 1;
     materials[2].alpha = ASSET_ALPHA_MASK;

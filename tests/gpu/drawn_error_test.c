@@ -10,7 +10,7 @@
 #include "tests/support/planned.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/renderer_compare.h"
-#include "tests/support/rig.h"
+#include "tests/support/rig_case.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -19,7 +19,6 @@ enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX, PICKS = 1
 enum { SENSORS = 6, MANY = 12, CROWD = 200 };
 /* SNAP_PX: rasterizers round corners of triangles to 1/256 pixel, so a pixel shows a place up to about that far away */
 static const double STEP = 1.0 / 255, STEEP = 10 * STEP, SIDE_M = 4, SNAP_PX = 1.0 / 256;
-static struct rig rig;
 static uint64_t random_state;
 
 struct drawn_error_case {
@@ -535,9 +534,4 @@ TEST_WITH(test_long_part_along_surfaces, prep_case_set_up, prep_case_tear_down)
     assert_int_equal(bare_pixels, 0);
     mem_free(measured);
     long_part_finish(&part);
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

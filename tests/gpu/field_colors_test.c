@@ -5,16 +5,15 @@
 #include "base/color/lab.h"
 #include "render/overlay/overlay.h"
 #include "render/shaded_colormap.h"
+#include "tests/support/no_textures.h"
 #include "tests/support/planned.h"
-#include "tests/support/rig.h"
+#include "tests/support/stand_case.h"
 #include "tests/support/whole_field.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 
 enum { CELLS = 12, SIDE_PX = 256, PLATE_TAGS = 3 };
 static const double side_m = 4;
-static struct rig rig;
-static struct stand stand;
 
 /* Makes a view from above, x to the right, y upwards, with the plate filling the image. */
 static void look_down(struct view *view)
@@ -37,13 +36,6 @@ static int set_up(void **state)
     toy_set(stand.snapshot, 0, 10, QUALITY_GOOD);
     toy_set(stand.snapshot, 1, 50, QUALITY_GOOD);
     toy_set(stand.snapshot, 2, 95, QUALITY_GOOD);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    stand_finish(&stand);
     return 0;
 }
 
@@ -104,7 +96,7 @@ static int count_wrong(const struct view *view)
     return wrong;
 }
 
-TEST_WITH(test_every_pixel_has_the_legends_color, set_up, tear_down)
+TEST_WITH(test_every_pixel_has_the_legends_color, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -118,7 +110,7 @@ TEST_WITH(test_every_pixel_has_the_legends_color, set_up, tear_down)
             }
 }
 
-TEST_WITH(test_bands, set_up, tear_down)
+TEST_WITH(test_bands, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -133,7 +125,7 @@ TEST_WITH(test_bands, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_logarithmic_scale, set_up, tear_down)
+TEST_WITH(test_logarithmic_scale, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -146,7 +138,7 @@ TEST_WITH(test_logarithmic_scale, set_up, tear_down)
 }
 
 /* Isolines are dark where the field has their value, and about as wide as specified. */
-TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
+TEST_WITH(test_isolines_run_where_the_value_is, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -174,7 +166,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
 }
 
 /* The number written on an isoline is the field's value there, in one step or in progressive rendering. */
-TEST_WITH(test_labels_stand_on_their_lines, set_up, tear_down)
+TEST_WITH(test_labels_stand_on_their_lines, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -202,7 +194,7 @@ TEST_WITH(test_labels_stand_on_their_lines, set_up, tear_down)
     frame_unref(&frame);
 }
 
-TEST_WITH(test_beyond_the_range_has_its_own_colors, set_up, tear_down)
+TEST_WITH(test_beyond_the_range_has_its_own_colors, set_up, stand_tear_down)
 {
     const struct colormap *map = colormap_at(NULL, 0);
     struct view view;
@@ -221,7 +213,7 @@ TEST_WITH(test_beyond_the_range_has_its_own_colors, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_readings_at_the_ends_stay_on_the_map, set_up, tear_down)
+TEST_WITH(test_readings_at_the_ends_stay_on_the_map, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -236,12 +228,7 @@ TEST_WITH(test_readings_at_the_ends_stay_on_the_map, set_up, tear_down)
     }
 }
 
-static bool is_grey(const uint8_t *bgrx)
-{
-    return bgrx[0] == bgrx[1] && bgrx[1] == bgrx[2];
-}
-
-TEST_WITH(test_no_data_is_grey_stripes, set_up, tear_down)
+TEST_WITH(test_no_data_is_grey_stripes, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -265,7 +252,7 @@ TEST_WITH(test_no_data_is_grey_stripes, set_up, tear_down)
 }
 
 /* The position of a lost sensor shows no colour of the map; everything else stays. */
-TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, tear_down)
+TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -278,7 +265,7 @@ TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, tear_down)
     frame_unref(&frame);
 }
 
-TEST_WITH(test_uncertain_is_stippled, set_up, tear_down)
+TEST_WITH(test_uncertain_is_stippled, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -314,7 +301,7 @@ static double part_of_first(int x, int y)
 }
 
 /* The border of uncertainty runs between vertices, not along them: each triangle spans a twelfth of the plate. */
-TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, tear_down)
+TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, stand_tear_down)
 {
     const double slack = 0.02;
     struct view view;
@@ -379,7 +366,7 @@ static void check_alarms(const struct view *view)
     }
 }
 
-TEST_WITH(test_operator_sees_limits, set_up, tear_down)
+TEST_WITH(test_operator_sees_limits, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -405,7 +392,7 @@ TEST_WITH(test_operator_sees_limits, set_up, tear_down)
 }
 
 /* Markers show each sensor's distance from the selected sensor; on a plate both distances are equal. */
-TEST_WITH(test_markers_tell_distances, set_up, tear_down)
+TEST_WITH(test_markers_tell_distances, set_up, stand_tear_down)
 {
     const double want_m[PLATE_TAGS] = { hypot(4, 1), 0, hypot(2, 3) };
     struct view view;
@@ -428,7 +415,7 @@ TEST_WITH(test_markers_tell_distances, set_up, tear_down)
 }
 
 /* Frames state an unsynchronised clock next to the time. */
-TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, tear_down)
+TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, stand_tear_down)
 {
     struct view view;
     int differ = 0;
@@ -450,7 +437,7 @@ TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, tear_down)
 }
 
 /* Once one tag has passed its loop check, markers and legend show which tags have not; the rest of the frame stays. */
-TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
+TEST_WITH(test_unproven_tags_are_marked, set_up, stand_tear_down)
 {
     enum { WIDE_PX = 600 };
     struct view view;
@@ -492,7 +479,7 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
         plant->tags[i].source = -1;
 }
 
-TEST_WITH(test_default_look_keeps_to_the_palette, set_up, tear_down)
+TEST_WITH(test_default_look_keeps_to_the_palette, set_up, stand_tear_down)
 {
     struct view view;
     look_down(&view);
@@ -515,7 +502,7 @@ TEST_WITH(test_default_look_keeps_to_the_palette, set_up, tear_down)
 }
 
 /* A model without sensors whose strips have the map's own colours: in no view of a field do these colours appear. */
-TEST_WITH(test_context_has_no_color, set_up, tear_down)
+TEST_WITH(test_context_has_no_color, set_up, stand_tear_down)
 {
     enum { STRIPS = 16 };
     static const double low[3] = { 0, 0, 0 };
@@ -529,15 +516,11 @@ TEST_WITH(test_context_has_no_color, set_up, tear_down)
                                                 .roughness = 0.7f,
                                                 .normal_scale = 1,
                                                 .occlusion_strength = 1,
-                                                .base_color_texture = ASSET_NO_TEXTURE,
-                                                .metallic_roughness_texture = ASSET_NO_TEXTURE,
-                                                .normal_texture = ASSET_NO_TEXTURE,
-                                                .occlusion_texture = ASSET_NO_TEXTURE,
-                                                .emissive_texture = ASSET_NO_TEXTURE };
+                                                NO_TEXTURES };
         shape_plate(&shape, i, (double[3]){ side_m * i / STRIPS, 0, 0 }, (double[3]){ side_m / STRIPS, 0, 0 }, (double[3]){ 0, side_m, 0 },
                     2);
     }
-    tear_down(NULL);
+    stand_tear_down(NULL);
     toy_add(toy, "STEEL", &shape, low, NULL, 0);
     stand_init(&stand, &rig, toy);
     look_down(&view);
@@ -556,9 +539,4 @@ TEST_WITH(test_context_has_no_color, set_up, tear_down)
                 assert_int_equal(coloured, 0);
                 frame_unref(&frame);
             }
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

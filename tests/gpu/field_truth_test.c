@@ -5,14 +5,12 @@
 
 #include "protocol/asset_distance.h"
 #include "render/shaded_colormap.h"
-#include "tests/support/rig.h"
+#include "tests/support/stand_case.h"
 #include "value/quality.h"
 
 enum { CELLS = 16, GRID = CELLS + 1, WIDTH_PX = 384, HEIGHT_PX = 192, SENSORS = 5, HOTTEST = 4 };
 static const double side_m = 4;
 static const double places[SENSORS][3] = { { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 }, { 4, 4, 0 }, { 2, 2, 0 } };
-static struct rig rig;
-static struct stand stand;
 
 static int set_up(void **state)
 {
@@ -29,13 +27,6 @@ static int set_up(void **state)
     stand_init(&stand, &rig, toy);
     for (int i = 0; i < SENSORS; i++)
         toy_set(stand.snapshot, i, i == HOTTEST ? 95 : 20 + i, QUALITY_GOOD);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    stand_finish(&stand);
     return 0;
 }
 
@@ -56,16 +47,6 @@ static const uint8_t *pixel_at(const struct frame *frame, double x_m, double y_m
     x = x < 2 ? 2 : x > WIDTH_PX - 3 ? WIDTH_PX - 3 : x;
     y = y < 2 ? 2 : y > HEIGHT_PX - 3 ? HEIGHT_PX - 3 : y;
     return frame_pixel(frame, x, y);
-}
-
-static bool is_grey(const uint8_t *bgrx)
-{
-    return bgrx[0] == bgrx[1] && bgrx[1] == bgrx[2];
-}
-
-static bool is_rgb(const uint8_t *bgrx, const uint8_t rgb[3])
-{
-    return bgrx[2] == rgb[0] && bgrx[1] == rgb[1] && bgrx[0] == rgb[2];
 }
 
 /* Returns the index of the colour shown there, or -1 if it is not in the map. Refined frames average the samples of a pixel. */
@@ -95,7 +76,7 @@ static bool is_hatched(const struct view *view, double x_m, double y_m, double h
 static const enum tier tiers[] = { TIER_PREVIEW, TIER_REFINED };
 #define for_each_tier(view) for (int tier_index = 0; tier_index < 2 && (look_down(view, tiers[tier_index]), true); tier_index++)
 
-TEST_WITH(test_the_hottest_goes_bad, set_up, tear_down)
+TEST_WITH(test_the_hottest_goes_bad, set_up, stand_tear_down)
 {
     struct view view;
     for_each_tier(&view)
@@ -117,7 +98,7 @@ TEST_WITH(test_the_hottest_goes_bad, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_a_reading_of_zero_is_a_reading, set_up, tear_down)
+TEST_WITH(test_a_reading_of_zero_is_a_reading, set_up, stand_tear_down)
 {
     struct view view;
     for_each_tier(&view)
@@ -128,12 +109,12 @@ TEST_WITH(test_a_reading_of_zero_is_a_reading, set_up, tear_down)
         assert_int_equal(shown_at(&view, 1, 3), 0);
         toy_set(stand.snapshot, HOTTEST, -0.5, QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
-        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(NULL, 0)->below));
+        assert_true(is_color(pixel_at(frame, 2.02, 2.02), colormap_at(NULL, 0)->below));
         frame_unref(&frame);
     }
 }
 
-TEST_WITH(test_all_bad, set_up, tear_down)
+TEST_WITH(test_all_bad, set_up, stand_tear_down)
 {
     struct view view;
     for (int i = 0; i < SENSORS; i++)
@@ -141,7 +122,7 @@ TEST_WITH(test_all_bad, set_up, tear_down)
     for_each_tier(&view) assert_true(is_hatched(&view, 2, 2, 1.9));
 }
 
-TEST_WITH(test_one_sensor_is_everywhere_it_reaches, set_up, tear_down)
+TEST_WITH(test_one_sensor_is_everywhere_it_reaches, set_up, stand_tear_down)
 {
     struct view view;
     for_each_tier(&view)
@@ -155,7 +136,7 @@ TEST_WITH(test_one_sensor_is_everywhere_it_reaches, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_a_part_that_nobody_reaches, set_up, tear_down)
+TEST_WITH(test_a_part_that_nobody_reaches, set_up, stand_tear_down)
 {
     struct view view;
     for_each_tier(&view)
@@ -170,7 +151,7 @@ TEST_WITH(test_a_part_that_nobody_reaches, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_what_is_not_a_number_has_no_color, set_up, tear_down)
+TEST_WITH(test_what_is_not_a_number_has_no_color, set_up, stand_tear_down)
 {
     static const double mad[] = { NAN, INFINITY, -INFINITY };
     struct view view;
@@ -182,21 +163,21 @@ TEST_WITH(test_what_is_not_a_number_has_no_color, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_beyond_the_range, set_up, tear_down)
+TEST_WITH(test_beyond_the_range, set_up, stand_tear_down)
 {
     struct view view;
     for_each_tier(&view)
     {
         toy_set(stand.snapshot, HOTTEST, 1e9, QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
-        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(NULL, 0)->above));
+        assert_true(is_color(pixel_at(frame, 2.02, 2.02), colormap_at(NULL, 0)->above));
         frame_unref(&frame);
         view.field.interpolation = INTERPOLATION_PAPER; /* Algorithm 1 clamps values to the range */
         assert_true(shown_at(&view, 2.02, 2.02) >= 0);
     }
 }
 
-TEST_WITH(test_a_sensor_at_a_vertex_is_exact, set_up, tear_down)
+TEST_WITH(test_a_sensor_at_a_vertex_is_exact, set_up, stand_tear_down)
 {
     struct view view;
     for_each_tier(&view)
@@ -210,7 +191,7 @@ TEST_WITH(test_a_sensor_at_a_vertex_is_exact, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_a_distance_is_no_reading, set_up, tear_down)
+TEST_WITH(test_a_distance_is_no_reading, set_up, stand_tear_down)
 {
     struct view view;
     for_each_tier(&view)
@@ -225,9 +206,4 @@ TEST_WITH(test_a_distance_is_no_reading, set_up, tear_down)
         assert_in_range(shown_at(&view, 3.98, 2), number - 4, number + 4);
         assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8));
     }
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

@@ -3,6 +3,8 @@
    dielectric to metal, under surroundings from a file and under the sun; and white spheres in a white furnace, which must be invisible. */
 #include "tests/support/test.h"
 
+#include "tests/support/cielab.h"
+#include "tests/support/no_textures.h"
 #include "tests/support/rig.h"
 
 enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, /* STEPS: largest value of `steps` */
@@ -77,11 +79,7 @@ static void scene_init(struct scene_of *scene, double (*radiance)(const double[3
                                                        .roughness = 0.1f + 0.9f * (float)(i % steps) / (float)(steps - 1),
                                                        .normal_scale = 1,
                                                        .occlusion_strength = 1,
-                                                       .base_color_texture = ASSET_NO_TEXTURE,
-                                                       .metallic_roughness_texture = ASSET_NO_TEXTURE,
-                                                       .normal_texture = ASSET_NO_TEXTURE,
-                                                       .occlusion_texture = ASSET_NO_TEXTURE,
-                                                       .emissive_texture = ASSET_NO_TEXTURE };
+                                                       NO_TEXTURES };
         shape_sphere(&shape, (uint32_t)i, place_of(i), 0.5, 64);
     }
     toy_add(toy, "spheres", &shape, (double[3]){ 0, 0, 0 }, NULL, 0);
@@ -214,29 +212,12 @@ static void shown(double c[3])
         c[i] = 255 * (c[i] <= 0.0031308 ? 12.92 * c[i] : 1.055 * pow(c[i], 1 / 2.4) - 0.055);
 }
 
-static void lab_of(const double rgb[3], double lab[3])
-{
-    double l[3], f[3];
-    for (int i = 0; i < 3; i++)
-        l[i] = rgb[i] / 255 > 0.04045 ? pow((rgb[i] / 255 + 0.055) / 1.055, 2.4) : rgb[i] / 255 / 12.92;
-    const double xyz[3] = { (0.4124 * l[0] + 0.3576 * l[1] + 0.1805 * l[2]) / 0.9505, 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2],
-                            (0.0193 * l[0] + 0.1192 * l[1] + 0.9505 * l[2]) / 1.089 };
-    for (int i = 0; i < 3; i++)
-        f[i] = xyz[i] > 0.008856 ? cbrt(xyz[i]) : 7.787 * xyz[i] + 16.0 / 116;
-    lab[0] = 116 * f[1] - 16;
-    lab[1] = 500 * (f[0] - f[1]);
-    lab[2] = 200 * (f[1] - f[2]);
-}
-
 static double difference(const uint8_t *bgrx, const double want[3])
 {
-    const double got[3] = { bgrx[2], bgrx[1], bgrx[0] };
-    double a[3], b[3], square = 0;
-    lab_of(got, a);
-    lab_of(want, b);
-    for (int i = 0; i < 3; i++)
-        square += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(square);
+    double a[3], b[3];
+    lab_of((const uint8_t[3]){ bgrx[2], bgrx[1], bgrx[0] }, false, a);
+    lab_of_rgb(want, false, b);
+    return lab_distance(a, b);
 }
 
 /* Returns false if the pixel is not on the sphere, or at its rim. */

@@ -10,13 +10,11 @@
 
 #include "scene/framing.h"
 #include "scene/scene_create.h"
-#include "tests/support/rig.h"
+#include "tests/support/rig_case.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
-
-static struct rig rig;
 
 struct pick_case {
     const struct scene *scene;
@@ -295,9 +293,4 @@ TEST(test_split_view)
     for (int i = 0; i < 3; i++)
         assert_float_equal(left_pick.position_m[i], right_pick.position_m[i], 1e-9);
     stand_finish(&stand);
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

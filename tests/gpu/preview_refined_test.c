@@ -7,10 +7,10 @@
 #include "render/split_view.h"
 #include "scene/framing.h"
 #include "tests/support/measure.h"
+#include "tests/support/no_textures.h"
 #include "tests/support/site.h"
+#include "tests/support/rig_case.h"
 #include "value/quality.h"
-
-static struct rig rig;
 
 /* --- difference between the preview and the refined tier --------------------------------------------------------------------------- */
 
@@ -214,11 +214,7 @@ static struct textured_plate plain_plate(void)
                                                   .normal_scale = 1,
                                                   .occlusion_strength = 1,
                                                   .alpha_cutoff = 0.5f,
-                                                  .base_color_texture = ASSET_NO_TEXTURE,
-                                                  .metallic_roughness_texture = ASSET_NO_TEXTURE,
-                                                  .normal_texture = ASSET_NO_TEXTURE,
-                                                  .occlusion_texture = ASSET_NO_TEXTURE,
-                                                  .emissive_texture = ASSET_NO_TEXTURE } };
+                                                  NO_TEXTURES } };
     memset(plate.texels, 255, sizeof(plate.texels));
     return plate;
 }
@@ -363,9 +359,4 @@ TEST(test_textured_context_does_not_flash)
     plate.view.look = LOOK_DEFAULT;
     assert_calm("textured plate", &plate.stand, &plate.view, (struct gap){ 20, 0.05, 50 });
     plate_finish(&plate);
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

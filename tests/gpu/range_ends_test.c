@@ -3,11 +3,10 @@
    on thin triangles seen at a grazing angle. */
 #include "tests/support/test.h"
 
-#include "tests/support/rig.h"
+#include "tests/support/rig_case.h"
 #include "value/quality.h"
 
 enum { WIDTH_PX = 480, HEIGHT_PX = 320, READING = 90 };
-static struct rig rig;
 
 /* Makes poles from near the eye to far away, and a ball. */
 static struct toy *make_poles(void)
@@ -79,9 +78,4 @@ TEST(test_no_specks_at_the_ends)
         assert_int_equal(hidden, 0);
     }
     stand_finish(&stand);
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

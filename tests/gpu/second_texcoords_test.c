@@ -11,6 +11,7 @@
 #include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/site.h"
+#include "tests/support/rig_case.h"
 
 enum { SIDE = 32, TEXELS = SIDE * SIDE, WIDTH = 320, HEIGHT = 180 };
 enum map { BASE, METAL, NORMAL, OCCLUSION, GLOW, MAPS };
@@ -23,7 +24,6 @@ static const char PLANT[] = "plant: {name: P, time_zone: UTC}\n"
                             "groups:\n- {id: temperature, quantity: T, unit: C, min: 0, max: 100}\n"
                             "sources:\n- {id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1}\n"
                             "tags: tags.csv\n";
-static struct rig rig;
 
 /* --- the model ------------------------------------------------------------------------------------------------------------------- */
 
@@ -207,9 +207,4 @@ TEST_WITH(every_way_to_say_it_looks_the_same, prep_case_set_up, prep_case_tear_d
     assert_true(d[BASE_ONLY].mean > 3);
     for (int way = 0; way < WAYS; way++)
         frame_unref(&frames[way]);
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

@@ -6,12 +6,10 @@
 
 #include "encode/encoder.h"
 #include "tests/support/measure.h"
-#include "tests/support/rig.h"
+#include "tests/support/stand_case.h"
 #include "value/quality.h"
 
 enum { WIDTH = 1280, HEIGHT = 720 };
-static struct rig rig;
-static struct stand stand;
 
 static int set_up(void **state)
 {
@@ -20,13 +18,6 @@ static int set_up(void **state)
     stand_init(&stand, &rig, toy_unit());
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, values[i], QUALITY_GOOD);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    stand_finish(&stand);
     return 0;
 }
 
@@ -143,7 +134,7 @@ static void look_close(struct view *view)
 
 /* Shading is not read as value either with the whole plant in view, or from twice as far, where its parts are a few pixels wide. There the
    standard JPEG tables, made for photographs, lose more chroma than that, with and without shading. */
-TEST_WITH(test_far_away_it_is_not_either, set_up, tear_down)
+TEST_WITH(test_far_away_it_is_not_either, set_up, stand_tear_down)
 {
     struct view view;
     double shaded[WAYS], flat[WAYS];
@@ -159,7 +150,7 @@ TEST_WITH(test_far_away_it_is_not_either, set_up, tear_down)
 }
 
 /* Maps that declare that they are readable under shading are read right; the others do not declare it. */
-TEST_WITH(test_shading_is_not_read_as_value, set_up, tear_down)
+TEST_WITH(test_shading_is_not_read_as_value, set_up, stand_tear_down)
 {
     struct view view;
     double p95[WAYS];
@@ -175,7 +166,7 @@ TEST_WITH(test_shading_is_not_read_as_value, set_up, tear_down)
         }
 }
 
-TEST_WITH(test_glossy_would_be_misread, set_up, tear_down)
+TEST_WITH(test_glossy_would_be_misread, set_up, stand_tear_down)
 {
     struct view view;
     double p95[WAYS];
@@ -186,7 +177,7 @@ TEST_WITH(test_glossy_would_be_misread, set_up, tear_down)
 }
 
 /* Lightness differences between the tiers: the change from preview to refined must not flash. */
-TEST_WITH(test_tiers_agree, set_up, tear_down)
+TEST_WITH(test_tiers_agree, set_up, stand_tear_down)
 {
     struct view view;
     double sum = 0;
@@ -210,7 +201,7 @@ TEST_WITH(test_tiers_agree, set_up, tear_down)
 }
 
 /* Pixels that differ from the view of values, field or context, are grey while all readings are within their limits. */
-TEST_WITH(test_operator_sees_greys, set_up, tear_down)
+TEST_WITH(test_operator_sees_greys, set_up, stand_tear_down)
 {
     struct view values, limits;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &values);
@@ -236,9 +227,4 @@ TEST_WITH(test_operator_sees_greys, set_up, tear_down)
         frame_unref(&first);
         frame_unref(&second);
     }
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

@@ -2,6 +2,7 @@
 /* Materials with textures, holes and glass, drawn in software and compared with GL. */
 #include "tests/support/test.h"
 
+#include "tests/support/no_textures.h"
 #include "tests/support/soft_case.h"
 #include "value/quality.h"
 
@@ -56,11 +57,7 @@ static void make_materials(void)
                                                 .occlusion_strength = 0.7f,
                                                 .alpha_cutoff = 0.5f,
                                                 .double_sided = m == GRATE || m == GLASS,
-                                                .base_color_texture = ASSET_NO_TEXTURE,
-                                                .metallic_roughness_texture = ASSET_NO_TEXTURE,
-                                                .normal_texture = ASSET_NO_TEXTURE,
-                                                .occlusion_texture = ASSET_NO_TEXTURE,
-                                                .emissive_texture = ASSET_NO_TEXTURE };
+                                                NO_TEXTURES };
     struct asset_material *sign = &materials[PAINTED], *grate = &materials[GRATE], *glass = &materials[GLASS], *smoke = &materials[SMOKE];
     sign->base_color_texture = BASE;
     sign->metallic_roughness_texture = GLOSS;

@@ -8,11 +8,10 @@
 #include "tests/support/renderer_compare.h"
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/rig_case.h"
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
 static const double LEAST_M = 2; /* minimum distance in metres between the eye and the nearest visible point */
-
-static struct rig rig;
 
 /* --- cameras ---------------------------------------------------------------------------------------------------------------- */
 
@@ -166,9 +165,4 @@ TEST(test_cookie_line)
     if (!site_is_there("cookie_factory_mixer.glb"))
         skip();
     test_plant("tests/plants/cookie_line.yaml", "cookie_line");
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

@@ -5,10 +5,9 @@
 #include "render/split_view.h"
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/rig_case.h"
 
 enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX };
-
-static struct rig rig;
 
 static int differing(const struct frame *a, const struct frame *b)
 {
@@ -87,9 +86,4 @@ TEST(test_moving)
 TEST(test_still)
 {
     walk(TIER_REFINED, sweep(12, 4));
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

@@ -6,12 +6,10 @@
 #include "base/clock.h"
 #include "render/overlay/overlay.h"
 #include "tests/support/planned.h"
-#include "tests/support/rig.h"
+#include "tests/support/stand_case.h"
 #include "value/quality.h"
 
 enum { WIDTH = 401, HEIGHT = 180, LEFT = 200, DIVIDER_PX = 2 };
-static struct rig rig;
-static struct stand stand;
 
 static int set_up(void **state)
 {
@@ -19,13 +17,6 @@ static int set_up(void **state)
     stand_init(&stand, &rig, toy_unit());
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, 12.0 * i, QUALITY_GOOD);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    stand_finish(&stand);
     return 0;
 }
 
@@ -47,7 +38,7 @@ static bool same_row(const struct frame *whole, const struct frame *part, int y,
     return memcmp(frame_pixel(whole, from_px, y), frame_pixel(part, part_from_px, y), (size_t)count_px * 4) == 0;
 }
 
-TEST_WITH(test_halves_are_pictures, set_up, tear_down)
+TEST_WITH(test_halves_are_pictures, set_up, stand_tear_down)
 {
     struct view view, half;
     make_view(&view);
@@ -83,7 +74,7 @@ TEST_WITH(test_halves_are_pictures, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_bit_by_bit, set_up, tear_down)
+TEST_WITH(test_bit_by_bit, set_up, stand_tear_down)
 {
     struct view view;
     make_view(&view);
@@ -105,7 +96,7 @@ TEST_WITH(test_bit_by_bit, set_up, tear_down)
 }
 
 /* Two split views in progress at once give the same frames as each alone. */
-TEST_WITH(test_launched_together, set_up, tear_down)
+TEST_WITH(test_launched_together, set_up, stand_tear_down)
 {
     struct view views[2];
     struct split_view *canvases[2];
@@ -137,7 +128,7 @@ TEST_WITH(test_launched_together, set_up, tear_down)
 }
 
 /* A split view may become too narrow to be split. */
-TEST_WITH(test_narrow, set_up, tear_down)
+TEST_WITH(test_narrow, set_up, stand_tear_down)
 {
     struct view view;
     make_view(&view);
@@ -150,7 +141,7 @@ TEST_WITH(test_narrow, set_up, tear_down)
     }
 }
 
-TEST_WITH(test_what_is_not_split_stays_as_it_is, set_up, tear_down)
+TEST_WITH(test_what_is_not_split_stays_as_it_is, set_up, stand_tear_down)
 {
     struct view view;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
@@ -162,9 +153,4 @@ TEST_WITH(test_what_is_not_split_stays_as_it_is, set_up, tear_down)
     assert_true(planned_content(stand.renderer, &split, stand.snapshot) != plain->content);
     frame_unref(&whole);
     frame_unref(&plain);
-}
-
-int main(void)
-{
-    return rig_run(&rig);
 }

@@ -14,6 +14,7 @@
 
 #include "base/mem.h"
 #include "render/split_view.h"
+#include "tests/support/cielab.h"
 #include "tests/support/test.h"
 
 bool rig_init(struct rig *rig, const char *test)
@@ -143,7 +144,12 @@ int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
     return places[slot];
 }
 
-static bool is_color(const uint8_t *bgrx, const uint8_t rgb[3])
+bool is_grey(const uint8_t *bgrx)
+{
+    return bgrx[0] == bgrx[1] && bgrx[1] == bgrx[2];
+}
+
+bool is_color(const uint8_t *bgrx, const uint8_t rgb[3])
 {
     return bgrx[2] == rgb[0] && bgrx[1] == rgb[1] && bgrx[0] == rgb[2];
 }
@@ -157,33 +163,6 @@ int map_colors_off(const struct colormap *map, const uint8_t *bgrx, double place
         if ((wanted >= off && is_color(bgrx, map->rgb[wanted - off])) || (wanted + off < 256 && is_color(bgrx, map->rgb[wanted + off])))
             return off;
     return -1;
-}
-
-/* Converts linear RGB to what a deuteranope sees (Machado, Oliveira, Fernandes 2009, severity 1). */
-static void see_without_green(double c[3])
-{
-    double r = 0.367322 * c[0] + 0.860646 * c[1] - 0.227968 * c[2], g = 0.280085 * c[0] + 0.672501 * c[1] + 0.047413 * c[2];
-    double b = -0.011820 * c[0] + 0.042940 * c[1] + 0.968881 * c[2];
-    c[0] = fmin(fmax(r, 0), 1);
-    c[1] = fmin(fmax(g, 0), 1);
-    c[2] = fmin(fmax(b, 0), 1);
-}
-
-/* Converts sRGB to CIELAB (D65); independent of the code of the palette. */
-static void lab_of(double r, double g, double b, bool deuteranope, double lab[3])
-{
-    double rgb[3] = { r / 255, g / 255, b / 255 }, f[3];
-    for (int i = 0; i < 3; i++)
-        rgb[i] = rgb[i] > 0.04045 ? pow((rgb[i] + 0.055) / 1.055, 2.4) : rgb[i] / 12.92;
-    if (deuteranope)
-        see_without_green(rgb);
-    double xyz[3] = { (0.4124 * rgb[0] + 0.3576 * rgb[1] + 0.1805 * rgb[2]) / 0.9505, 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2],
-                      (0.0193 * rgb[0] + 0.1192 * rgb[1] + 0.9505 * rgb[2]) / 1.089 };
-    for (int i = 0; i < 3; i++)
-        f[i] = xyz[i] > 0.008856 ? cbrt(xyz[i]) : 7.787 * xyz[i] + 16.0 / 116;
-    lab[0] = 116 * f[1] - 16;
-    lab[1] = 500 * (f[0] - f[1]);
-    lab[2] = 200 * (f[1] - f[2]);
 }
 
 int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deuteranope)
@@ -200,19 +179,17 @@ int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deut
     if (known != map || known_deuteranope != deuteranope)
         memset(found, 0, sizeof(found));
     for (int i = 0; i < 256 && (known != map || known_deuteranope != deuteranope); i++)
-        lab_of(map->rgb[i][0], map->rgb[i][1], map->rgb[i][2], deuteranope, labs[i]);
+        lab_of(map->rgb[i], deuteranope, labs[i]);
     known = map;
     known_deuteranope = deuteranope;
     uint32_t color = 1u << 24 | (uint32_t)bgrx[2] << 16 | (uint32_t)bgrx[1] << 8 | bgrx[0], slot = color * 2654435761u >> 16;
     if (found[slot].color == color)
         return found[slot].nearest;
-    lab_of(bgrx[2], bgrx[1], bgrx[0], deuteranope, lab);
+    lab_of((const uint8_t[3]){ bgrx[2], bgrx[1], bgrx[0] }, deuteranope, lab);
     for (int i = 0; i < 256; i++) {
-        double square = 0;
-        for (int c = 0; c < 3; c++)
-            square += (lab[c] - labs[i][c]) * (lab[c] - labs[i][c]);
-        if (square < least) {
-            least = square;
+        double distance = lab_distance(lab, labs[i]);
+        if (distance < least) {
+            least = distance;
             nearest = i;
         }
     }

@@ -34,6 +34,8 @@ void stand_look(const struct stand *stand, int i, struct view *view);
 struct frame *stand_draw(struct stand *stand, const struct view *view); /* draws the view; never returns NULL */
 
 const uint8_t *frame_pixel(const struct frame *frame, int x, int y); /* returns the bytes b, g, r, x of a pixel */
+bool is_color(const uint8_t *bgrx, const uint8_t rgb[3]); /* returns whether the pixel has this colour */
+bool is_grey(const uint8_t *bgrx);
 /* Returns the index (0..255) of a colour that is exactly in the map, or -1. */
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx);
 /* Returns by how many map entries a pixel's colour differs from that at `place` (0..1, or outside); -1: the colour is not in the map. */

@@ -4,21 +4,7 @@
 
 #include "plant/colormaps.h"
 #include "base/color/lab.h"
-
-/* CIELAB by CIE 15:2004 with the IEC 61966-2-1 primaries, independent of the production code. */
-static void lab_of(const uint8_t rgb[3], double lab[3])
-{
-    double l[3], f[3];
-    for (int i = 0; i < 3; i++)
-        l[i] = rgb[i] / 255.0 > 0.04045 ? pow((rgb[i] / 255.0 + 0.055) / 1.055, 2.4) : rgb[i] / 255.0 / 12.92;
-    double xyz[3] = { (0.4124 * l[0] + 0.3576 * l[1] + 0.1805 * l[2]) / 0.9505, 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2],
-                      (0.0193 * l[0] + 0.1192 * l[1] + 0.9505 * l[2]) / 1.089 };
-    for (int i = 0; i < 3; i++)
-        f[i] = xyz[i] > 0.008856 ? cbrt(xyz[i]) : 7.787 * xyz[i] + 16.0 / 116;
-    lab[0] = 116 * f[1] - 16;
-    lab[1] = 500 * (f[0] - f[1]);
-    lab[2] = 200 * (f[1] - f[2]);
-}
+#include "tests/support/cielab.h"
 
 TEST(test_only_lightness_changes)
 {
@@ -28,8 +14,8 @@ TEST(test_only_lightness_changes)
                 uint8_t shaded[3];
                 double was[3], is[3];
                 lab_shade(colormap_at(NULL, m)->rgb[i], offset, shaded);
-                lab_of(colormap_at(NULL, m)->rgb[i], was);
-                lab_of(shaded, is);
+                lab_of(colormap_at(NULL, m)->rgb[i], false, was);
+                lab_of(shaded, false, is);
                 double change = is[0] - was[0];
                 assert_true(fabs(change) <= fabs(offset) + 0.5 && change * offset >= -0.3 * fabs(offset));
                 assert_true(hypot(is[1] - was[1], is[2] - was[2]) < 1.6); /* 8 bits round */
@@ -44,8 +30,8 @@ TEST(test_maps_for_relief_have_room_for_shading)
             uint8_t shaded[3];
             double was[3], is[3];
             lab_shade(rgb, sign * COLORMAP_SHADING, shaded);
-            lab_of(rgb, was);
-            lab_of(shaded, is);
+            lab_of(rgb, false, was);
+            lab_of(shaded, false, is);
             assert_true(fabs(is[0] - was[0] - sign * COLORMAP_SHADING) < 0.8);
         }
 }
