@@ -32,8 +32,6 @@ async function start(hardware) {
     return { plant, faults };
 }
 
-const metric = async (plant, name) =>
-    Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
 const residentBytes = (plant) => 4096 * Number(readFileSync(`/proc/${plant.daemon.child.pid}/statm`, 'utf8').split(' ')[1]);
 const digest = (frame) => createHash('sha1').update(frame.payload).digest('hex');
 
@@ -132,8 +130,8 @@ for (const hardware of [true, false]) {
         if (!long) // on a loaded machine, moving pictures have another JPEG quality and thus another size
             assert.ok(strangers < 0.2 * moved, `${strangers} of ${moved} pictures of those who moved were none like before`);
         assert.equal(faults.get('lost'), LOSSES);
-        assert.equal(await metric(plant, 'plantcast_gl_losses_total'), LOSSES);
-        assert.equal(await metric(plant, 'plantcast_render_failures_total'), 0);
+        assert.equal(await plant.metric('plantcast_gl_losses_total'), LOSSES);
+        assert.equal(await plant.metric('plantcast_render_failures_total'), 0);
         assert.equal(faults.get('contexts'), 1);
         assert.ok(grown < GROWTH_BYTES, `${grown} bytes more`);
         assert.equal((await get(plant.port, '/readyz')).status, 200);
@@ -173,7 +171,7 @@ test('who finds no room on the GPU is refused and told why; all others keep thei
     const since = await setWarm(plant, WARM[0]), expected = await rest(clients, since);
     const moving = move(clients[2]);
     await clients[2].until('some pictures', () => moving.count() > 3 * EYES.length, PATIENCE_MS);
-    const failures = await metric(plant, 'plantcast_render_failures_total');
+    const failures = await plant.metric('plantcast_render_failures_total');
     faults.set('room_bytes', faults.get('used_bytes') + LITTLE_BYTES);
     const late = await PlainClient.open(plant.port);
     late.say({ type: 'hello', width: 1920, height: 1080, codecs: ['jpeg'] });
@@ -181,7 +179,7 @@ test('who finds no room on the GPU is refused and told why; all others keep thei
     assert.equal(code, 1013);
     assert.match(text, /^out of memory for another picture/);
     assert.equal(late.frames.length, 0);
-    assert.ok(await metric(plant, 'plantcast_render_failures_total') > failures);
+    assert.ok(await plant.metric('plantcast_render_failures_total') > failures);
     const count = moving.count();
     await clients[2].until('more pictures', () => moving.count() > count + EYES.length, PATIENCE_MS);
     assert.equal((await get(plant.port, '/readyz')).status, 200);
