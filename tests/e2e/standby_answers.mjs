@@ -5,30 +5,21 @@ import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { after, before, test } from 'node:test';
-import { PostgresServer } from './support/postgres_server.mjs';
 import { kill, missingTwoCores, STANDBY_HOST, TwoCores, until } from './support/two_cores.mjs';
 
 const LIBRARY = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/late_peer.so'), LATE_MS = 100, ROUNDS = 3;
 const skip = missingTwoCores() || (existsSync(LIBRARY) ? false : 'not built: late_peer.so');
-let server, two;
+let two;
 
 before(async () => {
-    if (skip)
-        return;
-    server = await PostgresServer.start();
-    server.makeDatabase('plants');
-    two = await TwoCores.create(server);
-    for (const core of Object.values(two.cores))
-        core.before = ['env', `LD_PRELOAD=${LIBRARY}`, `LATE_PEER=${STANDBY_HOST}`, `LATE_MS=${LATE_MS}`,
-            'ASAN_OPTIONS=verify_asan_link_order=0'];
-    await two.plant.tell('set TI-1 50');
-    await Promise.all([two.start('one'), two.start('two')]);
-    await two.followed(await two.leader());
+    two = skip ? null : await TwoCores.running(async (cores) => {
+        for (const core of Object.values(cores.cores))
+            core.before = ['env', `LD_PRELOAD=${LIBRARY}`, `LATE_PEER=${STANDBY_HOST}`, `LATE_MS=${LATE_MS}`,
+                'ASAN_OPTIONS=verify_asan_link_order=0'];
+        await cores.plant.tell('set TI-1 50');
+    });
 });
-after(async () => {
-    await two?.destroy();
-    await server?.destroy();
-});
+after(() => two?.destroy());
 
 test('an answer comes once the standby has what was done', { skip, timeout: 240000 }, async (t) => {
     const renderer = await two.renderer('r');
@@ -50,16 +41,15 @@ test('an answer comes once the standby has what was done', { skip, timeout: 2400
     }
 });
 
-const alarm = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms.find(({ tag }) => tag === 'TI-1');
 const acknowledge = (client) => client.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });
 
 // Raises the alarm of TI-1, after the former alarm has ended.
 async function raise(...nodes) {
     await two.plant.tell('set TI-1 50');
-    await until('the end of the alarm', async () => (await Promise.all(nodes.map(alarm))).every((one) => !one));
+    await until('the end of the alarm', async () => (await Promise.all(nodes.map((node) => node.alarm()))).every((one) => !one));
     await two.plant.tell('set TI-1 95');
     await until('the alarm at all nodes', async () =>
-        (await Promise.all(nodes.map(alarm))).every((one) => one?.state === 'unacknowledged'));
+        (await Promise.all(nodes.map((node) => node.alarm()))).every((one) => one?.state === 'unacknowledged'));
 }
 
 for (const reloads of [false, true])
@@ -73,19 +63,19 @@ for (const reloads of [false, true])
             await raise(renderer, other.node);
             acknowledge(anna);
             await until('the confirmation without a cut', () => confirms() === 1);
-            await until('acknowledged at the standby', async () => (await alarm(other.node)).state === 'acknowledged');
+            await until('acknowledged at the standby', async () => (await other.node.alarm()).state === 'acknowledged');
             await raise(renderer, other.node);
             await two.takeOver(t, core, async () => {
                 await Promise.all([core.toDatabase.cut(), other.toOther.cut()]);
                 acknowledge(anna);
                 if (!reloads)
                     return;
-                await until('acknowledged at the leader', async () => (await alarm(core.node)).state === 'acknowledged');
+                await until('acknowledged at the leader', async () => (await core.node.alarm()).state === 'acknowledged');
                 core.program.child.kill('SIGHUP');
                 // Without the database, the leader ends if a reload takes longer than its lease.
                 await Promise.race([core.program.line(/reload: configuration/), core.program.ended]).catch(() => core.program.ended);
             });
-            const isConfirmed = confirms() > 1, { state } = await alarm(other.node);
+            const isConfirmed = confirms() > 1, { state } = await other.node.alarm();
             t.diagnostic(`${isConfirmed ? 'confirmed' : 'not confirmed'}, and ${state} at the next leader`);
             assert.ok(!isConfirmed || state === 'acknowledged', `confirmed, and ${state} at the next leader`);
             anna.close();
