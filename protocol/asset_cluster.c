@@ -14,7 +14,7 @@ double asset_length(const float v[3])
     return sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2]);
 }
 
-/* Computes the unit normal of a triangle. Returns false for a triangle without area, which is invisible from all sides. */
+/* Computes the unit normal of a triangle. Returns false for a triangle without area, because it is invisible from all sides. */
 static bool face_normal(const float (*positions_m)[3], const uint32_t v[3], double n[3])
 {
     double u[3], w[3];

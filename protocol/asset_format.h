@@ -57,7 +57,7 @@ struct asset_primitive {               /* a range of triangles with one material
     uint32_t name; /* offset in section ASSET_NAMES of the name of the primitive's node */
 };
 
-/* a level of detail: its range of primitives, and its number of vertices, which are always the first ones of the file */
+/* a level of detail: its range of primitives, and its number of vertices. A level's vertices are the first ones of the file */
 struct asset_level {
     uint32_t first_primitive, primitive_count, vertex_count;
     /* number of vertices made by subdividing triangles; they come last among the vertices that this level adds to the next coarser one */
@@ -119,7 +119,7 @@ struct asset_view {
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const uint16_t *geodesic; /* coded distances (distance_code.h); NULL: the file has none, or they are packed and not unpacked yet */
-    /* section of packed distance codes (distance_pack.h), which begins with the table of its blocks; NULL: the codes are not packed */
+    /* section of packed distance codes (distance_pack.h), starting with the table of its blocks; NULL: the codes are not packed */
     const uint64_t *packed;
     const char *names;
 };
@@ -129,9 +129,9 @@ struct asset_view {
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 /* Like asset_view_init(), but does not check the checksum: for bytes that asset_build() has just made. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
-/* Makes view->geodesic usable: unpacks packed distances into memory. *codes: receives this memory, which must outlive the view and which
-   the caller frees with free(); NULL if the distances are not packed. Takes 3 ns for each vertex and sensor. Returns false if out of
-   memory. */
+/* Makes view->geodesic usable: unpacks packed distances into memory. *codes receives this memory; NULL if the distances are not
+   packed. It must outlive the view; the caller frees it with free(). Takes 3 ns for each vertex and sensor. Returns false if
+   out of memory. */
 bool asset_view_unpack(struct asset_view *view, uint16_t **codes);
 
 /* Computes the bounding box and the normal cone of a cluster from its triangles. */

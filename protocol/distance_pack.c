@@ -16,9 +16,9 @@
 #define GROUPS (BLOCK / GROUP)
 #define NO_PARENT 0xffffu /* value of `parent` in packed_row: codes are predicted from distances of the same sensor only */
 #define PLAIN 0xfffeu     /* value of `parent` in packed_row: codes are not predicted, because some vertices have no path to the sensor */
-#define SAMPLES 16u       /* number of vertices at which two sensors' distances are compared to find similar sensors */
+#define SAMPLES 16u       /* number of vertices compared between two sensors' distances to find similar sensors */
 
-struct packed_row { /* how the codes of one sensor in a block are packed; `parent`: the similar sensor from which they are predicted */
+struct packed_row { /* how the codes of one sensor in a block are packed; `parent`: the similar sensor that they are predicted from */
     uint16_t parent;
     uint8_t width[GROUPS]; /* bits per code */
 };

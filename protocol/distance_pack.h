@@ -13,9 +13,9 @@
 
 /* Returns the largest size in bytes of a packed block. */
 size_t distance_pack_bound(size_t sensor_count);
-/* Packs a block. codes: [sensor][ASSET_DISTANCE_BLOCK]. near[s]: up to DISTANCE_PACK_NEAR sensors with an index below s and distances
-   similar to those of s, from which the packer chooses the one that predicts best; unused entries are s. out: distance_pack_bound() bytes.
-   Returns the number of bytes used, a multiple of 16, or 0 if out of memory. */
+/* Packs a block. codes: [sensor][ASSET_DISTANCE_BLOCK]. near[s]: up to DISTANCE_PACK_NEAR sensors with an index below s and
+   distances similar to those of s. The packer chooses the one that predicts best; unused entries are s. out:
+   distance_pack_bound() bytes. Returns the number of bytes used, a multiple of 16, or 0 if out of memory. */
 size_t distance_pack(const uint16_t *codes, size_t sensor_count, const uint16_t (*near)[DISTANCE_PACK_NEAR], uint8_t *out);
 /* Returns whether the `bytes` bytes from `block` on hold a valid block, so that distance_unpack() reads nothing beyond them. */
 bool distance_pack_good(const uint8_t *block, size_t bytes, size_t sensor_count);

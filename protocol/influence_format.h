@@ -39,7 +39,7 @@ struct influence_entry {
     /* disc_m: radius in metres of the disc on the surface that has the sensor's value; decay_m: decay length in metres for interpolation
        fin, other interpolations 0 */
     double disc_m, decay_m;
-    /* parameters of interpolation gp (range, noise, standard deviation), stated in the plant file or determined from readings; other
+    /* parameters of interpolation gp (range, noise, standard deviation), from the plant file or determined from readings; other
        interpolations: 0 */
     double range_m, noise, deviation;
 };

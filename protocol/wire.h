@@ -36,7 +36,7 @@ struct wire_frame { /* header of the binary message with a frame; the members ar
     /* sequence numbers of the client's newest `camera` and `params` messages whose content this frame shows */
     uint32_t camera_seq, params_seq;
     uint32_t oldest_age_ms; /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
-    /* time of the readings, and time at which the frame was sent: microseconds since 1970, UTC, by the server's clock */
+    /* time of the readings, and time when the frame was sent: microseconds since 1970, UTC, by the server's clock */
     uint64_t data_time_us, sent_time_us;
     /* durations in microseconds: from client input to start of rendering, computing the field, rendering, encoding */
     uint32_t wait_us, field_us, render_us, encode_us;

@@ -20,7 +20,7 @@ layout(location = 9) uniform float sky_texel_m;
 layout(location = 10) uniform ivec2 range; // range of vertices, sample points or texels to compute: first index, and one beyond the last
 #ifdef GROUND
 const int TAPS = 16;
-// radius of the disc in which opening() samples a sky map (depth map for one direction), relative to the map's width
+// radius of the disc that opening() samples in a sky map (depth map for one direction), relative to the map's width
 const float SPREAD = 0.05;
 layout(rg8, binding = 0) uniform image2D ground; // sun, openness
 layout(location = 11) uniform vec3 ground_up;
@@ -141,7 +141,7 @@ void main()
 #else
     float open = unpackUnorm4x8(baked[i]).z;
 #endif
-    // rounds openness to the 8 bits in which it is stored, so that the light does not change when a later bake reads the stored openness
+    // rounds openness to its 8 stored bits, so that the light does not change when a later bake reads the stored openness
     open = round(max(open, least_open) * 255.0) / 255.0;
     float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);

@@ -54,8 +54,9 @@
 #define STIPPLE_GREY 64
 #define RULE_LIGHT_GREY 226
 #define RULE_DARK_GREY 196
-// Feature edges (dark lines at steps of depth): colour, largest opacity, and the relative depth steps at which a line begins and reaches
-// that opacity. The nearer surface must be at least EDGE_THIN_PX pixels wide; from EDGE_WIDE_PX on, the line has full opacity.
+// Feature edges (dark lines at steps of depth): colour, maximum opacity, and the relative depth steps at which a line begins
+// and reaches that opacity. The nearer surface must be at least EDGE_THIN_PX pixels wide; from EDGE_WIDE_PX on, the line has
+// full opacity.
 #define EDGE_RGB 0.08, 0.10, 0.14
 #define EDGE_MOST 0.5
 #define EDGE_FROM 0.006

@@ -23,8 +23,8 @@ float sky_brightness(vec3 n)
     return clamp(dot(sky_irradiance(n), vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
 }
 
-// Returns the light that arrives around the mirrored view direction r, averaged in advance over the directions that a surface of this
-// roughness reflects.
+// Returns the light around the mirrored view direction r, prefiltered over the directions that a surface of this roughness
+// reflects.
 vec3 mirrored(vec3 r, float roughness)
 {
     const float side = 128.0, layers = 8.0;

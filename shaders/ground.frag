@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws the shadow on the ground: outputs a factor by which blending multiplies the colour of the backdrop.
+// Draws the shadow on the ground: outputs a factor that blending multiplies by the backdrop's colour.
 #include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 1) uniform sampler2D ground_light; // visible part of the sun, and openness; both 0..1

@@ -9,8 +9,8 @@ struct Sensor {
 };
 layout(std430, binding = 5) readonly buffer Sensors {
     vec4 numbers; // power, radius, reach, MIN of the group's range
-    // x: MAX - MIN of the range, by which Algorithm 1 scales its sum to a value, or 0; y: vertex count of the asset; z, w (only if the
-    // smallest visible hot spot is shown): size of a hot spot and the value at which it is seen
+    // x: factor MAX - MIN of the range, which scales Algorithm 1's sum to a value, or 0; y: vertex count of the asset; z, w
+    // (only if the smallest visible hot spot is shown): size of a hot spot and the value at which it is seen
     vec4 more;
     // x: 1: Algorithm 1, 0: shepard; y: 1: geodesic distances; z: 1: areas around lost sensors are filled in; w: what is shown (1:
     // distance, 5: hot spot)

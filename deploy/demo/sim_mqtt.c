@@ -20,7 +20,7 @@ struct sim_mqtt {
     const struct plant *plant;
     struct mosquitto *library;
     struct mqtt_topics *topics; /* topics of each source; empty for sources that are not simulated */
-    int64_t *due_ns;            /* by source: monotonic time at which its topics are published next */
+    int64_t *due_ns;            /* by source: monotonic time when its topics are next published */
     size_t tag_count;
 };
 

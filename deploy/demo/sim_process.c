@@ -57,7 +57,7 @@ struct process_state {
     double normal, span;
     double shares[UPSETS], dead_s[UPSETS];
     uint32_t loop; /* hash of the name of the tag's loop; sets the phase of the drift */
-    int machine;   /* number of the machine to which the tag belongs; -1: none */
+    int machine;   /* number of the tag's machine; -1: none */
     double dead_own_s, lag_s;
     double lagged, drift, noise, value;
     uint64_t random;

@@ -8,7 +8,7 @@
 
 struct sim_values;
 
-/* Reads the columns `Sim Value` (operating value) and `Sim Loop` of the tag list, and the series that the map names. Returns NULL after
+/* Reads the columns `Sim Value` (operating value) and `Sim Loop` of the tag list, and the series of the map. Returns NULL after
    errors, which are in diag. `plant` must outlive the result; `map` may be freed after the call. */
 struct sim_values *sim_values_create(const struct plant *plant, const struct sim_map *map, bool loop, struct diag *diag);
 void sim_values_destroy(struct sim_values **values); /* frees the values and sets *values to NULL; *values may be NULL */

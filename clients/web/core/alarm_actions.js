@@ -23,7 +23,7 @@ export const asideOf = ({ rows }) =>
 // Returns all alarms of a row in the alarm list: the alarm shown in the row, and the other alarms of its tag.
 export const allOf = (row) => [row, ...(row.others ?? [])];
 
-// Returns those alarms of a row to which an action applies.
+// Returns the alarms of a row to which an action applies.
 export const targetsOf = (row, action, mode, role) => allOf(row).filter((alarm) => actionsFor(alarm, mode, role).includes(action));
 
 // Returns the actions that apply to any alarm of a row, each once.

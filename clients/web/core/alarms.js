@@ -54,8 +54,8 @@ export class Alarms {
             [key, { ...gravest, others, waiting: [gravest, ...others].some(({ state }) => isWaiting(state)) }]));
         const list = this.list();
         this.times = new Map(list.map((one) => [one.tag.name, [one, ...one.others].map(({ raisedUs }) => raisedUs)]));
-        // alarms raised since the previous `alarms` message, also if that came over an earlier connection: one per tag, the most urgent
-        // first. Alarms that only changed their state do not count.
+        // alarms raised since the previous `alarms` message, even one from an earlier connection: one alarm per tag, the most
+        // urgent first. Alarms that only changed their state do not count.
         this.raised = list.filter(({ tag, state, raisedUs }) => before && !isGone(state) && state !== 'acknowledged' &&
             !before.get(tag.name)?.some((us) => us >= raisedUs));
     }

@@ -37,8 +37,8 @@ export function approachDistance({ min, max }, { least, most }) {
     return wanted < most ? Math.max(least, wanted) : most;
 }
 
-// Returns the fraction of the picture (0 to 1) that the bounding rectangle of a projected box fills. A box that reaches behind the camera
-// counts as 1.
+// Returns the fraction of the picture (0 to 1) filled by the bounding rectangle of a projected box. A box that reaches behind
+// the camera counts as 1.
 export function fillOf(camera, box, aspect) {
     const places = corners(box).map(projector(camera, aspect, 1));
     if (places.includes(null))

@@ -52,7 +52,7 @@ function boundsOf(members) {
     return [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
 }
 
-// Returns for each ring the position by which it is grouped: its own, or in a flood of alarms the centre of all rings of its equipment, so
+// Returns the position by which each ring is grouped: its own, or in a flood of alarms the centre of its equipment's rings, so
 // that these share a call-out.
 function anchorsOf(items) {
     const all = new Map();
@@ -117,7 +117,7 @@ export function placeRings(all, { area, unit, taken, measure }) {
         const joined = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
             .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure)).filter(hasFiniteBox);
         if (joined.length >= groups.length)
-            return out.map(withLeads); // no groups are left to merge, so groups for which there is no room get no label
+            return out.map(withLeads); // no groups are left to merge, so groups that find no room get no label
         groups = joined;
     }
 

@@ -42,7 +42,7 @@ export function basis(camera) {
 // Returns true if the camera is orthographic.
 export const isParallel = (camera) => camera.height_m !== undefined;
 
-// heightAt() returns the height in metres that the picture covers at a depth; metresPerPixel() returns the metres per pixel at that depth.
+// heightAt() returns the picture's height in metres at a depth; metresPerPixel() returns the metres per pixel at that depth.
 export const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
 export const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
 

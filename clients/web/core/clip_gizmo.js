@@ -5,7 +5,8 @@ import { basis, isParallel } from './camera.js';
 import { AXES } from './section.js';
 import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, unit } from './vector.js';
 
-// LEAST_BOX_M: smallest side of a box; MARGIN: a plane stays inside the plant's bounds by at least this fraction of their size
+// LEAST_BOX_M: minimum length of a box's sides; MARGIN: minimum distance of a plane from the plant's bounds, inside them, as a
+// fraction of their size
 const LEAST_BOX_M = 0.05, MARGIN = 1e-3;
 const NEAR_M = 0.02; // metres: the part of a handle's line that is nearer to the camera is cut off
 // minimum squared sine of the angle between viewing ray and handle direction; below this, a drag is undefined
@@ -21,7 +22,7 @@ const middleOf = (points) => scale(points.reduce(add), 1 / points.length);
 const cornersOf = ({ min, max }) =>
     [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
 
-// Returns the corners of the polygon in which the plane p·direction = at cuts a box, in order around the polygon.
+// Returns the corners of the polygon where the plane p·direction = at cuts a box, in order around the polygon.
 function crossing(direction, at, box) {
     const corners = cornersOf(box), found = [];
     for (let a = 0; a < 8; a++) {
@@ -106,7 +107,7 @@ export function facing(camera, point, { origin, direction }) {
     return finite(met) ? met : point;
 }
 
-// Returns positions on a handle's plane at which its knob may be shown, the centre first.
+// Returns possible positions of a handle's knob on the handle's plane, the centre first.
 export function spotsOf({ corners }) {
     if (corners.length === 0)
         return [];

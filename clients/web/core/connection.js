@@ -35,7 +35,7 @@ export class Connection {
     leastWait = 0;
     // When the last working connection ended; undefined: there was none, or a new connection works.
     lostAt;
-    // Time of the last user activity, by Date.now(), which continues while a machine sleeps.
+    // Time of the last user activity by Date.now(), because that clock continues while a machine sleeps.
     activeAt = Date.now();
     // Maximum random addition to the first wait after a lost connection.
     spreadMs = 0;

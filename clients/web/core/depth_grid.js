@@ -89,7 +89,7 @@ class Masks {
     constructor({ columns, rows, maskSide }, { near, far, back }) {
         Object.assign(this, { columns, maskSide, near, far, back, wide: columns * maskSide });
         this.bits = new Uint8Array(this.wide * rows * maskSide); // one byte for each mask bit: 255 where the picture shows the near surface
-        this.row = new Uint8Array(maskSide); // mask bits of the row above the one being read, from which its bits are predicted
+        this.row = new Uint8Array(maskSide); // mask bits of the row above, from which the bits of the present row are predicted
     }
 
     // Returns null if the neighbour of cell `i` has a mask. Otherwise returns the side of the step in cell `i` to which the

@@ -28,7 +28,7 @@ export class Gestures {
         if (this.pointers.size === 1)
             this.first = { x, y, time, slop: SLOP_PX[kind] ?? SLOP_PX.mouse, button };
         this.moved = this.pointers.size > 1;
-        this.twisted = 0; // angle in degrees by which the two fingers have turned
+        this.twisted = 0; // angle in degrees that the two fingers have turned so far
         return [];
     }
 

@@ -16,7 +16,7 @@ const MOST_PX = 4e6, STEP_PX = 2;
 const MOST_DENSITY = 4096;
 const NEAREST_M = 0.05, FARTHEST_M = 1000; // ends of a ray
 export const STAND_M = 1.6; // height of the eyes above the floor in metres, for devices that do not report it
-const ROOM_M = 2.5; // distance from the plant at which a user starts, in metres
+const ROOM_M = 2.5; // distance in metres between the plant and a user who starts
 
 const turned = (axes, [x, y, z]) => add(add(scale(axes[0], x), scale(axes[1], y)), scale(axes[2], z));
 export const pointOf = (rig, point) => add(rig.at, turned(rig.axes, point));
@@ -152,7 +152,7 @@ export function hitOf(grid, camera, origin, direction) {
     return null;
 }
 
-// Returns where a ray meets the level plane through a point: at most 30 m away; null: nowhere.
+// Returns where a ray meets the level plane through a point, at most 30 m away; null: nowhere.
 export function floorHit(origin, direction, level, up) {
     const down = -dot(direction, up), t = dot(subtract(origin, level), up) / down;
     return down > 0.05 && t > 0 && t * length(direction) <= 30 ? along(origin, direction, t) : null;

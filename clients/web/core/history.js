@@ -67,7 +67,7 @@ function putInterval(put, [us, low, , mean, first, last], length, before, after)
     return undefined;
 }
 
-// Returns the periods in which a series has no value, or an uncertain one: [{ from, to (seconds), severity }].
+// Returns the periods of a series without a value, or with an uncertain one: [{ from, to (seconds), severity }].
 export function gaps(series, fromUs, toUs) {
     const out = [];
     const add = (from, to, grade) => {
@@ -94,8 +94,8 @@ export function gaps(series, fromUs, toUs) {
     return out;
 }
 
-// Returns two tags of each data source, the first and the last: [{ source, tags: [name] }], for at most `most` sources. If both tags have
-// no values, the page treats the source as lost.
+// Returns for each data source its first and last tag: [{ source, tags: [name] }], for at most `most` sources. If both tags
+// have no values, the page treats the source as lost.
 export function witnesses(tags, most = 16) {
     const ends = new Map();
     for (const { source, name } of tags.filter((tag) => tag.source))
@@ -144,8 +144,8 @@ export function nextTo(marks, us, backwards) {
     return marks.filter((mark) => mark.us === found?.us).sort((a, b) => a.priority - b.priority)[0] ?? null;
 }
 
-// Groups alarms (`marks`, as raised() returns them) that were raised within nearUs of each other: { us, priority (both of the most urgent
-// one), of: all alarms of the group }.
+// Groups alarms (`marks`, as raised() returns them) that were raised within nearUs of each other: { us, priority (time and
+// priority of the most urgent one), of: all alarms of the group }.
 export function clustered(marks, nearUs) {
     const out = [];
     for (const mark of marks) {

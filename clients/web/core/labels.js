@@ -22,7 +22,7 @@ export const hasArea = ({ left, top, right, bottom }) => right > left && bottom 
 
 export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
-// A grid of the boxes that are already occupied, so that a new label is compared only with boxes near it, not with thousands.
+// A grid of the occupied boxes, so that a new label is compared only with boxes near it, not with thousands.
 class Taken {
     constructor(cell, area) {
         Object.assign(this, { area, cell: Math.max(cell, (area.right - area.left) / MOST_CELLS, (area.bottom - area.top) / MOST_CELLS) });
@@ -65,14 +65,14 @@ export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot,
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// Chooses labels and positions. all: items, one per marker, with these members. x, y: centre of the marker; width, height: size of its
-// label. rank: importance, 0 to RANK_RING, higher ranks are placed first; below 0: no label. depth: distance from the eye; within a rank,
-// the nearest is placed first. ring: the marker has an alarm ring. held: slot (candidate position around the marker) of the previous
-// picture, or undefined. callout: id of the call-out (one label for several rings) in the previous picture.
-// area: { left, top, right, bottom } in which labels must lie. rings: placeRings() of callouts.js, which places the labels of all rings.
-// measure(items): returns the size of a call-out for these items.
-// Returns a Map id -> { left, top, slot }; items with a ring also have width, height and callout (undefined: a label of its own), and in a
-// call-out `leads` (true: a leader line connects both).
+// Chooses labels and positions. all: items, one per marker, with these members. x, y: centre of the marker; width, height: size
+// of its label. rank: importance, 0 to RANK_RING, higher ranks are placed first; below 0: no label. depth: distance from the
+// eye; within a rank, the nearest is placed first. ring: the marker has an alarm ring. held: slot (candidate position around
+// the marker) of the previous picture, or undefined. callout: id of the call-out (one label for several rings) in the previous
+// picture. area: { left, top, right, bottom } that must contain the labels. rings: placeRings() of callouts.js, which places
+// the labels of all rings. measure(items): returns the size of a call-out for these items. Returns a Map id -> { left, top,
+// slot }; items with a ring also have width, height and callout (undefined: a label of its own), and in a call-out `leads`
+// (true: a leader line connects label and ring).
 export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, measure = null }) {
     if (!hasArea(area) || !(unit > 0 && unit < Infinity))
         return new Map();

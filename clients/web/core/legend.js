@@ -39,7 +39,7 @@ export function spread(places, gap) {
     return out;
 }
 
-// Returns the widths of colour bands to offer: those that divide the range into 4 to 25 bands.
+// Returns the widths of colour bands to offer: those dividing the range into 4 to 25 bands.
 export function rampChoices(min, max) {
     if (!(max > min))
         return [];
@@ -98,7 +98,7 @@ export function colourOf(scale, value) {
     return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
 }
 
-// Returns the values at which the legend has labels: those of isolines and both ends if there is room for them, otherwise round values.
+// Returns the values to label in the legend: those of isolines and both ends if there is room for them, otherwise round values.
 export function scaleTicks(scale, lines, most = 9) {
     const { min, max } = scale;
     const within = [...new Set([...edges(scale), ...lines])].filter((value) => value > min && value < max).sort((a, b) => a - b);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds places for the names of alarm limits in a chart, at their lines and next to the curves.
 
-// COLUMN_PX: width of the columns in which the extent of a curve is stored, in device pixels; MOST_PX: largest width of a chart
+// COLUMN_PX: width in device pixels of the columns that store a curve's extent; MOST_PX: maximum width of a chart
 const COLUMN_PX = 3, MOST_PX = 30000;
 
 // Extent of one curve and its band: the highest and the lowest position in each column of the chart.
@@ -55,9 +55,10 @@ export function extentOf(bbox, times, values, band, x, y) {
     return extent;
 }
 
-// Returns the places of the names in a chart: [{ text, left, right, top, bottom, ...limit }]. limits: [{ y, words, short, ... }], with the
-// limit's line and its name in two lengths. A name is at its line, as far left as possible, or else above or below the line. A name for
-// which the curves leave no room is omitted. widthOf: measures a text; height, gap: of names, in device pixels.
+// Returns the places of the names in a chart: [{ text, left, right, top, bottom, ...limit }]. limits: [{ y, words, short, ...
+// }], with the limit's line and its name in two lengths. A name is at its line, as far left as possible, or else above or below
+// the line. A name is omitted if the curves leave no room for it. widthOf: measures a text; height, gap: of names, in device
+// pixels.
 export function placeNames({ limits, bbox, extents, widthOf, height, gap }) {
     const placed = [], isApart = (box) => placed.every((other) => box.left >= other.right + gap || box.right + gap <= other.left ||
         box.top >= other.bottom || box.bottom <= other.top);

@@ -2,7 +2,7 @@
 // Makes links that open the current view on another device.
 import { writeAddress } from './address.js';
 
-// Roles for which the server stores a view under a short link.
+// Roles whose views the server stores under a short link.
 export const SHARERS = ['viewer', 'operator', 'engineer'];
 export const shortLink = (location, id) => new URL(`v/${id}`, location.origin + location.pathname).href;
 

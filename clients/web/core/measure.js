@@ -14,5 +14,5 @@ export function measure(from, to, up) {
 // Formats a distance in metres, to the millimetre if it is short.
 export const metresText = (metres) => numberText(metres, Math.abs(metres) < 10 ? 3 : Math.abs(metres) < 100 ? 2 : 1);
 
-// Formats a long distance with its unit, which is km from 10 km on.
+// Formats a long distance with its unit: km from 10 km on, else m.
 export const farText = (metres) => (metres < 1e4 ? `${numberText(metres, metres < 10 ? 2 : 0)} m` : `${numberText(metres / 1e3, 0)} km`);

@@ -8,9 +8,9 @@ function textOf(item, ...texts) {
     return known.get(item);
 }
 
-// Returns a function that tests whether an asset matches the words in `wanted`. That function returns { asset, tags (to list), byTag (true:
-// found by its tags) }, or null. All words must occur in the asset's own texts (then all its tags are listed), or in these and those of one
-// tag. If `wanted` has no words, search() returns null.
+// Returns a function that tests whether an asset matches the words in `wanted`, or null if `wanted` has no words. The function
+// returns { asset, tags (to list), byTag (true: found by its tags) }, or null. All words must occur in the asset's own texts
+// (then all its tags are listed), or in these and the texts of one tag.
 export function search(wanted) {
     const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
     return words.length === 0 ? null : (asset) => {

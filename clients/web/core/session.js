@@ -29,7 +29,7 @@ const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
 
-// Returns a frame's camera in the form in which the page requests cameras. In frames, an orthographic camera has a field of view of 0; the
+// Converts a frame's camera to the form of camera requests. In frames, an orthographic camera has a field of view of 0; the
 // page leaves the field out.
 export const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
@@ -44,9 +44,9 @@ export class Session {
         this.camera = wanted.camera;
         this.params = { ...wanted.params };
         this.token = null;       // access token; null: none
-        // secret with which the server resumes this session after a reconnect
+        // secret that lets the server restore this session after a reconnect
         this.resume = null;
-        this.anew = false; // true: resume only this session's id, by which others follow it, and not its view
+        this.anew = false; // true: after a reconnect, restore only this session's id, by which others follow it, not its view
         // view parameters that the server last confirmed
         this.confirmed = null;
         this.size = { width: 640, height: 360 };
@@ -56,7 +56,7 @@ export class Session {
         this.asked = new Map();
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
         this.cameraNews = false; // true: the camera has changed but has not been sent yet
-        this.cameraInput = null; // time of the input that set the camera, from which latency is measured
+        this.cameraInput = null; // time of the input that set the camera; latency is measured from it
         this.markers = new Map();
         // { us, at }: the server's time, and the page's time when it arrived
         this.serverTime = null;
@@ -65,11 +65,12 @@ export class Session {
         this.outlived = null;    // picture of the previous connection
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
-        // recent pictures, from which core/timings.js computes latencies: { picture, decodeMs, hereUs (server's time when it was decoded) }
+        // recent pictures, for the latencies in core/timings.js: { picture, decodeMs, hereUs (server's time when it was
+        // decoded) }
         this.recent = [];
         // { us, roundTripMs }: the server's clock minus the page's, measured at the shortest round trip so far
         this.skew = null;
-        // id of this session, by which other sessions follow its view
+        // id of this session; other sessions use it to follow its view
         this.id = null;
         // the session that this one follows: { session (id), width, height, gone (true: it has ended, and its last view is shown) }; null:
         // none
@@ -78,7 +79,7 @@ export class Session {
         // camera of the followed session while this session shows it; null: none
         this.lent = null;
         this.followers = { count: 0, sessions: [], names: [] }; // sessions that follow this one
-        // true: asks the server for depth grids, with which the page can show a picture from another camera
+        // true: asks the server for depth grids, which let the page show a picture from another camera
         this.wantsDepth = false;
         // newest depth grids: { messages (binary), more (true: the grid of the split view's other half has not arrived) }
         this.depth = null;
@@ -236,7 +237,7 @@ export class Session {
         return wanted;
     }
 
-    // inputTime: time of the input that moved the camera, from which latency is measured.
+    // inputTime: time of the input that moved the camera; latency is measured from it.
     setCamera(camera, inputTime = this.now()) {
         if (!valid(camera) || same(camera, this.camera))
             return;
@@ -339,7 +340,7 @@ export class Session {
             this.connection.send({ type: 'ack', seq: frame.seq });
     }
 
-    // Requests a key frame, because the decoder lost the frames to which later ones refer.
+    // Requests a key frame, because the decoder has lost frames that later ones refer to.
     askKeyFrame() {
         this.post({ type: 'key_frame' });
     }

@@ -38,8 +38,8 @@ function readSide(text, dayAgo) {
 
 const dayAfter = (day) => new Date(Date.parse(`${day}T00:00:00Z`) + DAY_MS).toISOString().slice(0, 10);
 
-// Returns the range that a text means at nowUs in the plant's time zone, or null if the text is not understood. A range that names no day
-// and would begin in the future is moved a day back.
+// Returns the range described by a text, at the time nowUs and in the plant's time zone, or null if the text is not understood.
+// A range without a day that would begin in the future is moved a day back.
 export function readRange(text, nowUs, timeZone) {
     const typed = tidy(text), [, count, unit] = typed.match(LAST) ?? [];
     if (count) {

@@ -5,7 +5,7 @@
 // least 16.
 export const MINUTES = 16;
 const CAPITAL = 0.72;  // height of a capital letter, relative to the font size
-const SMALLEST_PX = 12.5; // smallest font size of the page in pixels, before the page is scaled for a wall
+const SMALLEST_PX = 12.5; // minimum font size of the page in pixels, before the page is scaled for a wall
 export const USUAL = { inches: 55, metres: 3 };
 
 // Parses ?wall, ?wall=65 (inches of the screen's diagonal), ?wall=65,4 (and metres of distance). Returns null if there is no ?wall.
@@ -50,7 +50,8 @@ export function brightness(dim, minute, calls) {
     return within && !calls ? percent / 100 : 1;
 }
 
-// Offsets [right, down] in pixels by which the content of a wall moves from time to time, by the plant's clock, to prevent burn-in.
+// Offsets [right, down] in pixels for the content of a wall. It moves from one to the next, by the plant's clock, to prevent
+// burn-in.
 const SHIFT_US = 180e6, SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]];
 export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length] ?? SHIFTS[0];
 

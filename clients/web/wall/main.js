@@ -112,7 +112,7 @@ async function look() {
 
 // --- periodic work
 
-// OPENED: time of day at which the page was opened, by the display's own clock
+// OPENED: time of day when the page was opened, by the display's own clock
 const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
 byId('lost').replaceChildren(lostWords, lostSelf);
 

@@ -366,7 +366,7 @@ function TilesPane(pane, { session, body, title }) {
     } };
 }
 
-// Makes a pane's content fit: first by a compact layout, in which values are as large as names, then by smaller letters.
+// Makes a pane's content fit: first with a compact layout, where values are as large as names, then with smaller letters.
 function fitIn(body) {
     body.classList.remove('compact');
     setVariable(body, '--part', 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pane with the picture of another plant, which this plant's server fetches. Without a picture, the pane says why.
+// A pane with another plant's picture, which this plant's server fetches. Without a picture, the pane says why.
 import { ageText } from '../core/format.js';
 import { ask } from '../core/history.js';
 import { say } from '../core/words.js';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that shows one tile of a picture across many displays: its part of the picture without a border, dots at readings, alarm
-// labels, notes, and the position at which a user at another computer points. Title and legend appear once on the wall. One display, the
-// leading one, chooses the view that all displays show.
+// A display that shows one tile of a picture across many displays: its part of the picture without a border, dots at readings,
+// alarm labels, notes, and the position that a user at another computer points at. Title and legend appear once on the wall.
+// One display, the leading one, chooses the view for all displays.
 import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
@@ -18,7 +18,7 @@ import { make, setText, setVariable } from '../app/common/dom.js';
 import { Legend } from '../app/viewport/legend.js';
 import { TileSession } from './tile_session.js';
 
-// SMALLEST: smallest font scale of a title that is too long for one line
+// SMALLEST: minimum font scale of a title that is too long for one line
 const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6;
 // REACH: a label may begin on the neighbouring tile, up to this fraction of a tile's width beyond the edge
 const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35;
@@ -150,7 +150,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // --- marks in the picture
 
-    // frame: the frame on the screen; pointer: position at which a user at another computer points: { position, by, until }
+    // frame: the frame on the screen; pointer: position that a user at another computer points at: { position, by, until }
     let frame = null, pointer = null;
 
     // Returns a function from a position in the plant to one on this display, as fractions of the display's sides; null: behind the camera,

@@ -14,8 +14,8 @@ const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 2
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 // NOW_US: an instant less than this many microseconds ago counts as now
 const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_US = 3.5e6;
-// LOST_POINTS: history points per tag, from which the periods of lost sources are found. BARS: position of the bars that show
-// how many alarms were raised; `full`: number of alarms at full height.
+// LOST_POINTS: history points per tag when searching for periods of lost sources. BARS: position of the bars that show how many
+// alarms were raised; `full`: number of alarms at full height.
 const TRACK = { top: 15, height: 10 }, BARS = { bottom: 58, height: 14, full: 10 }, BAR_PX = 5, LOST_POINTS = 300;
 // MARK_PX: minimum distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests
 // when searching for the next alarm

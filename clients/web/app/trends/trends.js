@@ -222,7 +222,7 @@ export class Trends {
         return this.showTags();
     }
 
-    // Fills the list of tags with those that match a typed text.
+    // Fills the list of tags with those matching a typed text.
     offer(text) {
         const wanted = text.trim().toLowerCase(), { tags } = this.session.model;
         this.matches = wanted ? tags.filter((tag) => !this.tags.includes(tag) &&
@@ -274,7 +274,7 @@ export class Trends {
             this.spanS = newSpanS(fromUs === null ? null : (this.nowUs - fromUs) / 1e6);
     }
 
-    // Shows a time range, in the form in which readRange() returns one.
+    // Shows a time range in the form of readRange()'s result.
     goTo({ spanS, fromUs, toUs }, isUndone = false) {
         if (!isUndone)
             this.before = [...this.before.slice(1 - MOST_BACK), { spanS: this.spanS, fixed: this.fixed }];

@@ -24,7 +24,7 @@ function polygon(c, points) {
     c.closePath();
 }
 
-// Returns the radius of markers, which is smaller where markers are dense, so that the plant stays visible.
+// Returns the radius of markers. It is smaller where markers are dense, so that the plant stays visible.
 function markerRadius(markers) {
     const xs = markers.map((marker) => marker.x), ys = markers.map((marker) => marker.y);
     const area = (Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys));
@@ -40,7 +40,7 @@ export class Overlay {
         Object.assign(this, { canvas, viewport, session, selection });
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
-        // size in CSS pixels of the unit in which markers and labels are measured: 1 on an ordinary page, more on a wall display
+        // size in CSS pixels of the unit for markers and labels: 1 on an ordinary page, more on a wall display
         this.unit = 1;
         this.calm = document.body.classList.contains('pane'); // true in a pane of a wall, where only abnormal readings have labels
         // markers { tag, x, y, depth, occluded, reading } of the tags of the shown group and of tags with alarms; x and y in units (see
@@ -76,8 +76,8 @@ export class Overlay {
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
         const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
-        // margin in pixels beyond the picture's edge within which markers are still drawn; 0 in a split view, where they would
-        // appear in the other half
+        // margin in pixels around the picture in which markers are still drawn; 0 in a split view, where they would appear in
+        // the other half
         const rim = params.split ? 0 : 20;
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
@@ -158,8 +158,8 @@ export class Overlay {
         this.isolines?.draw([...blocked, ...boxes, ...marks]);
     }
 
-    // Returns the boxes, in units of this.unit CSS pixels, of the HTML elements over the picture that do not move with it
-    // (legend, banner, open panels, ...), and of those that match the selector `more`.
+    // Returns the boxes of HTML elements over the picture that do not move with it (legend, banner, open panels, ...) and of
+    // elements that match the selector `more`. The unit is this.unit CSS pixels.
     boxesOver(more) {
         const { unit, viewport: { element } } = this, origin = element.getBoundingClientRect();
         const within = element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`);
@@ -290,7 +290,7 @@ export class Overlay {
         c.strokeStyle = INK;
         c.stroke();
         c.setLineDash([]);
-        if (tag.place === 'equipment') { // draws a second ring, which shows that the position is assumed
+        if (tag.place === 'equipment') { // draws a second ring to show that the position is assumed
             c.beginPath();
             c.arc(0, 0, radius + 3, 0, 2 * Math.PI);
             c.lineWidth = 1;

@@ -13,7 +13,7 @@ import { byId, make, makeSvg, setText } from '../common/dom.js';
 const RIM_PX = 34; // minimum distance in pixels of a handle from the picture's edge
 const APART_PX = 46; // minimum distance between handles
 const STEPS = { ArrowRight: 0.01, ArrowUp: 0.01, ArrowLeft: -0.01, ArrowDown: -0.01, PageUp: 0.1, PageDown: -0.1, Home: -2, End: 2 };
-// Axis of the plant (0: x, 1: y, 2: z) and direction in which each key moves a clip box.
+// For each key: the axis of the plant along which it moves a clip box (0: x, 1: y, 2: z), and the direction.
 const WAYS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1] };
 const STEP = 0.01; // movement per key press, as a fraction of the plant's length along that axis
 const ARROW = 'M-13 0h26M-13 0l6-5.5M-13 0l6 5.5M13 0l-6-5.5M13 0l-6 5.5';
@@ -63,7 +63,7 @@ export class ClipGizmo {
 
     place(grips, view, half) {
         const taken = [], covers = this.covers(), path = outline(grips, view);
-        // x, width: bounds of the half of a split view in which the handle must stay
+        // x, width: bounds of the handle's half of a split view, which the handle must not leave
         const { left: x, width } = view, { height } = this.viewport;
         this.lines.append(makeSvg('svg', { x, width, height, viewBox: `${x} 0 ${width} ${height}` },
             makeSvg('path', { class: 'under', d: path }), makeSvg('path', { d: path })));

@@ -15,7 +15,7 @@ import { BEHIND_MS } from '../toolbar/status.js';
 import { titleOf } from '../viewport/legend.js';
 
 const PX_PER_DEGREE = 24; // resolution, in pixels per degree of view, of canvases whose apparent size in the headset is fixed
-const LETTER_PX = 52; // font size; a capital letter is 0.72 of this, which is 1.56 degrees at PX_PER_DEGREE
+const LETTER_PX = 52; // font size; a capital letter is 0.72 of this high, which is 1.56 degrees at PX_PER_DEGREE
 const PATTERN_PX = 18, LINE = 1.24, FAMILY = 'system-ui, sans-serif', INK = '#1d252d', PAPER = 'rgb(250 250 250 / 94%)', ALERT = '#7a0019';
 const WRIST_PX = 4600; // pixels per metre of the panel at the wrist
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;

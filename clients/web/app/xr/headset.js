@@ -14,7 +14,7 @@ import { Hands } from './hands.js';
 import { Painter } from './painter.js';
 
 const FARTHEST_M = 2.5; // distance in metres of the head from the picture's camera beyond which the picture is not shown
-const TEXT_MS = 250; // interval in milliseconds at which the texts in the headset's view are checked for changes
+const TEXT_MS = 250; // interval in milliseconds of the checks for changed texts in the headset's view
 const LATE_MS = 1000; // time in milliseconds after which a missing picture is reported
 const LEGEND = { metres: 1.3, pitchDeg: 28 }, BANNER_M = 1.3, MARKER_PX = 32, MOST_MARKERS = 150;
 const STALE = ['lost', 'silent'], GRAVE = [...STALE, 'nodata'];
@@ -81,7 +81,7 @@ export class Headset {
         this.before = { camera, size: session.size, split: params.split ?? null, onDrawn: viewport.onDrawn, warp: viewport.warp,
             picture: session.picture };
         viewport.warp?.hide();
-        this.modules.there('place')?.close(); // closes the card of a point, whose pick requests would replace those of the hands
+        this.modules.there('place')?.close(); // closes the card of a point, because its pick requests would replace those of the hands
         const warp = { hold: () => false, draw: () => false, waits: () => !this.isDecoded(clock.now()) };
         Object.assign(viewport, { warp, onDrawn: () => {}, invalidate: () => {} });
         session.resize = (size) => { this.before.size = size; };
@@ -113,7 +113,7 @@ export class Headset {
         viewport.invalidate();
     }
 
-    // Ends the headset's session if the server now shows another plant, in which the user's position would have no meaning.
+    // Ends the headset's session if the server now shows another plant, where the user's position would have no meaning.
     onWelcome() {
         this.hands.forget();
         if (this.session.model.identity !== this.identity || !this.session.reprojects)

@@ -7,7 +7,7 @@ import { FLOATS } from '../../core/warp_mesh.js';
 import { MESH, PICTURE, programOf } from '../picture/painters/gl_painter.js';
 
 const NEAREST_M = 0.05; // metres from the eye; nothing nearer is drawn
-// grey of directions that no picture shows; a lattice on it distinguishes it from equipment without a sensor, which is also grey
+// grey of directions outside all pictures; a lattice on it distinguishes it from equipment without a sensor, which is also grey
 const UNDRAWN = { light: 0.55, dark: 0.3 };
 const BOARD = `#version 300 es
 uniform vec4 corners[4];
@@ -95,7 +95,7 @@ export class Painter {
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     }
 
-    // Fills an eye's view with the lattice that marks directions that no picture shows. The picture is drawn over it.
+    // Fills an eye's view with the lattice that marks directions outside all pictures. The picture is drawn over it.
     drawUndrawn({ axes: [right, up, back], projection: p }) {
         const { gl, undrawn } = this;
         gl.disable(gl.DEPTH_TEST);
