@@ -20,7 +20,6 @@ before(async () => {
 after(() => server?.destroy());
 
 const json = async (node, path) => (await node.fetch(path)).json();
-const alarm = async (node) => (await json(node, '/api/v1/alarms')).alarms.find(({ tag, kind }) => tag === 'TI-1' && kind === 'H');
 
 // Returns the good points of TI-2, [[time_us, value], ...], recorded at a core and in its database.
 async function recorded(node) {
@@ -62,7 +61,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await two.followed(one);
             const side = off_s > 0 ? 'behind' : 'ahead of';
     await other.program.line(new RegExp(`the core's clock is 3[56]\\d\\d\\.\\d s ${side} this machine's`));
-            await until('the alarm at the standby', async () => (await alarm(other.node))?.state === 'unacknowledged');
+            await until('the alarm at the standby', async () => (await other.node.alarm())?.state === 'unacknowledged');
             const anna = await one.node.client({}, { token: two.nodes.tokens.operator });
             anna.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });
             await anna.text('alarmed');
@@ -70,7 +69,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await move(two, one);
             const first = await two.takeOver(t, one, kill(one, 'SIGKILL')), began_us = Date.now() * 1000;
             t.diagnostic(`${first.pause_ms.toFixed(0)} ms without a poller`);
-            const kept = await alarm(other.node);
+            const kept = await other.node.alarm();
             assert.deepEqual([kept.state, kept.who], ['acknowledged', 'anna']);
             t.diagnostic(`raised ${((kept.raised_us - began_us) / 1e6).toFixed(0)} s before`);
             await until('readings that are as old as they are', async () => (await json(other.node, '/api/v1/tags?count=9')).tags
@@ -90,12 +89,12 @@ for (const off_s of [HOUR_S, -HOUR_S])
             };
             await all('two, while it led', () => recorded(other.node), [10, 15]);
             await two.plant.tell('set TI-1 50');
-            await until('the end of the alarm', async () => !await alarm(other.node));
+            await until('the end of the alarm', async () => !await other.node.alarm());
             await two.restart(one);
             await two.followed(other);
             const second = await two.takeOver(t, other, kill(other, 'SIGKILL'));
             t.diagnostic(`${second.pause_ms.toFixed(0)} ms without a poller`);
-            assert.equal(await alarm(one.node), undefined, 'what ended has ended');
+            assert.equal(await one.node.alarm(), undefined, 'what ended has ended');
             await move(two, one);
             await two.restart(other);
             await two.followed(one);
