@@ -12,9 +12,9 @@ static const struct {
     const char *magic; /* first 8 bytes (format and version) of this kind's cache files; NULL: these files have their own format */
     bool needs_sensors;
 } kinds[BUILD_CACHE_KINDS] = {
-    [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },           [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTOCK", false },
-    [BUILD_CACHE_SURFACE] = { ".surface", SURFACE_MAGIC, false }, [BUILD_CACHE_SAMPLES] = { ".spots", "PLCSPOTS", false },
-    [BUILD_CACHE_DISTANCES] = { ".columns", NULL, true },         [BUILD_CACHE_SUBDIVISION] = { ".splitting", "PLCSPLT2", true },
+    [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS2", false },           [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTCK2", false },
+    [BUILD_CACHE_SURFACE] = { ".surface", SURFACE_MAGIC, false }, [BUILD_CACHE_SAMPLES] = { ".spots", "PLCSPTS2", false },
+    [BUILD_CACHE_DISTANCES] = { ".columns", NULL, true },         [BUILD_CACHE_SUBDIVISION] = { ".splitting", "PLCSPLT3", true },
 };
 
 char *build_cache_path(const char *folder, enum build_cache_kind kind, uint64_t key)
@@ -36,7 +36,15 @@ bool build_cache_needs_sensors(enum build_cache_kind kind)
 bool build_cache_open(struct cache_file *entry, struct log *log, const char *folder, enum build_cache_kind kind, uint64_t key)
 {
     char *path = build_cache_path(folder, kind, key);
-    bool good = cache_file_open_if_good(entry, log, path, kinds[kind].magic, key);
+    bool good = cache_file_open_compressed(entry, log, path, kinds[kind].magic, key);
+    mem_free(path);
+    return good;
+}
+
+bool build_cache_map(struct cache_file *entry, struct log *log, const char *folder, enum build_cache_kind kind, uint64_t key)
+{
+    char *path = build_cache_path(folder, kind, key);
+    bool good = cache_file_map_compressed(entry, log, path, kinds[kind].magic, key);
     mem_free(path);
     return good;
 }
@@ -44,7 +52,7 @@ bool build_cache_open(struct cache_file *entry, struct log *log, const char *fol
 int build_cache_write(const char *folder, enum build_cache_kind kind, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
     char *path = build_cache_path(folder, kind, key);
-    int status = cache_file_write_parts(path, kinds[kind].magic, key, parts, part_count);
+    int status = cache_file_write_compressed(path, kinds[kind].magic, key, parts, part_count);
     mem_free(path);
     return status;
 }

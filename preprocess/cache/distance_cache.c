@@ -17,8 +17,8 @@
 #include "preprocess/cache/file_io.h"
 #include "protocol/asset_distance.h"
 
-#define LEVEL 1          /* zstd level; level 3 takes twice as long and saves no space */
-#define RECORD_STEP 4096 /* sizes of records are multiples of this, so that another sensor's column usually fits a free record */
+#define LEVEL 1          /* zstd level; level 3 takes twice the time and saves nothing */
+#define RECORD_STEP 1024 /* sizes of records are multiples of this, so that another sensor's column usually fits a free record */
 
 struct distance_record { /* header of a record; the compressed column follows */
     double place_m[3];   /* position of the record's sensor; NaN: the record is free */

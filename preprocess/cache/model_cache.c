@@ -13,7 +13,7 @@ void model_cache_read(struct model_cache *cache, struct log *log, const char *fo
     struct cache_file kept;
     *cache = (struct model_cache){ 0 };
     if (build_cache_open(&kept, log, folder, BUILD_CACHE_MODELS, 0)) {
-        struct unpack from = { kept.bytes, kept.count, false };
+        struct unpack from = { .at = kept.bytes, .left = kept.count };
         cache->at = unpack_array(&from, &cache->count, sizeof(*cache->at));
         cache->nodes = unpack_array(&from, &cache->node_count, sizeof(*cache->nodes));
         cache->capacity = cache->count;

@@ -4,38 +4,39 @@
 
 #include <string.h>
 
+#include "base/files/compress.h"
 #include "base/mem.h"
 #include "preprocess/cache/build_cache.h"
 #include "surface/surface_store.h"
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns the serialised geometry and levels of detail, which the cache file stores after their length (8 bytes); *size
- * receives the length. */
-static const void *cached_parts(const struct geometry_cache *cache, size_t *size)
+/* Starts reading a compressed cache file. finish() ends it. */
+static struct unpack begin(const struct cache_file *file)
 {
-    uint64_t bytes;
-    memcpy(&bytes, cache->parts.bytes, sizeof(bytes));
-    *size = bytes;
-    return cache->parts.bytes + sizeof(bytes);
+    struct decompressor *d = decompressor_create(file->bytes, file->count);
+    return (struct unpack){ .left = d ? decompressor_left(d) : 0, .bad = !d, .compressed = d };
 }
 
-static bool read_rest(struct geometry_cache *cache)
+static bool finish(struct unpack *from)
 {
-    size_t size, most = cache->parts.count - sizeof(uint64_t);
-    const char *parts = cache->parts.count < sizeof(uint64_t) ? NULL : cached_parts(cache, &size);
-    if (!parts || size > most)
-        return false;
-    struct unpack rest = { parts + size, most - size, false };
-    unpack_into(&rest, &cache->report, 1, sizeof(cache->report));
-    return !rest.bad;
+    decompressor_destroy(&from->compressed);
+    return !from->bad;
+}
+
+/* Reads the report, which is the first array of the cache file. */
+static bool read_report(struct geometry_cache *cache)
+{
+    struct unpack from = begin(&cache->parts);
+    unpack_into(&from, &cache->report, 1, sizeof(cache->report));
+    return finish(&from);
 }
 
 bool geometry_cache_open(struct geometry_cache *cache, struct log *log, const char *folder, uint64_t key)
 {
     *cache = (struct geometry_cache){ 0 };
-    bool good = build_cache_open(&cache->parts, log, folder, BUILD_CACHE_GEOMETRY, key) &&
-                build_cache_open(&cache->surface, log, folder, BUILD_CACHE_SURFACE, key) && read_rest(cache);
+    bool good = build_cache_map(&cache->parts, log, folder, BUILD_CACHE_GEOMETRY, key) &&
+                build_cache_map(&cache->surface, log, folder, BUILD_CACHE_SURFACE, key) && read_report(cache);
     if (!good)
         geometry_cache_close(cache);
     return good;
@@ -158,17 +159,33 @@ void geometry_cache_pack(struct text *parts, const struct geometry *geometry, co
     pack_levels(parts, levels);
 }
 
+/* Reads geometry and levels of detail, which follow the report in the cache file. */
+static bool read_parts(const struct geometry_cache *cache, struct geometry *geometry, struct levels *levels)
+{
+    struct unpack from = begin(&cache->parts);
+    struct build_report report;
+    unpack_into(&from, &report, 1, sizeof(report));
+    unpack_geometry(&from, geometry);
+    unpack_levels(&from, levels);
+    return finish(&from);
+}
+
+static struct surface *read_surface(const struct geometry_cache *cache, struct log *log, struct workers *workers)
+{
+    struct unpack from = begin(&cache->surface);
+    struct surface *surface = from.bad ? NULL : surface_unpack(&from, log, workers);
+    finish(&from);
+    return surface;
+}
+
 bool geometry_cache_unpack(const struct geometry_cache *cache, struct log *log, struct workers *workers, struct geometry *geometry,
                            struct levels *levels, struct surface **surface, enum build_cache_kind *damaged)
 {
-    struct unpack from = { 0 }, surface_from = { cache->surface.bytes, cache->surface.count, false };
-    from.at = cached_parts(cache, &from.left);
-    unpack_geometry(&from, geometry);
-    unpack_levels(&from, levels);
-    *surface = from.bad ? NULL : surface_unpack(&surface_from, log, workers);
+    const bool good = read_parts(cache, geometry, levels);
+    *surface = good ? read_surface(cache, log, workers) : NULL;
     if (*surface)
         return true;
-    *damaged = from.bad ? BUILD_CACHE_GEOMETRY : BUILD_CACHE_SURFACE;
+    *damaged = good ? BUILD_CACHE_SURFACE : BUILD_CACHE_GEOMETRY;
     levels_finish(levels);
     geometry_finish(geometry);
     return false;
@@ -178,10 +195,10 @@ bool geometry_cache_unpack(const struct geometry_cache *cache, struct log *log, 
 
 int geometry_cache_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report)
 {
-    struct text rest = { 0 };
-    pack_array(&rest, report, 1, sizeof(*report));
-    const struct atomic_file_part all[] = { { &(uint64_t){ size }, sizeof(uint64_t) }, { parts, size }, { rest.at, rest.length } };
+    struct text start = { 0 };
+    pack_array(&start, report, 1, sizeof(*report));
+    const struct atomic_file_part all[] = { { start.at, start.length }, { parts, size } };
     int status = build_cache_write(folder, BUILD_CACHE_GEOMETRY, key, all, sizeof(all) / sizeof(*all));
-    text_finish(&rest);
+    text_finish(&start);
     return status;
 }

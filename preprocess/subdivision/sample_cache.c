@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores projections of sample points in a hash table from point keys to triangle indices, 8 bytes per entry. The file has the
- * same layout as the table, so that it can be mapped and used directly. */
+/* Stores projections of sample points in a hash table from point keys to triangle indices, 8 bytes per entry. The file holds the table in
+ * the same layout, compressed. */
 #include "preprocess/subdivision/sample_cache.h"
 
 #include <string.h>

@@ -11,7 +11,7 @@
 
 struct sample_cache {
     struct cache_file file;
-    const uint64_t *known; /* hash table of the mapped file: triangle indices by key; NULL: there is no file */
+    const uint64_t *known; /* hash table in the opened file: triangle indices by key; NULL: there is no file */
     size_t slot_count;
     pthread_mutex_t lock;
     /* --- members below: protected by `lock` */
@@ -30,7 +30,7 @@ struct sample_cache_notes { /* lookups recorded by one thread; zero-initialise *
 
 /* Opens the cache of sample points with this key. A missing file gives an empty cache. Close with sample_cache_close(). */
 void sample_cache_open(struct sample_cache *sample_cache, struct log *log, const char *folder, uint64_t key);
-/* Unmaps the cache file and frees the recorded lookups. */
+/* Closes the cache file and frees the recorded lookups. */
 void sample_cache_close(struct sample_cache *sample_cache);
 /* Writes this run's lookups to the cache file if too many were missing from it. Ignores errors: nothing is cached then. */
 void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key);

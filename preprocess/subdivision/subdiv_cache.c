@@ -37,8 +37,8 @@ struct sensor { /* the parameters of a sensor that its interpolation weights dep
 };
 
 struct subdiv_head {
-    uint64_t sensors, findings, rest; /* numbers of records of each kind that follow in the file */
-    /* bit mask of levels dropped by earlier runs; number of sensors added or removed since these levels were last tried */
+    uint64_t sensors, findings, rest; /* numbers of sensors, of findings, and of 16-bit parts of optional numbers that follow in the file */
+    /* levels dropped by earlier runs (bit mask), and number of sensors added or removed since these levels were last tried */
     uint64_t given_up, changes_since;
 };
 
@@ -46,7 +46,8 @@ struct subdiv_head {
  * findings have only a key and an error. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
-/* two numbers follow: the finding's doubt (weight of the sensors changed since, subdiv_cache.h), and by how much its error may be wrong */
+/* two numbers of 16 bits follow: the doubt of the finding (weight of the sensors that changed since, subdiv_cache.h), and the amount by
+ * which its error may be wrong */
 #define DOUBT_FOLLOWS 4
 #define SHARE_IS_HALF 8 /* the best split fraction of the edge is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
@@ -122,10 +123,29 @@ static bool find_changes(struct subdiv_cache *cache, const struct linear_error *
 
 /* bytes of a finding (measured error) in the file, without its optional numbers */
 #define ENTRY_BYTES (sizeof(uint64_t) + sizeof(float) + 1)
+#define REST_MAX 6 /* largest number of 16-bit parts of a finding's optional numbers */
 
+/* Returns how many 16-bit parts of optional numbers a finding has: two for a float, one for a rounded number. */
 static size_t rest_of(unsigned kind)
 {
-    return (kind & SHARE_FOLLOWS ? 1u : 0) + (kind & BARRED_FOLLOWS ? 1u : 0) + (kind & DOUBT_FOLLOWS ? 2u : 0);
+    return (kind & SHARE_FOLLOWS ? 2u : 0) + (kind & BARRED_FOLLOWS ? 2u : 0) + (kind & DOUBT_FOLLOWS ? 2u : 0);
+}
+
+/* Rounds a number >= 0 to the upper 16 bits of its float. Rounds up, by at most 1 %, because doubts may be overestimated but not
+ * underestimated. */
+static uint16_t round_up(float number)
+{
+    uint32_t bits;
+    memcpy(&bits, &number, sizeof(bits));
+    return (uint16_t)((bits + 0xffffu) >> 16);
+}
+
+static float rounded(uint16_t upper)
+{
+    const uint32_t bits = (uint32_t)upper << 16;
+    float number;
+    memcpy(&number, &bits, sizeof(number));
+    return number;
 }
 
 static void index_findings(struct subdiv_cache *cache, size_t count)
@@ -143,7 +163,8 @@ static void index_findings(struct subdiv_cache *cache, size_t count)
     }
 }
 
-/* Computes, by finding (measured error), the index of its first optional number in `rest`. Returns the total number of optional numbers. */
+/* Computes for each finding (measured error) the index of its optional numbers in `rest`. Returns the length of `rest` that all findings
+ * need. */
 static size_t index_rest(struct subdiv_cache *cache, size_t count)
 {
     size_t rest = 0;
@@ -162,16 +183,16 @@ static void read_file(struct subdiv_cache *cache, const struct linear_error *lin
         return;
     memcpy(&head, cache->file.bytes, sizeof(head));
     size_t left = cache->file.count - sizeof(head);
-    if (head.sensors > left / sizeof(struct sensor) || head.findings > left / ENTRY_BYTES || head.findings > UINT32_MAX / 4 ||
-        head.rest > left / sizeof(float) ||
-        left != head.sensors * sizeof(struct sensor) + head.findings * ENTRY_BYTES + head.rest * sizeof(float))
+    if (head.sensors > left / sizeof(struct sensor) || head.findings > left / ENTRY_BYTES || head.findings > UINT32_MAX / REST_MAX ||
+        head.rest > left / sizeof(*cache->rest) ||
+        left != head.sensors * sizeof(struct sensor) + head.findings * ENTRY_BYTES + head.rest * sizeof(*cache->rest))
         return;
     const char *sensors = cache->file.bytes + sizeof(head), *keys = sensors + head.sensors * sizeof(struct sensor);
     if (!find_changes(cache, linear, (const struct sensor *)(const void *)sensors, head.sensors))
         return;
     cache->keys = (const uint64_t *)(const void *)keys;
     cache->errors = (const float *)(const void *)(cache->keys + head.findings);
-    cache->rest = cache->errors + head.findings;
+    cache->rest = (const uint16_t *)(const void *)(cache->errors + head.findings);
     cache->kinds = (const unsigned char *)(cache->rest + head.rest);
     if (index_rest(cache, head.findings) != head.rest)
         return;
@@ -207,24 +228,30 @@ void subdiv_cache_close(struct subdiv_cache *cache)
 /* this run's findings (measured errors) as arrays, in the layout of the cache file */
 struct packed_findings {
     uint64_t *keys;
-    float *errors, *rest;
+    float *errors;
+    uint16_t *rest;
     unsigned char *kinds;
     size_t count, rest_count;
 };
 
-static unsigned char pack_finding(const struct subdiv_cache_entry *found, float rest[4])
+/* rest: receives the optional numbers of the finding, whose flags are returned. */
+static unsigned char pack_finding(const struct subdiv_cache_entry *found, uint16_t rest[REST_MAX])
 {
-    unsigned kind = found->jumps ? JUMPS : 0, count = 0;
+    unsigned kind = found->jumps ? JUMPS : 0;
     kind |= found->share == 0.5f ? SHARE_IS_HALF : found->share != 0 ? SHARE_FOLLOWS : 0;
     kind |= found->barred != 0 ? BARRED_FOLLOWS : 0;
     kind |= found->doubt != 0 || found->off != 0 ? DOUBT_FOLLOWS : 0;
-    if (kind & SHARE_FOLLOWS)
-        rest[count++] = found->share;
-    if (kind & BARRED_FOLLOWS)
-        rest[count++] = found->barred;
+    if (kind & SHARE_FOLLOWS) {
+        memcpy(rest, &found->share, sizeof(found->share));
+        rest += 2;
+    }
+    if (kind & BARRED_FOLLOWS) {
+        memcpy(rest, &found->barred, sizeof(found->barred));
+        rest += 2;
+    }
     if (kind & DOUBT_FOLLOWS) {
-        rest[count++] = found->doubt;
-        rest[count++] = found->off;
+        rest[0] = round_up(found->doubt);
+        rest[1] = round_up(found->off);
     }
     return (unsigned char)kind;
 }
@@ -235,7 +262,7 @@ static void pack_findings(const struct subdiv_cache *cache, struct packed_findin
     size_t count = cache->found.length / sizeof(*found);
     *packed = (struct packed_findings){ .keys = mem_array(count, sizeof(*packed->keys)),
                                         .errors = mem_array(count, sizeof(*packed->errors)),
-                                        .rest = mem_array(4 * count + 4, sizeof(*packed->rest)),
+                                        .rest = mem_array(REST_MAX * (count + 1), sizeof(*packed->rest)),
                                         .kinds = mem_array(count, 1),
                                         .count = count };
     for (size_t i = 0; i < count; i++) {
@@ -351,18 +378,22 @@ static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float 
 
 static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct subdiv_cache_entry *found)
 {
-    const float *rest = cache->rest + cache->rest_at[i];
+    const uint16_t *rest = cache->rest + cache->rest_at[i];
     unsigned kind = cache->kinds[i];
     *found = (struct subdiv_cache_entry){
         .key = cache->keys[i], .error = cache->errors[i], .share = kind & SHARE_IS_HALF ? 0.5f : 0, .jumps = (kind & JUMPS) != 0
     };
-    if (kind & SHARE_FOLLOWS)
-        found->share = *rest++;
-    if (kind & BARRED_FOLLOWS)
-        found->barred = *rest++;
+    if (kind & SHARE_FOLLOWS) {
+        memcpy(&found->share, rest, sizeof(found->share));
+        rest += 2;
+    }
+    if (kind & BARRED_FOLLOWS) {
+        memcpy(&found->barred, rest, sizeof(found->barred));
+        rest += 2;
+    }
     if (kind & DOUBT_FOLLOWS) {
-        found->doubt = rest[0];
-        found->off = rest[1];
+        found->doubt = rounded(rest[0]);
+        found->off = rounded(rest[1]);
     }
 }
 

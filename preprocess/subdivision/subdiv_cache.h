@@ -18,11 +18,12 @@
 struct subdiv_cache {
     bool applies; /* true: the cache is usable for this asset; false: nothing is read or written */
     struct cache_file file;
-    const uint64_t *keys; /* cache keys of the last run's findings (measured errors); points into the mapped file */
-    const float *errors, *rest;
+    const uint64_t *keys; /* cache keys of the last run's findings (measured errors), in the opened file */
+    const float *errors;
+    const uint16_t *rest; /* optional numbers of findings */
     const unsigned char *kinds;
-    uint32_t *rest_at; /* by finding (measured error): index in `rest` of its first optional number */
-    /* hash table by key: 1 + index of the finding (measured error); 0: empty slot. NULL: the cache has no usable findings */
+    uint32_t *rest_at; /* by finding (measured error): index in `rest` of its optional numbers */
+    /* hash table by key: index of the finding (measured error) + 1; 0: empty slot. NULL: the cache has no usable findings */
     uint32_t *slots;
     size_t mask, finding_count;
     struct subdiv_sensor_change { /* a sensor that was added or removed */
@@ -41,7 +42,7 @@ struct subdiv_cache {
 /* Opens the last run's findings (measured errors) under this key, and determines which sensors have changed since. Never fails:
  * without a usable file, the cache is empty. linear must outlive the cache. */
 void subdiv_cache_open(struct subdiv_cache *cache, struct log *log, const char *folder, uint64_t key, const struct linear_error *linear);
-/* Unmaps the cache file and frees the arrays. A zeroed cache is allowed. */
+/* Closes the cache file and frees the arrays. A zeroed cache is allowed. */
 void subdiv_cache_close(struct subdiv_cache *cache);
 /* Writes this run's findings (measured errors) to the file after subdivision. Ignores write errors: the next run then measures
  * everything again. */

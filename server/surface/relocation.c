@@ -198,8 +198,8 @@ static struct surface *read_surface(const struct relocation *relocation, struct 
     struct surface *surface = NULL;
     *embedding = NULL;
     if (relocation->surface_path &&
-        cache_file_open_if_good(&kept, relocation->log, relocation->surface_path, SURFACE_MAGIC, relocation->shape.surface_key)) {
-        surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, relocation->log, relocation->workers);
+        cache_file_open_compressed(&kept, relocation->log, relocation->surface_path, SURFACE_MAGIC, relocation->shape.surface_key)) {
+        surface = surface_unpack(&(struct unpack){ .at = kept.bytes, .left = kept.count }, relocation->log, relocation->workers);
         if (!surface)
             log_warn(relocation->log, "cache file %s: its surface is damaged, or memory ran out; the surface is built again",
                      relocation->surface_path);

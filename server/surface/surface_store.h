@@ -11,7 +11,8 @@ void surface_pack(const struct surface *surface, struct text *to);
    destroys it. */
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
-/* first bytes of a file in which plantcast-prep stores a surface and nothing else (base/files/cache_file.h) */
-#define SURFACE_MAGIC "PLCSURF3"
+/* first bytes of the file in which plantcast-prep stores a surface; the file contains nothing else, and is compressed
+   (base/files/cache_file.h) */
+#define SURFACE_MAGIC "PLCSURF4"
 
 #endif

@@ -190,11 +190,11 @@ CASE(a_changed_sensor_costs_its_own_distances)
         bool model_read;
     } changes[] = {
         { first_tags, 0, true },
-        { "a,,,,t,A,,1.3,0,0.02\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },  /* moved */
-        { "b,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },                        /* removed */
-        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },   /* added */
-        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 4, false },   /* of another group */
-        /* TT-2 had no tag before, so the model must be read for the node's position */
+        { "a,,,,t,A,,1.3,0,0.02\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false }, /* moved */
+        { "b,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },                       /* removed */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },  /* added */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 4, false },  /* of another group */
+        /* no tag was on node TT-2 before, so the model must be read for the node's position */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },
         { "d,,,,t,A,TT-1,,,\nc,,,,t,A,TT-2,,,\ne,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0.01\n", 3, false }, /* in another order */
     };
@@ -256,6 +256,50 @@ CASE(what_is_damaged_is_made_anew)
         mem_free(stock);
         mem_free(columns);
     }
+}
+
+/* Changes the version of a cache file, the last character of its magic. */
+static void make_older(const char *path)
+{
+    int fd = open(path, O_RDWR);
+    assert_true(fd >= 0);
+    assert_int_equal(pwrite(fd, "0", 1, 7), 1);
+    close(fd);
+}
+
+static bool is_older(const char *path)
+{
+    char version = 0;
+    int fd = open(path, O_RDONLY);
+    assert_true(fd >= 0);
+    assert_int_equal(pread(fd, &version, 1, 7), 1);
+    close(fd);
+    return version == '0';
+}
+
+/* After an update of the program, the files of the previous version are replaced without a warning. */
+CASE(files_of_another_version_are_made_again)
+{
+    static const char tags[] = "a,,,,t,A,,1.3,0,0.04\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
+    static const char *const endings[] = { ".stock", ".surface", ".spots" };
+    bool model_read;
+    prepare_first(c);
+    for (size_t i = 0; i < sizeof(endings) / sizeof(*endings); i++) {
+        char *path = kept_file(c, endings[i]);
+        make_older(path);
+        mem_free(path);
+    }
+    json_t *asset = prepare(c, tags, "kept", &model_read);
+    assert_true(model_read);
+    assert_int_equal(number(asset, "stocked"), 0);
+    assert_int_equal(number(asset, "kept_sensors"), 3);
+    assert_null(c->err.at ? strstr(c->err.at, "cache file") : NULL);
+    for (size_t i = 0; i < sizeof(endings) / sizeof(*endings); i++) {
+        char *path = kept_file(c, endings[i]);
+        assert_false(is_older(path));
+        mem_free(path);
+    }
+    assert_as_fresh(c, tags, asset);
 }
 
 static ino_t file_number(const char *path)
@@ -333,8 +377,8 @@ CASE(killed_midway_it_goes_on)
     bool model_read;
     json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns"), *folder = temp_path(c->folder, "kept"), why[200];
-    /* the first limit is in the record of the fifth sensor, which begins up to 4 kB after the end of the file */
-    const size_t limits[] = { bytes_of(columns) + 4096 + 100, bytes_of(before) / 2 };
+    /* the first limit is in the record of the fifth sensor, which begins up to 1 kB after the end of the file */
+    const size_t limits[] = { bytes_of(columns) + 1024 + 100, bytes_of(before) / 2 };
     struct folder_file mapped;
     struct asset_view view;
     uint64_t key = strtoull(json_string_value(json_object_get(first, "file")), NULL, 16);
@@ -582,7 +626,7 @@ TEST(a_surface_comes_back_whole)
     float *before_m = mem_array(torus.vertex_count, sizeof(*before_m)), *after_m = mem_array(torus.vertex_count, sizeof(*after_m));
     assert_true(surface_distances(surface, source, 1, before_m));
     surface_pack(surface, &packed);
-    struct unpack from = { packed.at, packed.length, false };
+    struct unpack from = { .at = packed.at, .left = packed.length };
     struct surface *back = surface_unpack(&from, NULL, NULL);
     assert_non_null(back);
     assert_int_equal(from.left, 0);
@@ -591,7 +635,7 @@ TEST(a_surface_comes_back_whole)
     assert_memory_equal(surface_report(surface), surface_report(back), sizeof(struct surface_report));
     surface_destroy(&back);
     for (size_t cut = 1; cut < packed.length; cut += packed.length / 37) {
-        from = (struct unpack){ packed.at, packed.length - cut, false };
+        from = (struct unpack){ .at = packed.at, .left = packed.length - cut };
         assert_null(surface_unpack(&from, NULL, NULL));
     }
     surface_destroy(&surface);

@@ -125,8 +125,8 @@ enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
 static enum sight *sights_of(const struct relocation_shape *shape)
 {
     struct cache_file kept;
-    assert_true(cache_file_open(&kept, shape->surface_path, SURFACE_MAGIC, shape->surface_key, (char[CACHE_FILE_WHY_BYTES]){ 0 }));
-    struct surface *surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, the_log, workers);
+    assert_true(cache_file_open_compressed(&kept, the_log, shape->surface_path, SURFACE_MAGIC, shape->surface_key));
+    struct surface *surface = surface_unpack(&(struct unpack){ .at = kept.bytes, .left = kept.count }, the_log, workers);
     assert_non_null(surface);
     enum sight *sights = mem_array(shape->vertex_count, sizeof(*sights));
     size_t of_finest = 0, hidden = 0;
@@ -360,7 +360,7 @@ TEST(without_memory_it_says_so_and_goes_on)
     char *path = temp_path(c->folder, "plate.surface");
     surface_pack(surface, &packed);
     const struct atomic_file_part part = { packed.at, packed.length };
-    assert_int_equal(cache_file_write_parts(path, SURFACE_MAGIC, 7, &part, 1), 0);
+    assert_int_equal(cache_file_write_compressed(path, SURFACE_MAGIC, 7, &part, 1), 0);
     for (int kept = 0; kept < 2; kept++) {
         int broken = 0, warm = 0;
         shape.surface_path = kept ? path : NULL;

@@ -59,8 +59,8 @@ static struct surface *kept_surface(const struct prep_case *c)
     struct cache_file kept;
     uint64_t key;
     char *path = prep_case_file(c, ".surface", &key);
-    assert_true(cache_file_open(&kept, path, SURFACE_MAGIC, key, (char[CACHE_FILE_WHY_BYTES]){ 0 }));
-    struct surface *surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, the_log, NULL);
+    assert_true(cache_file_open_compressed(&kept, the_log, path, SURFACE_MAGIC, key));
+    struct surface *surface = surface_unpack(&(struct unpack){ .at = kept.bytes, .left = kept.count }, the_log, NULL);
     assert_non_null(surface);
     cache_file_close(&kept);
     return surface;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes cache files: a header with magic, key, byte count and checksum precedes the content. */
+/* Reads and writes cache files: a header with magic, key, byte count and checksum precedes the content, which may be compressed. The
+   header describes the content as stored in the file. */
 #include "base/files/cache_file.h"
 
 #include <errno.h>
@@ -15,6 +16,7 @@
 #include <xxhash.h>
 
 #include "base/files/atomic_file.h"
+#include "base/files/compress.h"
 #include "base/mem.h"
 
 struct cache_head {
@@ -92,19 +94,62 @@ bool cache_file_open(struct cache_file *file, const char *path, const char *magi
     return open_file(file, path, magic, key, why) == FILE_GOOD;
 }
 
-bool cache_file_open_if_good(struct cache_file *file, struct log *log, const char *path, const char *magic, uint64_t key)
+static bool is_good(enum file_state state, struct log *log, const char *path, const char *why)
 {
-    char why[CACHE_FILE_WHY_BYTES];
-    enum file_state state = open_file(file, path, magic, key, why);
     if (state == FILE_DAMAGED)
         log_warn(log, "cache file %s: %s; its contents are computed again", path, why);
     return state == FILE_GOOD;
+}
+
+bool cache_file_open_if_good(struct cache_file *file, struct log *log, const char *path, const char *magic, uint64_t key)
+{
+    char why[CACHE_FILE_WHY_BYTES];
+    return is_good(open_file(file, path, magic, key, why), log, path, why);
+}
+
+/* Opens a file of compressed content, and checks that its chunks are complete. */
+static enum file_state map_compressed(struct cache_file *file, const char *path, const char *magic, uint64_t key, char *why)
+{
+    enum file_state state = open_file(file, path, magic, key, why);
+    if (state != FILE_GOOD || decompressed_size(file->bytes, file->count) != SIZE_MAX)
+        return state;
+    cache_file_close(file);
+    return found(why, FILE_DAMAGED, "damaged: its compressed parts do not have the sizes that they state");
+}
+
+/* Replaces the mapped content of the file by the decompressed content. */
+static enum file_state decompress_file(struct cache_file *file, char *why)
+{
+    const size_t bytes = file->count;
+    size_t count;
+    void *decompressed = decompress(file->bytes, bytes, &count);
+    cache_file_close(file);
+    if (!decompressed)
+        return found(why, FILE_DAMAGED, "its %zu compressed bytes are damaged, or memory ran out", bytes);
+    *file = (struct cache_file){ .decompressed = decompressed, .bytes = decompressed, .count = count };
+    return FILE_GOOD;
+}
+
+bool cache_file_map_compressed(struct cache_file *file, struct log *log, const char *path, const char *magic, uint64_t key)
+{
+    char why[CACHE_FILE_WHY_BYTES];
+    return is_good(map_compressed(file, path, magic, key, why), log, path, why);
+}
+
+bool cache_file_open_compressed(struct cache_file *file, struct log *log, const char *path, const char *magic, uint64_t key)
+{
+    char why[CACHE_FILE_WHY_BYTES];
+    enum file_state state = map_compressed(file, path, magic, key, why);
+    if (state == FILE_GOOD)
+        state = decompress_file(file, why);
+    return is_good(state, log, path, why);
 }
 
 void cache_file_close(struct cache_file *file)
 {
     if (file->map)
         munmap(file->map, file->map_bytes);
+    mem_free(file->decompressed);
     *file = (struct cache_file){ 0 };
 }
 
@@ -126,5 +171,41 @@ int cache_file_write_parts(const char *path, const char *magic, uint64_t key, co
     all[0] = (struct atomic_file_part){ &head, sizeof(head) };
     int status = atomic_file_put_parts(path, all, part_count + 1);
     mem_free(all);
+    return status;
+}
+
+struct compressed_writing {
+    struct atomic_file file;
+    struct cache_head head;
+    XXH3_state_t state;
+};
+
+static int put_compressed(void *arg, const void *bytes, size_t count)
+{
+    struct compressed_writing *writing = arg;
+    XXH3_64bits_update(&writing->state, bytes, count);
+    writing->head.count += count;
+    return atomic_file_write(&writing->file, bytes, count);
+}
+
+/* Writes the header last, because only then the size and the checksum of the compressed content are known. */
+int cache_file_write_compressed(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
+{
+    struct compressed_writing writing = { .head = { .key = key } };
+    int status = atomic_file_begin(&writing.file, path, 0666);
+    if (status != 0)
+        return status;
+    memcpy(writing.head.magic, magic, sizeof(writing.head.magic));
+    XXH3_INITSTATE(&writing.state);
+    XXH3_64bits_reset_withSeed(&writing.state, key);
+    status = atomic_file_write(&writing.file, &writing.head, sizeof(writing.head));
+    if (status == 0)
+        status = compress_parts(parts, part_count, put_compressed, &writing);
+    writing.head.checksum = XXH3_64bits_digest(&writing.state);
+    if (status == 0 && pwrite(writing.file.fd, &writing.head, sizeof(writing.head), 0) != sizeof(writing.head))
+        status = -EIO;
+    if (status == 0)
+        return atomic_file_commit(&writing.file, false);
+    atomic_file_abandon(&writing.file);
     return status;
 }

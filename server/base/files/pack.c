@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/files/compress.h"
 #include "base/mem.h"
 
 #define ALIGN 8
@@ -28,41 +29,58 @@ void pack_array(struct text *to, const void *array, size_t count, size_t bytes_e
     text_add_bytes(to, zeros, padding_of(count * bytes_each));
 }
 
-/* Returns the bytes of the next array; *count receives its number of elements. NULL: the array is empty, its elements have
-   another size, or the data is truncated. */
-static const char *take(struct unpack *from, size_t *count, size_t bytes_each)
+static bool read_bytes(struct unpack *from, void *to, size_t count)
+{
+    from->bad |= count > from->left;
+    if (from->bad || count == 0)
+        return !from->bad;
+    if (from->compressed) {
+        from->bad = !decompressor_read(from->compressed, to, count);
+    } else {
+        memcpy(to, from->at, count);
+        from->at += count;
+    }
+    from->left -= count;
+    return !from->bad;
+}
+
+/* Reads the header of the next array. Returns its number of elements; 0 if the array is empty, has elements of another size, or the data
+   ends. */
+static size_t read_head(struct unpack *from, size_t bytes_each)
 {
     struct array_head head = { 0 };
-    if (!from->bad && from->left >= sizeof(head))
-        memcpy(&head, from->at, sizeof(head));
-    from->bad |= head.bytes_each != bytes_each || head.count > (from->left - sizeof(head)) / bytes_each;
-    *count = 0;
-    if (from->bad)
-        return NULL;
-    const char *bytes = from->at + sizeof(head);
-    size_t whole = head.count * bytes_each + padding_of(head.count * bytes_each), left = from->left - sizeof(head);
-    *count = head.count;
-    whole = whole < left ? whole : left;
-    from->at = bytes + whole;
-    from->left = left - whole;
-    return bytes;
+    read_bytes(from, &head, sizeof(head));
+    from->bad |= head.bytes_each != bytes_each || head.count > from->left / bytes_each;
+    return from->bad ? 0 : head.count;
+}
+
+/* Reads the elements of an array, and the padding after them, which may be missing at the end of the data. */
+static void read_elements(struct unpack *from, void *to, size_t count, size_t bytes_each)
+{
+    char padding[ALIGN];
+    size_t bytes = padding_of(count * bytes_each);
+    read_bytes(from, to, count * bytes_each);
+    read_bytes(from, padding, bytes < from->left ? bytes : from->left);
 }
 
 void *unpack_array(struct unpack *from, size_t *count, size_t bytes_each)
 {
-    const char *bytes = take(from, count, bytes_each);
+    *count = read_head(from, bytes_each);
     void *array = *count ? mem_try_array(*count, bytes_each) : NULL;
-    if (array)
-        memcpy(array, bytes, *count * bytes_each);
     from->bad |= *count && !array;
+    if (!from->bad)
+        read_elements(from, array, *count, bytes_each);
+    if (from->bad) {
+        mem_free(array);
+        array = NULL;
+        *count = 0;
+    }
     return array;
 }
 
 void unpack_into(struct unpack *from, void *to, size_t count, size_t bytes_each)
 {
-    size_t there;
-    const char *bytes = take(from, &there, bytes_each);
-    from->bad |= there != count;
-    if (!from->bad && count)
-        memcpy(to, bytes, count * bytes_each);
+    from->bad |= read_head(from, bytes_each) != count;
+    if (!from->bad)
+        read_elements(from, to, count, bytes_each);
 }

@@ -9,10 +9,13 @@
 /* Appends an array with its length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
-struct unpack { /* bytes of packed arrays that are still to be read; the caller owns them */
+struct decompressor;
+
+struct unpack { /* bytes of packed arrays that are not read yet; the caller owns them */
     const char *at;
     size_t left;
-    bool bad; /* true: a read has failed, so all further reads fail too */
+    bool bad;                        /* true: a read has failed, so all further reads fail too */
+    struct decompressor *compressed; /* source of the bytes; NULL: they are at `at` */
 };
 /* Reads the next array; free with mem_free(). Returns NULL if the array is empty, has elements of another size, or does not fit
    into memory; from->bad stays false only for an empty array. */
