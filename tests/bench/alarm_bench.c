@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of alarms, printed as one JSON line per row: 20,000 tags with four limits each, scanned once per second, and a journal of a long
-   year. */
+/* Cost of alarms, printed as one JSON line per row: 20,000 tags with four limits each, scanned once per second, and a journal
+   of a whole year. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +44,7 @@ struct alarm_bench {
     int changes;
 };
 
-/* Simulates one second of the daemon: one scan of all tags and ten ticks of the clock. Returns the milliseconds of work. */
+/* Simulates one second of the daemon: one scan of all tags and ten clock ticks. Returns the milliseconds of work. */
 static double second(struct alarm_bench *bench)
 {
     int64_t begun_ns = clock_work_ns();
@@ -61,7 +61,8 @@ static double second(struct alarm_bench *bench)
     return (double)(clock_work_ns() - begun_ns) / 1e6;
 }
 
-/* Each second FLOOD_HZ tags exceed a limit and those of the second before return. Returns the worst milliseconds of work per second. */
+/* Each second FLOOD_HZ tags exceed a limit, and those of the second before return within theirs. Returns the largest number of
+   milliseconds of work per second. */
 static double flood(struct alarm_bench *bench)
 {
     double worst_ms = 0;
@@ -94,7 +95,7 @@ static void row(const char *name, double value, double goal)
 
 enum { YEAR_S = 365 * 86400, KEPT = 300000, KEPT_ALARMS = 2000, INSTANTS = 21 };
 
-/* Fills a journal with more than 800 changes per day of 2,000 alarms. */
+/* Fills a journal with more than 800 changes of 2,000 alarms per day. */
 static bool fill_journal(struct journal_file *file)
 {
     struct journal_entry *entries = mem_array(KEPT, sizeof(*entries));
@@ -119,7 +120,7 @@ static void count_row(void *arg, const struct journal_row *r)
     ++*(int *)arg;
 }
 
-/* Measures the query for all alarms' states at an instant and for a page of the journal from there. */
+/* Measures the query for the states of all alarms at an instant, and the query for a page of the journal from that instant. */
 static bool look_back(void)
 {
     char *folder = temp_folder();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoding of the demo plant at 1920x1080, printed as one JSON line per row: time and size of moving frames; size of changes under a
-   still camera when 60 tags change together once per second; and decoding of both with the decoders of the command line. */
+/* Encoding of the demo plant at 1920x1080, printed as one JSON line per row: time and size of moving frames; size of changes
+   with a still camera when 60 tags change together once per second; and decoding of both with the command line's decoders. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +34,7 @@ static bool values_init(struct codec_bench *bench)
     return bench->values != NULL;
 }
 
-/* Simulates readings of the first TAGS tags of the displayed group; the others keep their values unless `all`. */
+/* Simulates readings of the displayed group's first TAGS tags, or with `all` of all tags; the others keep their values. */
 static void read_tags(struct codec_bench *bench, int group, bool all)
 {
     int left = TAGS;

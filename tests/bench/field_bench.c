@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of the field in time and in processor work on all cores, printed as one JSON line per row. */
+/* Cost of the field, in time and in processor work on all cores, printed as one JSON line per row. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -153,7 +153,7 @@ static void measure_plant(struct workers *workers, size_t sensors)
     synthetic_destroy(&bench.plant);
 }
 
-/* Measures a plant with so many sensors that the field does not cache their columns, but recomputes them from distances at each change. */
+/* Measures a plant with so many sensors that the field does not cache their columns but recomputes them from distances at each change. */
 static void measure_many(struct workers *workers, size_t sensors)
 {
     struct field_bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures how soon the page reacts to the hand: sends real pointer events to chromium, which shows the demo plant through a slow link.
-// Prints one JSON object per row. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0: no limit). Without
-// arguments, measures the links of LINKS in turn, and prints a table of the goals.
+// Measures how soon the page reacts to the hand: sends real pointer events to Chromium, which shows the demo plant over a slow
+// link. Prints one JSON object per row. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0:
+// no limit). Without arguments, measures each link of LINKS in turn and prints a table of the goals.
 import { createRequire } from 'node:module';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
@@ -9,12 +9,12 @@ import { cpuMs, family } from '../e2e/support/processes.mjs';
 import { Relay, relayMissing } from '../e2e/support/relay.mjs';
 
 const { chromium } = createRequire(new URL('../e2e/package.json', import.meta.url))('playwright-core');
-// Links with the largest time to the first changed pixel (p95, ms) and the least number of updates per second that are goals.
+// Links and their goals: largest time to the first changed pixel (p95, ms), and smallest number of updates per second.
 const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 34, 55], ['1280x720', 'jpeg', 200, 0, 34, 55],
     ['1280x720', 'jpeg', 300, 0, 34, 55], ['1280x720', 'jpeg', 0, 125000, 34, 55], ['1920x1080', 'jpeg', 0, 0, 34, 30],
     ['1920x1080', 'jpeg', 200, 0, 34, 30]];
-const BROWSER_MS = 25; // largest processor time of the browser for an update that is a goal
-let width, height, name, results; // of the link that is being measured: size of the picture in pixels, name in the printed rows, results
+const BROWSER_MS = 25; // goal: largest processor time of the browser per update
+let width, height, name, results; // of the link being measured: size of the picture in pixels, name in the printed rows, results
 const SECONDS = Number(process.env.SECONDS) || 5, TRIES = Number(process.env.TRIES) || 20, HZ = 60, CALM_MS = 400;
 const ARGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
 function say(what, value, unit, more = {}) {
@@ -66,7 +66,7 @@ async function rest(page) {
     }
 }
 
-// Moves the pressed pointer along a circle, without waiting for the page.
+// Moves the pressed pointer in a circle, without waiting for the page.
 async function circle(page, pointer, seconds) {
     const began = performance.now(), count = seconds * HZ;
     for (let n = 1; n <= count; n++) {
@@ -91,7 +91,7 @@ async function measure(page, browserPid, daemonPid) {
     await page.mouse.move(width / 2, height / 2);
     await clear(page, true);
     await pointer('mousePressed', width / 2, height / 2);
-    await circle(page, pointer, 2); // makes the page load everything that it loads at the first drag
+    await circle(page, pointer, 2); // makes the page load everything that it needs at the first drag
     const firsts = [];
     for (let n = 0; n < TRIES; n++) {
         await rest(page);

@@ -36,7 +36,7 @@ static double noise(void)
     return (double)rand() / RAND_MAX - 0.5;
 }
 
-/* Writes values that drift and have noise, as transmitters do. wander: drift in units per second. */
+/* Writes values that drift and have noise, like a transmitter's. wander: drift in units per second. */
 static void write_values(struct store *store, struct sample *samples, double wander, double noise_size)
 {
     for (int i = 0; i < TAGS; i++) {
@@ -103,7 +103,7 @@ static double process_io(const char *name)
     return bytes;
 }
 
-/* One second of samples at 2 Hz, as a PLC's transmitters make them: 32 bit, noisy, and all tags of a source read at one time. */
+/* One second of samples at 2 Hz, like those of a PLC's transmitters: 32-bit, noisy, and with the same time for all tags of a source. */
 static void sample_second(struct recorder *recorder, int64_t t_us, double *values, struct recorder_rows *rows)
 {
     for (int half = 0; half < 2; half++) {
@@ -129,8 +129,8 @@ static double kept_bytes(struct log *log, const char *folder, int month)
     return (double)(size.bytes - size.free_bytes);
 }
 
-/* Records two hours of a plant with 186 tags as the historian does, and counts the bytes: those kept, those that the program writes, and
-   those that the disk gets, which are whole pages of 4096 bytes. */
+/* Records two hours of a plant with 186 tags as the historian does, and counts the bytes that are kept, the bytes that the
+   program writes, and those that the disk writes, in whole pages of 4096 bytes. */
 static void measure_disk(struct log *log)
 {
     char *folder = temp_folder();
@@ -150,7 +150,7 @@ static void measure_disk(struct log *log)
         month_file_write(file, rows.at, rows.count, held.at, held.count);
         if (second % TIDY_S == TIDY_S - 1)
             month_file_tidy(file);
-        if (second == PLANT_SECONDS / 2 - 1) /* kept bytes are counted from here on, which leaves out the file's fixed size */
+        if (second == PLANT_SECONDS / 2 - 1) /* kept bytes are counted from here on, to leave out the file's fixed size */
             at_half = kept_bytes(log, folder, month);
     }
     month_file_close(&file);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of predicting sensors from the others, for all sensors as the daemon requests it and for single ones, compared with the cost of a
-   changed reading. A plate of 37,000 vertices with 5 and with 512 sensors; prints one JSON line per row. */
+/* Cost of predicting sensors from the others, for all sensors at once as the daemon does and for single ones, compared with the
+   cost of a changed reading. A plate of 37,000 vertices with 5 and with 512 sensors; prints one JSON line per row. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The two experiments of the paper at 1920x1080: many instances with 5 sensors each, and many sensors on one instance. All readings
-   change ten times per second while the camera swings; each row is one JSON line, followed by a row for brute force (all triangles of
-   the finest level, and the paper's sum over all sensors per fragment). For distances in a straight line, only rows with few and with many
-   sensors are measured, without brute force.
+/* The two experiments of the paper at 1920x1080: many instances with 5 sensors each, and many sensors on one instance. All
+   readings change ten times per second while the camera swings. Each row is one JSON line, followed by a row for brute force
+   (all triangles of the finest level, and the paper's sum over all sensors per fragment). With straight-line distances, only
+   rows with few and with many sensors are measured, without brute force.
    usage: paper_bench [cpu|gpu [INSTANCES SENSORS [SUFFIX]]]
    runs only these rows, 0: none; SUFFIX: only rows with this ending, such as _euclidean; gpu: only on an EGL device that is hardware */
 #include <math.h>
@@ -26,7 +26,7 @@
 #define FOLDER "build/bench"
 enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
 enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* frames with MANY_SENSORS should take as long as frames with FEW_SENSORS */
-enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* frames given to the GPU ahead, and frames per run, of the throughput measurement */
+enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* for the throughput measurement: frames submitted to the GPU ahead, and frames per run */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
 /* time between two changes of readings; longest duration of a row */
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S;
@@ -55,7 +55,7 @@ struct paper_bench {
     struct renderer *renderer;
     double hull_m[HULL_POINTS][3];
     struct camera cameras[CAMERAS];
-    double coverage; /* smallest share of a picture's pixels that show a field, of all cameras */
+    double coverage; /* over all cameras: smallest share of a picture's pixels that show a field */
     double brute_ms; /* time of the previous brute-force row; brute_sensors is its number of sensors, 0: no such row */
     int brute_sensors;
     double few_ms; /* milliseconds with the fewest sensors of a series; 0: not measured */
@@ -69,7 +69,7 @@ struct timing_series { /* measured times of one row */
 
 /* --- cameras with the whole scene in view --------------------------------------------------------------------------------- */
 
-/* Finds points of the model that are extreme in many directions, in the plant frame without the instance's offset. */
+/* Finds the model's outermost points in many directions, in the plant frame without the instance's offset. */
 static void find_hull(struct paper_bench *bench)
 {
     const struct scene_asset *asset = &bench->crowd.scene->assets[0];
@@ -107,7 +107,7 @@ static void find_extremes(const struct paper_bench *bench, const double eye_m[3]
         }
 }
 
-/* Places the camera in the given direction, as close as possible with everything in view. */
+/* Places the camera in the given direction, as close as possible with everything still in view. */
 static void fit(const struct paper_bench *bench, double azimuth, double elevation, struct camera *camera)
 {
     const struct scene *scene = bench->crowd.scene;
@@ -147,7 +147,7 @@ static struct frame *draw(struct paper_bench *bench, const struct view *view)
     return frame;
 }
 
-/* Returns the share of pixels that show a field: pixels that change with another colour map. Ground and shadows do not count. */
+/* Returns the share of pixels that show a field, which are those that change with the colour map. Ground and shadows do not count. */
 static double coverage_from(struct paper_bench *bench, const struct camera *camera)
 {
     struct view view;
@@ -177,8 +177,8 @@ static void try_side(struct paper_bench *bench, double azimuth, double elevation
         *best = (struct view_side){ azimuth, elevation, coverage };
 }
 
-/* Chooses the direction that fills the image best, and cameras on a swing around it; no camera repeats, because the renderer would reuse
-   the frame of a still camera. */
+/* Chooses the direction that fills the image best, and cameras on a swing around it. No camera repeats, because the renderer
+   would reuse the frame of a still camera. */
 static void choose_cameras(struct paper_bench *bench)
 {
     struct view_side best = { 0 };
@@ -293,7 +293,7 @@ static void run_series(struct paper_bench *bench, struct timing_series *series)
     series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
 }
 
-/* Draws one frame, however long it takes; a small frame before it uploads all data to the GPU. */
+/* Draws one frame, however long it takes, after a small frame that uploads all data to the GPU. */
 static void run_one(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
@@ -422,7 +422,7 @@ static void measure(struct paper_bench *bench, const struct paper_model *model, 
 
 struct goal { /* goals of one printed row; 0: no goal */
     int count;
-    double cpu_ms[2], gpu_ms; /* goals in milliseconds: on two cores, by model; on a GPU, ten times as fast as the paper */
+    double cpu_ms[2], gpu_ms; /* goals in milliseconds: on two cores, for each model; on a GPU, ten times as fast as in the paper */
 };
 static const struct goal instance_goals[] = {
     { 1, { 7, 7 }, 100.0 / 420 }, { 5, { 0 }, 0 }, { 25, { 0 }, 0 }, { 100, { 14, 22 }, 100.0 / 140 }, { 400, { 25, 45 }, 0 }

@@ -78,7 +78,7 @@ static void put_on(const struct demo_scene *bench, enum dress dress, struct view
     }
 }
 
-/* Measures the plant's own view with the camera moved slightly each time: frames of a still camera would only be recoloured. */
+/* Measures the plant's own view while the camera moves slightly for each frame: frames of a still camera would only be recoloured. */
 static void measure(struct demo_scene *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
 {
     struct view view;
@@ -141,7 +141,7 @@ static void measure_recolour(struct demo_scene *bench)
     print_row("recolour_cpu_ms", work_ms, MOVING_ROUNDS, 0);
 }
 
-/* Draws a refined frame in steps of 10 ms and measures the total time and the longest step, during which other clients wait. */
+/* Draws a refined frame in steps of 10 ms. Measures the total time and the longest step, during which other clients wait. */
 static void measure_steps(struct demo_scene *bench)
 {
     struct view view;
@@ -175,7 +175,7 @@ static void measure_steps(struct demo_scene *bench)
     print_row("render_still_1080p_stepped_cpu_ms", work_ms, STILL_ROUNDS, 0);
 }
 
-/* Measures recolouring under a still camera after one or all readings changed, without the time of the field itself. */
+/* Measures recolouring with a still camera after one or all readings changed, without the time of the field itself. */
 static void measure_again(struct demo_scene *bench, enum dress dress, bool all, double goal, const char *time_name, const char *work_name)
 {
     struct view view;

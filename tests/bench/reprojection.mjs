@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares pictures that the page draws from another camera with true pictures of that camera: similarity, pixels that differ, pixels that
-// were not yet drawn, and values read back from the colours. Uses the page's own modules; only the rasterizer is written here, in place of
-// WebGL. usage: build/release/tests/bench/reprojection_bench FOLDER; node tests/bench/reprojection.mjs FOLDER
-// [processor]. processor: draws as browsers without a GPU do, by the page's own rasterizer.
+// Compares pictures that the page draws from another camera with true pictures of that camera: similarity, pixels that differ,
+// pixels not yet drawn, and values read back from the colours. Uses the page's own modules; only the rasterizer is written
+// here, in place of WebGL. usage: build/release/tests/bench/reprojection_bench FOLDER; node tests/bench/reprojection.mjs FOLDER
+// [processor]. processor: draws with the page's own rasterizer, as browsers without a GPU do.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -15,7 +15,7 @@ const { FLOATS, meshOf, warpMatrix } = await import(join(WEB, 'core/warp_mesh.js
 
 const folder = process.argv[2], isByProcessor = process.argv[3] === 'processor';
 const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer_20'];
-const OFF = 16;          // difference of a colour channel, of 255, from which a pixel counts as different
+const OFF = 16;          // a pixel counts as different if a channel differs by at least this much, of 255
 const NEAREST = 0.05;    // same value as in app/picture/warp.js
 const MOST_ERROR = 0.03; // largest error of a value, as a share of the range
 const REDUCED = 4, LATTICE_PX = 14, MARK = 0.08 * 255; // as in app/picture/warp.js
@@ -25,7 +25,7 @@ const load = (name) => ({
     pixels: readFileSync(join(folder, `${name}.bgrx`)), depth: readFileSync(join(folder, `${name}.depth`)),
 });
 
-// Draws a mesh from another camera. Returns for each pixel the index of the pixel of the first picture that it shows; -1: none.
+// Draws a mesh from another camera. Returns for each pixel the index of the first picture's pixel that it shows; -1: none.
 function rasterize({ vertices, indices }, matrix, grid, width, height) {
     const shown = new Int32Array(width * height).fill(-1), depths = new Float64Array(width * height).fill(Infinity);
     const count = vertices.length / FLOATS, clip = new Float64Array(count * 4);
@@ -97,7 +97,8 @@ function partOff(a, b, count) {
     return off / count;
 }
 
-// Returns a level of half the width and height, as WebGL makes it. Levels have two values for each pixel: brightness and part drawn.
+// Returns a level of half the width and height, as WebGL makes it. Levels have two values per pixel: brightness and the drawn
+// fraction.
 function half({ width, height, values }) {
     const out = { width: Math.max(1, width >> 1), height: Math.max(1, height >> 1) };
     const at = (x, y, c) => values[2 * (Math.min(height - 1, y) * width + Math.min(width - 1, x)) + c];
@@ -124,7 +125,7 @@ function levelsOf(pixels, shown, width, height) {
     return levels;
 }
 
-// Linear filtering of a level at (u, v), 0..1. Returns [brightness, part drawn].
+// Samples a level at (u, v), 0..1, with linear filtering. Returns [brightness, drawn fraction].
 function sample({ width, height, values }, u, v) {
     const x = u * width - 0.5, y = v * height - 0.5, left = Math.floor(x), top = Math.floor(y), p = x - left, q = y - top;
     const most = (value, size) => Math.max(0, Math.min(size - 1, value));
@@ -133,7 +134,8 @@ function sample({ width, height, values }, u, v) {
         (at(left, top + 1, c) * (1 - p) + at(left + 1, top + 1, c) * p) * q);
 }
 
-// Returns a level with the greys around places that are not drawn, and how wide these places are, as the page's shaders compute them.
+// Returns a level with the greys around areas that are not drawn, and how wide these areas are, computed like the page's
+// shaders.
 function greysOf(levels) {
     const { width, height } = levels[0], values = new Float64Array(2 * width * height);
     for (let i = 0; i < width * height; i++) {
@@ -170,7 +172,7 @@ function warped({ pixels, width, height }, shown) {
 
 const swapped = (pixel) => -0x1000000 | (pixel & 255) << 16 | pixel & 0xff00 | pixel >> 16 & 255; // converts a pixel between BGRX and RGBA
 
-// Draws as browsers without a GPU do. shown: -1 where the picture shows nothing.
+// Draws as browsers without a GPU do. shown: -1 where the picture has nothing to show.
 function movedByProcessor({ pixels, width, height }, part, matrix) {
     const source = Int32Array.from(new Int32Array(pixels.buffer, pixels.byteOffset, width * height), swapped);
     const raster = new Raster(width, height);
@@ -198,7 +200,7 @@ function reader(map) {
     return (pixels, i) => places.get(pixels[4 * i + 2] | pixels[4 * i + 1] << 8 | pixels[4 * i] << 16) ?? -1;
 }
 
-// Part of the warped pixels with a colour of the map whose value is that of the true picture.
+// Returns the share of the warped pixels with a colour of the map whose value equals that of the true picture.
 function partTrue(moved, second, read) {
     let right = 0, all = 0;
     for (let i = 0; i < moved.shown.length; i++) {

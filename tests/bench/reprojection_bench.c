@@ -23,7 +23,7 @@ static const double NEARER = 0.4; /* distance of the camera from its target, as 
 
 struct pair_case { /* how the second camera of a pair differs from the first */
     const char *name;
-    double orbit_deg, nearer; /* nearer: part of the distance by which the camera approaches its target */
+    double orbit_deg, nearer; /* nearer: fraction of the distance to its target by which the camera approaches it */
 };
 static const struct pair_case pairs[] = { { "orbit_1", 1, 0 },    { "orbit_3", 3, 0 },    { "orbit_6", 6, 0 },
                                           { "nearer_5", 0, 0.05 }, { "nearer_10", 0, 0.1 }, { "nearer_20", 0, 0.2 } };
@@ -38,8 +38,8 @@ static void print_row(const char *name, double *values, int count, const char *u
     fflush(stdout);
 }
 
-/* Readings of neighbours differ little, as in a plant. If they differ much, the field is marked by dots, which stay at their place of the
-   screen and so differ between any two pictures. */
+/* Readings of neighbours differ little, as in a plant. If they differed much, dots would mark the field; they keep their place
+   on the screen and so would differ between any two pictures. */
 static void fill(struct snapshot *snapshot, const struct plant *plant)
 {
     snapshot->taken_mono_ns = clock_mono_ns();
@@ -84,7 +84,7 @@ static double encoded_bytes(struct demo_scene *bench, struct frame *frame)
     return bytes;
 }
 
-/* Measures both steps of a grid on one thread, from the depth buffer that the last preview left. */
+/* Measures both steps of making a grid on one thread, from the depth buffer that the last preview left. */
 static void measure(struct demo_scene *bench, double nearer)
 {
     double cells_ms[ROUNDS], codes_ms[ROUNDS], all_ms[ROUNDS], bytes[ROUNDS], share[ROUNDS];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of listing 20,000 tags to programs, printed as one JSON line per row. The event loop also serves frames, so each page must be
-   quick. */
+/* Cost of listing 20,000 tags to other programs, printed as one JSON line per row. The event loop also serves frames, so each
+   page must be quick. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ static struct plant *make_plant(void)
     return plant;
 }
 
-/* Requests all pages. Returns the milliseconds of the longest page and of all pages. */
+/* Requests all pages. Returns the milliseconds of the slowest page and of all pages together. */
 static void ask_all(const struct session_context *context, size_t count, double *longest_ms, double *all_ms, size_t *bytes)
 {
     *longest_ms = *all_ms = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the delay between two tiles of a wall, in two browsers on two screens, that show the same picture. The picture encodes a number:
-// each box, visible or hidden, is one digit, and both tiles show it. Pixels are grabbed from the screens instead of asking the programs.
+// Measures the delay between two tiles of a wall, in two browsers on two screens, that show the same picture. The picture
+// encodes a number: each box, visible or hidden, is one digit, and both tiles show it. Grabs pixels from the screens instead of
+// asking the programs.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -70,7 +71,7 @@ async function driver() {
     return client;
 }
 
-// Returns the colours of the pixels at the digits of one screen. area: the frame's rectangle on the screen.
+// Returns the colours of the pixels at the digits on one screen. area: the frame's rectangle on the screen.
 function digits(screen, side, area) {
     const { at } = screen.grab();
     return PLACES_M.map((m) => {
@@ -90,7 +91,7 @@ function reader(shown, hidden) {
     };
 }
 
-// Shows five numbers per second. Returns, by screen, the milliseconds at which each number was first visible.
+// Shows five numbers per second. Returns, per screen, the milliseconds at which each number was first visible.
 async function watch(name, client, areas, seconds) {
     const settle = async (number) => {
         client.tell(number);
@@ -145,7 +146,7 @@ function judge(name, seen, seconds) {
 }
 
 test('two browsers, one with a clock that is 5 s off', options, async () => {
-    // browsers first, so that the leader does not wait for their start
+    // browsers start first, so that the leader does not wait for them
     const url = `http://127.0.0.1:${plant.port}/wall.html?wall=wall&display=`;
     const open = await Promise.all(screens.map((screen, i) => browserOn(screen.name, 'about:blank', WIDTH, HEIGHT, i ? CLOCK_MS : 0)));
     ending.push(...open.map(({ close }) => close));

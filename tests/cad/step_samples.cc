@@ -47,8 +47,8 @@ void name(const TDF_Label &label, const char *text)
     TDataStd_Name::Set(label, TCollection_ExtendedString(text, Standard_True));
 }
 
-/* Lengths are in millimetres: a plate of 2000 x 1000 x 20 with six bolts and two pumps on it, each a red cylinder and a green box with
-   one blue side. */
+/* Lengths are in millimetres: a plate of 2000 x 1000 x 20 with six bolts and two pumps, each a red cylinder and a green box
+   with one blue side. */
 Handle(TDocStd_Document) make_skid()
 {
     Handle(TDocStd_Document) document;
@@ -135,7 +135,7 @@ struct iges_drawing {
         out->Init(of, gp_XYZ(x, y, z) / unit_mm, scale != 1, scale);
         return named(out, text);
     }
-    /* Returns the entity rotated so that its axis lies along x, with its foot at x, y. */
+    /* Returns the entity rotated so that its axis lies along x, with its foot at (x, y). */
     entity turned(const entity &what, double x, double y)
     {
         Handle(IGESGeom_TransformationMatrix) matrix = new IGESGeom_TransformationMatrix;
@@ -163,7 +163,7 @@ struct iges_drawing {
     }
 };
 
-/* Writes the same skid as IGES; the first side of each motor is blue. A casing is rotated, and one bolt is four times as large. */
+/* Writes the same skid as IGES; the first side of each motor is blue. One casing is rotated, and one bolt is four times as large. */
 bool write_iges(const std::string &path, const char *unit, double unit_mm)
 {
     iges_drawing d(unit, unit_mm);
@@ -187,7 +187,7 @@ bool write_iges(const std::string &path, const char *unit, double unit_mm)
     return d.writer.Write(path.c_str());
 }
 
-/* Writes surfaces without a group, three on level 1 and three on level 2, as many CAD systems export. */
+/* Writes ungrouped surfaces, three on level 1 and three on level 2, as many CAD systems export them. */
 bool write_loose(const std::string &path)
 {
     iges_drawing d("MM", 1);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD library: the program's wall clock is CLOCK_OFF_S seconds ahead of the machine's (negative: behind); its other clocks are
-   right. With CLOCK_OFF_FILE, that file gives the offset in seconds as an int64_t, and the clock follows each write to it. */
+/* LD_PRELOAD library: the program's wall clock is CLOCK_OFF_S seconds ahead of the machine's (negative: behind); its other
+   clocks stay right. With CLOCK_OFF_FILE, that file gives the offset in seconds as an int64_t, and the clock follows each write
+   to it. */
 #include <fcntl.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A reader that an attacker has taken over: replaces plantcast-import-assimp and tries to reach the daemon and the machine. Prints a
-   line for each attempt, "NAME succeeded" or "NAME refused ERROR". Its input names the targets in a line "PID PORT SECRET STATE-FILE".
-   Built as escape.so, it is preloaded into a program that confines itself; the attempts run in that program's first fopen() under
-   confinement. Then PLANTCAST_TARGETS is that line, and PLANTCAST_OWN a folder that the program may write (default: the current one),
-   where the file `escaped` receives the output, or stdout if that file cannot be made. The input "hang" makes it wait for ever. usage:
-   escape INPUT OUTPUT ... */
+/* A reader that an attacker has taken over: replaces plantcast-import-assimp and tries to reach the daemon and the machine.
+   Prints a line for each attempt, "NAME succeeded" or "NAME refused ERROR". Its input names the targets in a line "PID PORT
+   SECRET STATE-FILE". Built as escape.so, it is preloaded into a program that confines itself, and the attempts run in that
+   program's first fopen() under confinement. PLANTCAST_TARGETS then holds that line, and PLANTCAST_OWN names a folder that the
+   program may write (default: the current one). The file `escaped` in it receives the output, or stdout if that file cannot be
+   made. With the input "hang" it waits forever. usage: escape INPUT OUTPUT ... */
 #include <arpa/inet.h>
 #include <dirent.h>
 #include <dlfcn.h>
@@ -64,7 +64,7 @@ static bool opens(const char *file, int flags)
     return good;
 }
 
-/* Returns whether a file that is open for reading only can be truncated. Uses a file of its own, so that nothing is lost. */
+/* Returns whether a file opened only for reading can be truncated. Uses its own file, so that nothing is lost. */
 static bool empties(void)
 {
     int fd = open("emptied", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
@@ -336,8 +336,8 @@ static void try_kernel(void)
     result("undo-hiding", prctl(PR_SET_DUMPABLE, 1) == 0);
 }
 
-/* Returns whether the descriptor was inherited by mistake. A memfd is inherited on purpose: plantcast-match and similar programs write
-   their answer to it. */
+/* Returns whether the descriptor was inherited by mistake. A memfd is inherited on purpose: plantcast-match and similar
+   programs write their results to it. */
 static bool is_inherited(int fd)
 {
     char link[32], target[64];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A library that is found before libEGL.so.1 (LD_LIBRARY_PATH) and acts like a device that is reset, or out of memory. FAULTY_EGL: path
-   of the real library; FAULTS: a file with struct faults, which the test writes while this library reads it. A loss destroys the real
-   context in the middle of a picture. From then on GL calls do nothing, and glGetGraphicsResetStatus reports the loss. */
+/* A library that the loader finds before libEGL.so.1 (LD_LIBRARY_PATH) and that acts like a device that is reset or out of
+   memory. FAULTY_EGL: path of the real library; FAULTS: a file with struct faults, which the test writes while this library
+   reads it. A loss destroys the real context in the middle of a picture. From then on GL calls do nothing, and
+   glGetGraphicsResetStatus reports the loss. */
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -43,7 +44,7 @@ struct object {
     uint64_t bytes; /* size of the object; 0: the entry is free */
 };
 
-/* One thread calls GL at a time: a context belongs to one thread, and during a plant reload the other thread waits. */
+/* Only one thread calls GL at a time: a context belongs to one thread, and during a plant reload the other thread waits. */
 static struct faults *faults;
 static struct object objects[OBJECTS];
 static EGLContext current, gone; /* a lost context stays the current one */
@@ -75,7 +76,7 @@ static void set_up(void)
     faults = mmap(NULL, sizeof(*faults), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (faults == MAP_FAILED)
         stop("FAULTS cannot be mapped");
-    /* Keep this library loaded: after an unload, the next dlopen would find the real one, which has the same name. */
+    /* Keeps this library loaded: after an unload, the next dlopen would find the real one, which has the same name. */
     if (!dladdr((void *)&faults, &self) || !dlopen(self.dli_fname, RTLD_NOW | RTLD_NODELETE))
         stop("this library cannot stay");
     close(file);
@@ -110,7 +111,7 @@ static void forget_named(enum gl_object_kind kind, GLsizei count, const GLuint *
                 forget(&objects[i]);
 }
 
-/* Counts an allocation. Returns false if there is no room; glGetError then reports it. */
+/* Counts an allocation. Returns false if there is no memory left; glGetError then reports it. */
 static bool take_room(enum gl_object_kind kind, GLuint name, uint64_t bytes)
 {
     int i = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD library: kills the program, as by kill -9, before its KILL_AT_RENAME-th rename of a file (1 is the first). */
+/* LD_PRELOAD library: kills the program, as kill -9 would, before it renames a file for the KILL_AT_RENAME-th time (counted from 1). */
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD library: sockets of the peer with the IPv4 address LATE_PEER become writable only LATE_MS after poll() was first asked for
-   that, as if the peer's network were slow. */
+/* LD_PRELOAD library: sockets of the peer with the IPv4 address LATE_PEER become writable only LATE_MS after poll() was first
+   asked about it, as if the peer's network were slow. */
 #undef _FORTIFY_SOURCE /* with it, poll() would be defined already by a header */
 #include <arpa/inet.h>
 #include <dlfcn.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds bytes to asset_view_init: unchanged, and with size and checksum corrected, because otherwise no input would pass these checks. A
-   valid view must be readable from end to end. */
+/* Feeds bytes to asset_view_init, both unchanged and with size and checksum corrected: otherwise no input would pass these
+   checks. A valid view must be readable from end to end. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -84,7 +84,7 @@ static void try_bytes(const void *bytes, size_t count)
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     void *copy;
-    /* copied to an exactly sized buffer, so that reads beyond the end are detected */
+    /* copied to a buffer of the exact size, so that reads beyond the end are detected */
     if (posix_memalign(&copy, ASSET_ALIGN, count ? count : 1) != 0)
         return 0;
     char *at = memcpy(copy, bytes, count);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds bytes to gltf_load as a model file in a folder with a few others. A model that loads must satisfy the checks of promise.h, and
-   so must geometry cut from it. */
+/* Feeds bytes to gltf_load as a model file in a folder with a few others. A model that loads must satisfy the checks of
+   promise.h, and so must geometry extracted from it. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -76,7 +76,7 @@ static void check_model(const struct gltf_model *model)
     }
 }
 
-/* Checks that an asset, laid out as a file, is accepted by the reader of asset files. */
+/* Checks that the reader of asset files accepts an asset laid out as a file. */
 static void check_asset(const struct geometry *g)
 {
     struct asset_parts parts = {

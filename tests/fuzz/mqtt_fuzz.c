@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds payloads to all three readers of an MQTT source, and to the follower of Sparkplug nodes; the first byte chooses. Whatever
-   arrives, the store holds only numbers or Bad. */
+/* Feeds payloads to all three readers of an MQTT source and to the follower of Sparkplug nodes; the first byte selects one.
+   Whatever arrives, the store must hold only numbers or Bad. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

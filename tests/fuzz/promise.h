@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* require(): makes a fuzzer stop with an abort if a promise (an invariant of the tested code) is broken. */
+/* require(): makes a fuzzer abort if a promise (an invariant of the tested code) is broken. */
 #ifndef TESTS_FUZZ_PROMISE_H
 #define TESTS_FUZZ_PROMISE_H
 #include <stdbool.h>

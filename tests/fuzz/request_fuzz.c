@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds the parts of an HTTP request that this project parses itself. The first byte chooses: a query, a host, an origin, a list, a
-   path, or a line of tokens. */
+/* Feeds the parts of an HTTP request that this project parses itself. The first byte selects one: a query, a host, an origin, a
+   list, a path, or a line of tokens. */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>

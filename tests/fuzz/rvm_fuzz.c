@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds RVM files or attribute files to their readers; the first byte chooses. */
+/* Feeds RVM files and attribute files to their readers; the first byte selects which. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

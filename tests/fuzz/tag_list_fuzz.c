@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds tag lists to the reader of exports. The first byte chooses a text (CSV or JSON, in a detected encoding) or a spreadsheet. For a
-   spreadsheet the input is the sheet's XML, a zero byte, and the XML of the shared strings; the container around them is always valid. */
+/* Feeds tag lists to the reader of exports. The first byte selects a text (CSV or JSON, in a detected encoding) or a
+   spreadsheet. For a spreadsheet, the input is the sheet's XML, a zero byte, and the XML of the shared strings; the container
+   around them is always valid. */
 #include <fcntl.h>
 #include <stddef.h>
 #include <stdint.h>

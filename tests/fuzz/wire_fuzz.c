@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests the frame header's reader against its writer: a header that was read is valid, and writes back to the same bytes; a header
-   written from any struct reads back the same, or is refused. */
+/* Tests the frame header's reader against its writer: a header that was read is valid and is written back as the same bytes; a
+   header written from any struct reads back equal or is refused. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

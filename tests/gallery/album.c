@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws many pictures of one plant and computes its lighting only once. usage: album PLANT.yaml <LIST
+/* Draws many pictures of one plant but computes its lighting only once. usage: album PLANT.yaml <LIST
    Each line of LIST: a file to write, then the arguments of `plantcast snapshot`, separated by tabs. */
 #include <getopt.h>
 #include <stdio.h>

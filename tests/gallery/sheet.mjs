@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Renders the gallery's page into one picture, and each of its sections into another. usage: node tests/gallery/sheet.mjs FOLDER
+// Renders the gallery's page into one picture, and each of its sections into another. usage: node tests/gallery/sheet.mjs
+// FOLDER
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws real models with their materials by Plantcast and by three.js, with the same camera, sun, surroundings and tone mapping: side by
+// Draws real models with their materials in Plantcast and in three.js, with the same camera, sun, surroundings and tone mapping: side by
 // side, with their difference in CIELAB. usage: node tests/gallery/viewer.mjs BIN FOLDER
 // Writes FOLDER/viewer_MODEL.png and viewer.json; the exit code is 1 if the difference exceeds its limit.
 //
@@ -30,7 +30,7 @@ function radiance(turn, height) {
     return grey + window + lamp;
 }
 
-// Scales the surroundings so that a horizontal white surface reflects 1, as Plantcast exposes them.
+// Scales the surroundings so that a horizontal white surface reflects 1, which is Plantcast's exposure.
 function surroundings() {
     const pixels = new Float32Array(ENV_WIDTH * ENV_HEIGHT);
     let level = 0;

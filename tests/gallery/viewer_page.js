@@ -51,7 +51,7 @@ function sunLight(sun, ball) {
     return light;
 }
 
-// Returns each pixel's openness: the visible share of the hemisphere above its surface, from depth pictures in all directions.
+// Returns each pixel's openness, the visible share of the hemisphere above its surface, from depth pictures in all directions.
 function openness(scene, model, ball, camera, width, height) {
     const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType }), sum = new Float32Array(width * height);
     const light = new THREE.DirectionalLight(0xffffff, Math.PI);
@@ -121,8 +121,8 @@ function lab([r, g, b]) {
 
 const at = (rgba, i) => rgba.subarray(4 * i, 4 * i + 3);
 
-// Returns whether a pixel is well inside the model: not at a silhouette, which both programs antialias differently, nor at an edge that
-// Plantcast draws.
+// Returns whether a pixel is well inside the model: neither at a silhouette, which the two programs antialias differently, nor
+// at an edge that Plantcast draws.
 function inside(x, y) {
     const { rgba, width, height } = drawn;
     for (let dy = -RIM_PX; dy <= RIM_PX; dy++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coincident faces of two assets: the same one is visible at every pixel, in both tiers and by every drawing method of previews. */
+/* Coincident faces of two assets: the same face is visible at every pixel, in both tiers and with every drawing method of previews. */
 #include "scene/coincident.h"
 
 #include "tests/support/test.h"
@@ -21,7 +21,7 @@ static struct toy *make_wall(void)
     return toy;
 }
 
-/* Counts pixels of the wall in a colour of the map that change when the plates are added. */
+/* Counts the wall's pixels with a colour of the map that change when the plates are added. */
 static size_t differences(const struct frame *both, const struct frame *wall)
 {
     size_t count = 0, pixels = (size_t)wall->width_px * (size_t)wall->height_px;

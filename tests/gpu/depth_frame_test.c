@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Depth grids of frames: points computed from the grid by the rule of PROTOCOL.md are those that a ray meets, in software and in GL. */
+/* Depth grids of frames: points computed from the grid by the rule of PROTOCOL.md equal those that a ray hits, in software and in GL. */
 #include "tests/support/test.h"
 
 #include "render/pick/pick.h"
@@ -61,7 +61,7 @@ static void check_grid(const struct view *view, const struct depth_grid *grid, i
         wrong += !good;
     }
     print_message("%d cells right, %d wrong, %d on the ground, %u bytes\n", right, wrong, ground, read.wire.payload_bytes);
-    assert_true(right > 40 && wrong <= (right + wrong) / 25); /* cells may be wrong at outlines, where the centre is beside the surface */
+    assert_true(right > 40 && wrong <= (right + wrong) / 25); /* cells may be wrong at outlines, where their centre is beside the surface */
     depth_read_finish(&read);
 }
 

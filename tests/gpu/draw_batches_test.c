@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draw batches: assets that share a model are drawn by one call. The picture equals drawing each by itself, and more assets need no more
-   calls. */
+/* Draw batches: assets that share a model are drawn by one call. The picture equals drawing each by itself, and more assets
+   need no more calls. */
 #include "tests/support/test.h"
 #include <limits.h>
 
@@ -13,7 +13,7 @@
 #include "value/quality.h"
 
 enum { WIDTH_PX = 320, HEIGHT_PX = 180, TEXELS_PX = 8, PICTURES = 12 };
-/* share of a refined frame's pixels that may differ: at silhouettes the texture sample position depends on the drawing order */
+/* fraction of a refined frame's pixels that may differ: at silhouettes, where texture samples are taken depends on the drawing order */
 static const double RIM_PART = 0.01;
 static struct rig rig;
 static uint64_t seed;
@@ -193,7 +193,7 @@ TEST(test_together_as_one_by_one)
     }
 }
 
-/* Readings that arrive during a progressive render are not visible in it, although both are stored in one buffer. */
+/* Readings that arrive during a progressive render do not show in it, although one buffer stores both. */
 TEST(test_a_picture_under_way_keeps_its_readings)
 {
     struct stand stand;
@@ -243,8 +243,8 @@ struct calls {
     uint64_t all, draws;
 };
 
-/* Counts the GL calls of the second of two frames. changes: all readings change before it; otherwise the frame is identical and uses
-   caches. */
+/* Counts the GL calls for the second of two frames. changes: all readings change before it; otherwise it is identical to the
+   first and uses caches. */
 static struct calls count_calls(struct stand *stand, enum tier tier, int least, bool changes)
 {
     struct view view;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles too long for the field: picks and pixels compared with plain sums over all sensors in double precision. Each pick must be
-   within one colour step; each pixel must be within one step too, or be marked uncertain. By straight-line distance
-   each pixel must be exact and unmarked. */
+/* Triangles too long for the field: picks and pixels compared with plain sums over all sensors in double precision. Each pick
+   must be within one colour step; each pixel must be too, or be marked uncertain. With straight-line distances each pixel must
+   be exact and unmarked. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -17,7 +17,7 @@
 #define FOUND "../shared/data/found/long_part/"
 enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX, PICKS = 1500, NEEDLES = 60, CELLS = 90 };
 enum { SENSORS = 6, MANY = 12, CROWD = 200 };
-/* SNAP_PX: rasterizers round corners of triangles to 1/256 pixel, so a pixel shows a place up to about that far away */
+/* SNAP_PX: rasterizers round triangle corners to 1/256 pixel, so a pixel shows a point up to about that far away */
 static const double STEP = 1.0 / 255, STEEP = 10 * STEP, SIDE_M = 4, SNAP_PX = 1.0 / 256;
 static uint64_t random_state;
 
@@ -29,12 +29,13 @@ struct drawn_error_case {
 };
 struct drawn_error_tally {
     int compared, marked, marked_right, no_data, other;
-    double worst_pick, worst_drawn;    /* largest errors as shares of the range: of picks and of pixels, unmarked ones */
-    double worst_marked, worst_beyond; /* largest error of marked pixels; largest excess over pick.drawn_error, negative if that is a
-                                          bound */
+    double worst_pick, worst_drawn;    /* largest errors as shares of the range: of picks, and of unmarked pixels */
+    double worst_marked, worst_beyond; /* largest error of marked pixels; largest excess over pick.drawn_error, negative if that is
+                                          an upper bound */
     double worst_evaluated;            /* largest difference between pixel_field_at() and picks */
-    double worst_placed;               /* largest error of unmarked pixels, less what the true value changes within SNAP_PX */
-    /* number of software pixels compared, and with another colour; number of picks whose flags pixel_field_at() does not share */
+    double worst_placed;               /* largest error of unmarked pixels, less the change of the true value within SNAP_PX */
+    /* number of software pixels that were compared, and that had another colour; number of picks whose flags differ from
+       pixel_field_at()'s */
     int soft, soft_off, flags_off;
 };
 
@@ -102,7 +103,7 @@ static void compare_evaluated(const struct drawn_error_case *site, const struct 
     tally->worst_evaluated = fmax(tally->worst_evaluated, fabs((double)value.value - pick->value) / (view->range_max - view->range_min));
 }
 
-/* Returns the largest change of the truth, as a share of the range, from a pixel's centre to places SNAP_PX away. */
+/* Returns the largest change of the true value, as a share of the range, between a pixel's centre and points SNAP_PX away. */
 static double change_around(const struct drawn_error_case *site, const struct view *view, int x, int y, double truth)
 {
     double most = 0;
@@ -150,8 +151,8 @@ static void compare_pixel(const struct drawn_error_case *site, const struct view
         tally->worst_beyond = fmax(tally->worst_beyond, drawn - pick.drawn_error / range);
 }
 
-/* Returns whether the pixel and its neighbours show one flat surface, judged by their depths, on which the value does not jump from pixel
-   to pixel. */
+/* Returns whether the pixel and its neighbours show one flat surface, judged by their depths, without a jump of the value
+   between pixels. */
 static bool is_within(const float (*measured)[4], int x, int y)
 {
     if (x < 1 || y < 1 || x + 1 >= WIDTH_PX || y + 1 >= HEIGHT_PX)
@@ -169,7 +170,7 @@ static bool is_within(const float (*measured)[4], int x, int y)
     return true;
 }
 
-/* Compares pictures that are drawn without a GPU, while moving and while still, with what GL measured. */
+/* Compares previews and refined pictures that are drawn without a GPU with what GL measured. */
 static void compare_soft(const struct drawn_error_case *site, const struct view *view, const float (*measured)[4],
                          struct drawn_error_tally *tally)
 {
@@ -214,7 +215,8 @@ static void compare_view(const struct drawn_error_case *site, const struct view 
     mem_free(measured);
 }
 
-/* Compares one view each for shepard with a low and two high powers, and for paper. Toys have straight distances as geodesic ones. */
+/* Compares one view each for shepard with a low and two high powers, and for paper. The toy plant's distances along the surface
+   are straight lines. */
 static void compare(const struct drawn_error_case *site, enum distance_mode distance, struct drawn_error_tally *tally)
 {
     static const double powers[] = { 2, 6, 0, 16 };
@@ -242,7 +244,7 @@ static void expect_truth(const char *name, const struct drawn_error_tally *tally
                   tally->worst_beyond / STEP, tally->soft, tally->soft_off);
     assert_true(tally->compared > 500);
     assert_true(tally->worst_pick <= STEP);
-    assert_true(tally->worst_drawn <= 1.02 * STEP); /* a pixel's value is a float at a slightly different point than the pick */
+    assert_true(tally->worst_drawn <= 1.02 * STEP); /* a pixel's value is a float, for a slightly different point than the pick's */
     assert_true(tally->worst_beyond <= 0.1 * STEP);
 }
 
@@ -254,15 +256,15 @@ static void expect_exact(const char *name, const struct drawn_error_tally *tally
                   tally->worst_placed / STEP, tally->flags_off);
     assert_int_equal(tally->marked, 0);
     assert_int_equal(tally->flags_off, 0);
-    /* the software renderer's places are a little off, which shows where high powers bend the field within a pixel */
+    /* the software renderer's points are slightly off, which matters where high powers bend the field within a pixel */
     assert_true(tally->soft > 500 && tally->soft_off <= 0.001 * tally->soft);
     assert_true(tally->worst_evaluated <= 0.02 * STEP && tally->worst_placed <= 0.25 * STEP);
 }
 
 /* --- needles ---------------------------------------------------------------------------------------------------------------- */
 
-/* Makes a plate with NEEDLES strips from side to side up to x = end_m, each of two triangles, small triangles beyond, and a small box
-   for each of `sensors`. */
+/* Makes a plate with NEEDLES strips from side to side up to x = end_m, each of two triangles, with small triangles beyond, and
+   a small box for each of `sensors`. */
 static void make_plate(struct test_shape *shape, double end_m, int sensors, double (*places)[3])
 {
     double low = 0;
@@ -315,7 +317,7 @@ TEST(test_needles)
     assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* a good part of the pixels is marked uncertain */
 }
 
-/* On a plate of needle-shaped triangles and small ones, only the needles, whose field is inexact, are marked. */
+/* On a plate of needles and small triangles, only the needles are marked, because only they show the field inexactly. */
 TEST(test_half_of_needles)
 {
     struct drawn_error_tally tally;
@@ -325,7 +327,8 @@ TEST(test_half_of_needles)
     assert_true(tally.marked_right < tally.marked / 3);
 }
 
-/* Sets up a plate of needles. resolved_levels: bit per level that preparation subdivided until it shows the field exactly. */
+/* Sets up a plate of needles. resolved_levels: one bit per level, set if preparation subdivided the level until it shows the
+   field exactly. */
 static void stand_on_plate(struct stand *stand, struct view *view, uint64_t resolved_levels)
 {
     struct toy *toy = toy_create();
@@ -363,8 +366,8 @@ TEST(test_many_sensors_are_exact)
     expect_plates(CROWD);
 }
 
-/* Needles of 1:10,000, triangles without area; sensors at a corner, on an edge, a hair beside it, and two at one place that disagree;
-   more sensors are anywhere, every other one at the place of the one before. */
+/* Needles of 1:10,000; degenerate triangles; sensors at a corner, on an edge, a hair beside it, and two at one point that
+   disagree. Further sensors are anywhere, every other one at the previous one's point. */
 static void make_odd_plate(struct test_shape *shape, int sensors, double (*places)[3])
 {
     const double width_m = SIDE_M / 10000, x = between(1, SIDE_M - 1), y = between(1, SIDE_M - 1);
@@ -430,7 +433,7 @@ TEST(test_equal_readings_mark_nothing)
     stand_finish(&stand);
 }
 
-/* The error bound from preparation holds only if all sensors are good and readings are in range; otherwise the error is measured. */
+/* The error bound from preparation holds only while all sensors are good and readings are in range; otherwise the error is measured. */
 TEST(test_lost_sensors_and_wild_readings_are_measured)
 {
     struct stand stand;
@@ -504,7 +507,8 @@ TEST_WITH(test_long_part, prep_case_set_up, prep_case_tear_down)
     long_part_finish(&part);
 }
 
-/* Along surfaces half of the part is off by more than a step, and picks at a fifth (tests/bench/notes/windows.md): all of it is marked. */
+/* With distances along surfaces, half of the part is off by more than a step, and so is a fifth of the picks
+   (tests/bench/notes/windows.md): all of it is marked. */
 TEST_WITH(test_long_part_along_surfaces, prep_case_set_up, prep_case_tear_down)
 {
     struct long_part part;

@@ -51,7 +51,7 @@ static double value_at(const struct scalars *scalars, int x, int y)
     return u > v ? a + u * (b - a) + v * (c - b) : a + v * (b - a) + u * (c - b);
 }
 
-/* Returns whether the pixel has exactly a colour of the map. In refined frames samples are averaged, so neighbouring colours may mix. */
+/* Returns whether the pixel has exactly a colour of the map. Refined frames average samples, so neighbouring colours may mix. */
 static bool is_color_of(const struct view *view, double value, const uint8_t *bgrx)
 {
     struct scale scale;
@@ -83,7 +83,7 @@ static bool near_line(const struct view *view, const struct scalars *scalars, in
     return false;
 }
 
-/* Counts the pixels inside the plate whose colour differs from the legend's colour of their value. */
+/* Counts the pixels inside the plate whose colour differs from the legend's colour for their value. */
 static int count_wrong(const struct view *view)
 {
     const struct scalars *scalars = field_scalars(stand.field, 0, &view->field, stand.snapshot);
@@ -160,7 +160,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, stand_tear_down)
         assert_true(dark > near / 12 && dark < near / 2); /* an isoline covers one or two of five pixels across */
         frame_unref(&frame);
     }
-    view.color_scale.lines[0] = 300; /* an isoline beyond the range of the colour scale is not drawn */
+    view.color_scale.lines[0] = 300; /* an isoline beyond the colour scale's range is not drawn */
     view.color_scale.line_count = 1;
     assert_int_equal(count_wrong(&view), 0);
 }
@@ -325,7 +325,7 @@ TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, stand_tear_down)
     }
 }
 
-/* Matches the colour of alarms of priority 3, a magenta. The colours of the field are far from it. */
+/* Matches the colour of alarms of priority 3, a magenta that is far from the field's colours. */
 static bool is_alarm_color(const uint8_t *bgrx)
 {
     return bgrx[2] > 150 && bgrx[2] - bgrx[1] > 80 && bgrx[0] > 130;
@@ -339,7 +339,7 @@ static int count_alarm_colors(const struct frame *frame)
     return count;
 }
 
-/* The image is wide enough for the legend next to the plate, and the whole rim of the plate is visible. */
+/* The image is wide enough for the legend to be beside the plate, and the plate's whole rim is visible. */
 static void check_alarms(const struct view *view)
 {
     struct view wide = *view;

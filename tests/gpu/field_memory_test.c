@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A field without memory is shown as no data, never as an asset without sensors and never as some value. The linker redirects
-   mem_try_array and pool_take to this file. */
+/* A field that gets no memory is shown as no data, never as an asset without sensors and never as some value. The linker
+   redirects mem_try_array and pool_take to this file. */
 #include "tests/support/test.h"
 
 #include "gpu/pool.h"
@@ -19,7 +19,7 @@ void *__wrap_mem_try_array(size_t count, size_t bytes_each);
 struct pool_slice *__real_pool_take(struct pool *pool, size_t count);
 struct pool_slice *__wrap_pool_take(struct pool *pool, size_t count);
 
-/* Fails arrays of one entry per vertex: doubles are sums, floats are weights, scalars are the displayed values. */
+/* Fails arrays with one entry per vertex: doubles are sums, floats are weights, scalars are displayed values. */
 void *__wrap_mem_try_array(size_t count, size_t bytes_each)
 {
     bool by_vertex = count == VERTICES;
@@ -29,7 +29,7 @@ void *__wrap_mem_try_array(size_t count, size_t bytes_each)
     return __real_mem_try_array(count, bytes_each);
 }
 
-/* Fails slices of one entry per vertex. Lighting uses equal slices, but exists before anything fails. */
+/* Fails slices with one entry per vertex. Lighting uses equal slices, but is made before anything fails. */
 struct pool_slice *__wrap_pool_take(struct pool *pool, size_t count)
 {
     return fault == NO_BUFFER && count == VERTICES ? NULL : __real_pool_take(pool, count);
@@ -83,7 +83,7 @@ static void look_down(struct view *view)
     view->look = LOOK_FLAT;
 }
 
-/* Asserts that every pixel inside the plate has one of the hatching's two colours, and that both occur. */
+/* Asserts that every pixel inside the plate has one of the two hatching colours, and that both occur. */
 static void assert_hatched(const struct view *view)
 {
     struct frame *frame = stand_draw(&stand, view);
@@ -128,7 +128,7 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     view.field.power = 9;
     fault = NO_WEIGHTS;
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
-    fault = ALL_WELL; /* allocations work again, because other arrays of the drawing have the same size */
+    fault = ALL_WELL; /* allocations work again, because other arrays for drawing have the same size */
     assert_non_null(job);
     while (!renderer_step(stand.renderer, job, 1000000)) {
     }
@@ -138,7 +138,7 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     frame_unref(&frame);
 }
 
-/* Fields computed for one frame evict neither each other nor their displayed values. */
+/* Fields computed for the same frame evict neither each other nor their displayed values. */
 TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
 {
     struct view view;
@@ -179,7 +179,7 @@ static void assert_kept(const struct fields *fields, struct fields_entry *const 
         assert_ptr_equal(fields->entries[i], was[i]);
 }
 
-/* One frame of this plant needs more than the cache limit: its fields are not recomputed for each frame, while others are evicted. */
+/* One frame of this plant needs more than the cache limit: its fields are not recomputed for each frame, and other fields are evicted. */
 TEST_WITH(test_what_one_picture_needs_stays, set_up_many, tear_down)
 {
     struct view view;

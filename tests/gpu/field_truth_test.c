@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rules of truth in pixels: lost sensors, readings out of range, points out of reach, and absurd values. Five sensors on one plate,
-   and a second plate of the same asset that is not connected. */
+/* The rules of truth in pixels: lost sensors, readings out of range, points out of reach, and absurd values. Five sensors on
+   one plate, and a second, unconnected plate of the same asset. */
 #include "tests/support/test.h"
 
 #include "protocol/asset_distance.h"
@@ -85,7 +85,7 @@ TEST_WITH(test_the_hottest_goes_bad, set_up, stand_tear_down)
         assert_in_range(shown_at(&view, 2, 2), 235, 245);
         toy_set(stand.snapshot, HOTTEST, 95, QUALITY_BAD_SENSOR_FAILURE);
         assert_true(is_hatched(&view, 2, 2, 0.7));
-        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the other sensors stay, and the lost sensor's 95 has no effect on them */
+        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the other sensors remain, and the lost sensor's 95 has no effect on them */
         view.field.fill = FILL_NEIGHBOURS;
         assert_false(is_hatched(&view, 2, 2, 0.7)); /* neighbours fill the gap as requested, and it is stippled */
         struct frame *frame = stand_draw(&stand, &view);

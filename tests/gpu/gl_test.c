@@ -45,7 +45,7 @@ TEST(test_context_tells_what_it_is)
     assert_int_equal(rig.gl->software, strstr(rig.gl->renderer, "llvmpipe") != NULL);
 }
 
-/* GL functions are loaded once for all contexts, so a context of another back end cannot exist in the same process. */
+/* GL functions are loaded once for all contexts, so contexts of different back ends cannot exist in one process. */
 TEST(test_contexts_beside_each_other_are_of_one_kind)
 {
     for (enum gl_kind kind = GL_EGL_DEVICE; kind <= GL_OSMESA; kind++)
@@ -93,7 +93,7 @@ TEST(test_defines_and_includes_reach_the_compiler)
     glDeleteShader(shader);
 }
 
-/* Draws blue above red with a green pixel in the corner, which shows whether rows come from the top and bytes are b, g, r. */
+/* Draws blue above red with a green pixel in the corner, which shows whether rows start at the top and bytes are in the order b, g, r. */
 static void draw_flag(const struct target *target)
 {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->framebuffer);
@@ -142,8 +142,8 @@ TEST(test_target_too_large_is_refused)
     assert_false(target_init(&target, rig.log, rig.gl->max_texture_px * 2, 16, 1));
 }
 
-/* Mesa's EGL without drivers (libgl1-mesa-dri not installed) gives no context and must not crash. Runs in a child process that has not
-   loaded drivers yet. */
+/* Mesa's EGL without drivers (libgl1-mesa-dri not installed) gives no context and must not crash. Runs in a child process that
+   has not yet loaded drivers. */
 static pid_t try_without_drivers(void)
 {
     pid_t child = fork();

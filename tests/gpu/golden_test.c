@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares frames with tests/golden, made on llvmpipe: as a session without a GPU gets them (render/soft, render/refined; the same code
-   for each context), and as drawn by the context itself. GOLDEN_UPDATE=1 writes the golden files again: look at them before committing
-   them. */
+/* Compares frames with tests/golden, made on llvmpipe: drawn as for a session without a GPU (render/soft, render/refined; the
+   same code for each context), and drawn by the context itself. GOLDEN_UPDATE=1 rewrites the golden files: look at them before
+   committing them. */
 #include "tests/support/test.h"
 #include <sys/stat.h>
 
@@ -25,7 +25,7 @@ struct golden {
     double ramp_interval;
     int selected_asset;
     bool overlay, opened; /* overlay: with overlay; opened: orthographic, with a section and a ghost */
-    double far_part;      /* share of pixels that may differ by more than FAR in a channel */
+    double far_part;      /* fraction of pixels that may differ by more than FAR in a channel */
     bool split;           /* left: operator's view; right: isolines and breaks on a logarithmic scale */
     bool dark;
 };
@@ -68,7 +68,7 @@ static uint8_t *load(const char *name)
     return bgrx;
 }
 
-/* Returns the share of pixels far from the golden ones; `differences` receives ten times the difference. */
+/* Returns the share of pixels far from the golden ones; `differences` receives the differences times ten. */
 static double compare(const uint8_t *got, const uint8_t *want, uint8_t *differences)
 {
     int far = 0;

@@ -35,7 +35,7 @@ static void move_scene(struct scene *scene, const double by_m[3])
     }
 }
 
-/* Makes the i-th view of the near plant, and the same of the far one. */
+/* Makes the i-th view of the near plant, and the same view of the far one. */
 static void look(int i, struct view *at_near, struct view *at_far)
 {
     view_default(&near.toy->scene, WIDTH_PX, HEIGHT_PX, at_near);

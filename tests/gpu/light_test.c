@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lighting that is chosen while others watch: baked in small steps, within a memory limit, shown when ready. */
+/* Lighting that is selected while others watch: baked in small steps, within a memory limit, shown when ready. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -52,7 +52,7 @@ static int count_steps(struct light *light, const struct light_key *key)
     return steps;
 }
 
-/* Baking in steps equals baking at once: with the sky light for the first sun, and without it for the second. */
+/* Baking in steps equals baking at once, both with the sky light for the first sun and without it for the second. */
 TEST(test_bits_make_the_same_light)
 {
     struct gpu_scene gpu_scene;
@@ -82,8 +82,8 @@ static void damage(const char *path)
     fclose(file);
 }
 
-/* The next start reads the cached openness, bakes the rest, and gets the same light for another sun too; a damaged cache, or one of a
-   plant with moved assets, is not used. */
+/* The next start reads the cached openness, bakes the rest and gets the same light, for another sun too. A damaged cache, or
+   one of a plant whose assets have moved since, is not used. */
 TEST(test_openness_is_kept)
 {
     struct gpu_scene gpu_scene;
@@ -123,7 +123,7 @@ TEST(test_openness_is_kept)
     rmdir(folder);
 }
 
-/* A wall whose corners are inside other bodies: its middle is as bright as it should be, not as dark as its corners. */
+/* A wall whose corners lie inside other bodies: its middle has the right brightness and is not as dark as its corners. */
 TEST(test_large_faces_are_lit_within)
 {
     static const double here[3] = { 0, 0, 0 };
@@ -154,7 +154,7 @@ TEST(test_large_faces_are_lit_within)
     toy_destroy(&toy);
 }
 
-/* Folder with the cached openness of one sky, shared by the tests that do not examine sky light. */
+/* Folder with the cached openness of one sky, shared by the tests that are not about sky light. */
 static char *openness_folder;
 
 static int keep_openness(void **state)
@@ -171,7 +171,7 @@ static int forget_openness(void **state)
     return 0;
 }
 
-/* Forty sessions with a sun of their own each, one of which is being drawn throughout. */
+/* Forty sessions, each with a different sun; one of them is being drawn all the time. */
 TEST_WITH(test_many_lights_fit_in_a_bound, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
@@ -214,7 +214,7 @@ TEST_WITH(test_the_nearest_sun_stands_in, keep_openness, forget_openness)
     gpu_scene_finish(&gpu_scene);
 }
 
-/* Among several keys the default light's is preferred, if it is cached. */
+/* Among several cached lights, the default one is preferred. */
 TEST_WITH(test_one_light_stays, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
@@ -243,7 +243,7 @@ static bool same_pixels(const struct frame *a, const struct frame *b)
     return !memcmp(a->bgrx, b->bgrx, (size_t)a->stride_bytes * (size_t)a->height_px);
 }
 
-/* A moving session rotates the sun: no frame waits for baking, and a few frames later the session has the requested light. */
+/* A session with a moving camera rotates the sun: no frame waits for baking, and a few frames later the session has the requested light. */
 TEST(test_a_moving_session_does_not_wait)
 {
     struct view view;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials compared with glTF's reflectance model, integrated in double precision: a grid of spheres from rough to smooth and from
-   dielectric to metal, under surroundings from a file and under the sun; and white spheres in a white furnace, which must be invisible. */
+/* Materials compared with glTF's reflectance model, integrated in double precision: a grid of spheres from rough to smooth and
+   from dielectric to metal, under surroundings from a file and under the sun; and white spheres in a white furnace, which must
+   be invisible. */
 #include "tests/support/test.h"
 
 #include "tests/support/cielab.h"
@@ -31,7 +32,7 @@ static double white(const double towards[3], int channel)
     return 3;
 }
 
-/* Radiance of the surroundings: blue above, brown below, a wide warm lamp on one side. */
+/* Radiance of the surroundings: blue above, brown below, with a wide warm lamp on one side. */
 static double room(const double towards[3], int channel)
 {
     static const double above[3] = { 0.7, 0.9, 1.2 }, below[3] = { 0.35, 0.30, 0.25 }, lamp[3] = { 3.0, 2.6, 1.8 };
@@ -58,7 +59,7 @@ static void write_hdr(const char *path, double (*radiance)(const double[3], int)
     fclose(file);
 }
 
-/* Returns the centre of sphere i, staggered so that no sphere hides another from any of the few light directions. */
+/* Returns the centre of sphere i; spheres are staggered so that none shadows another from any of the few light directions. */
 static const double *place_of(int i)
 {
     static double place[3];
@@ -146,9 +147,9 @@ static double smith(double n_l, double n_v, double a2)
     return 0.5 / (n_l * sqrt(n_v * n_v * (1 - a2) + a2) + n_v * sqrt(n_l * n_l * (1 - a2) + a2));
 }
 
-/* Reflected sky by the glTF 2.0 specification, appendix B: single reflection, and light that enters a dielectric and leaves it again.
-   Multiple reflection between rough facets is compensated by scaling (Turquin, "Practical multiple scattering compensation for
-   microfacet models"). */
+/* Reflected sky by the glTF 2.0 specification, appendix B: single reflection, and light that enters a dielectric and leaves it
+   again. Scaling compensates for multiple reflection between rough facets (Turquin, "Practical multiple scattering compensation
+   for microfacet models"). */
 static void reflected_sky(const struct scene_of *scene, const struct asset_material *m, const double n[3], const double v[3], double out[3])
 {
     double alpha = m->roughness * m->roughness, a2 = alpha * alpha, n_v = dot(n, v), all = 0, once = 0;
@@ -220,7 +221,7 @@ static double difference(const uint8_t *bgrx, const double want[3])
     return lab_distance(a, b);
 }
 
-/* Returns false if the pixel is not on the sphere, or at its rim. */
+/* Returns false if the pixel is beside the sphere or at its rim. */
 static bool normal_at(int x, int y, double n[3])
 {
     n[0] = ((x + 0.5) / SIDE_PX - 0.5) * 1.1 / 0.5;
@@ -240,7 +241,7 @@ static double compare(struct scene_of *scene, int i, const double sun[3])
     for (int y = 2; y < SIDE_PX; y += 4)
         for (int x = 2; x < SIDE_PX; x += 4) {
             double n[3], want[3];
-            /* pixels are skipped where the sun grazes, because shadows are soft there */
+            /* skips pixels at a grazing sun, where shadows are soft */
             if (!normal_at(x, y, n) || fabs(dot(n, sun)) < 0.12)
                 continue;
             reflected_sky(scene, &scene->materials[i], n, v, want);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertex data on the GPU: encoded normals as shaders decode them, and texture coordinates in few bits where they fit. */
+/* Vertex data on the GPU: normals decoded as shaders do, and texture coordinates stored in few bits where possible. */
 #include "tests/support/test.h"
 
 #include "gpu/mesh.h"
@@ -147,7 +147,7 @@ TEST(test_bytes_of_its_own)
     }
 }
 
-/* Vertex data used in place sees later changes of the caller's memory; data that had to be copied does not. */
+/* Vertex data used in place reflects later changes of the caller's memory; data that had to be copied does not. */
 TEST(test_what_is_kept_is_read_in_place)
 {
     static float back_m[COUNT][3];

@@ -54,8 +54,8 @@ static double random_between(double low, double high)
     return low + (high - low) * synthetic_random_unit(&seed);
 }
 
-/* Chooses a random camera inside an asset's box, near it or far away; sometimes orthographic, clipped, with ghosts, or with hidden
-   assets. */
+/* Chooses a random camera inside an asset's box, near it or far away; sometimes orthographic, clipped, with ghosts, or with
+   hidden assets. */
 static void look_anyhow(const struct scene *scene, struct view *view)
 {
     const struct scene_asset *asset = &scene->assets[synthetic_random(&seed) % scene->asset_count];
@@ -155,7 +155,7 @@ TEST(test_cubes)
     }
 }
 
-/* A camera in front of a face of the city: all cubes except those of that face are culled. */
+/* A camera in front of one face of the city: all cubes except those of that face are culled. */
 TEST(test_a_wall_hides_what_is_behind)
 {
     struct stand stand;
@@ -174,7 +174,7 @@ TEST(test_a_wall_hides_what_is_behind)
     frame_unref(&frame);
     print_message("# a wall: %zu of %d cubes left out\n", count, ROW * ROW * ROW);
     assert_int_equal(count, (ROW - 1) * ROW * ROW);
-    /* the front wall of cubes is clipped away, and another one is behind it */
+    /* the front wall of cubes is clipped away, and another wall stands behind it */
     clip_box(&view.visibility.clip, (double[3]){ 1.1, -1, -1 }, (double[3]){ 9, 9, 9 });
     frame = draw(stand.renderer, &view, stand.snapshot, true, &count);
     frame_unref(&frame);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field computed per fragment, with more sensors than the paper's 512, compared with plain loops in double precision: values and
-   drawn colours. The plate is seen from straight above, so that each pixel's position is known. */
+/* The field computed per fragment, with more than the paper's 512 sensors, compared with plain loops in double precision:
+   values and drawn colours. The plate is seen from straight above, so that each pixel's position is known. */
 #include "tests/support/test.h"
 
 #include "protocol/asset_distance.h"
@@ -90,7 +90,7 @@ static double distance_of(const struct plate_spot *spot, int sensor, enum distan
     return sum;
 }
 
-/* Returns the largest distance on the asset; the toy's surface distances are straight too. */
+/* Returns the largest distance on the asset; the toy's distances along the surface are straight lines too. */
 static double largest_m(void)
 {
     double most_m = 0;
@@ -101,7 +101,7 @@ static double largest_m(void)
 }
 
 struct fragment_truth {
-    double value;        /* true value, as a place in the range from 0 to 1 */
+    double value;        /* true value as a position in the range, from 0 to 1 */
     bool no_data, a_tie; /* a_tie: rounding decides between two results */
 };
 

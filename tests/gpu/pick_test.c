@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Picks compared with the frame itself (values, depth and markers of its pixels) and with sums in double precision, on the demo plant
-   and on a small one. */
+/* Picks compared with the frame itself (values, depth and markers of its pixels) and with sums in double precision, on the demo
+   plant and a small one. */
 #include "render/pick/pick.h"
 
 #include "tests/support/renderer_compare.h"
@@ -72,8 +72,8 @@ static double project(const struct view *view, const struct pick_case *site, con
     return 0.5 - 0.5 * clip[2] / clip[3];
 }
 
-/* Returns the measured value of the pixel or the neighbour whose depth is closest to the pick's: at silhouettes a pixel may fall to either
-   side. */
+/* Returns the measured value of whichever pixel, this one or a neighbour, is closest in depth to the pick: at silhouettes a
+   pixel may fall to either side. */
 static const float *same_place(const float (*measured)[4], int x, int y, double depth)
 {
     const float *best = measured[y * WIDTH_PX + x];
@@ -201,7 +201,7 @@ TEST(test_small_plant)
     stand_finish(&stand);
 }
 
-/* A realistic size: several assets of tens of thousands of triangles behind one another. */
+/* A realistic size: several assets with tens of thousands of triangles, one behind another. */
 TEST(test_demo_plant)
 {
     struct diag diag = { 0 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Nothing jumps from preview to refined: colours stay close, and holes cut by textures are the same. Every texture of a material has the
-   effect that glTF specifies. */
+/* Nothing jumps from preview to refined: colours stay close, and holes cut by textures are the same. Every texture of a
+   material has the effect that glTF specifies. */
 #include "tests/support/test.h"
 
 #include "base/color/lab.h"
@@ -80,8 +80,8 @@ TEST(test_the_unit_does_not_flash)
 
 /* --- real plants -------------------------------------------------------------------------------------------------------------------- */
 
-enum { BLOCK = 4 }; /* side of a block in pixels; the mean over a block hides antialiased edges */
-struct flash {      /* delta E (CIE 1976) between the blocks' mean colours in preview and refined */
+enum { BLOCK = 4 }; /* side of a block in pixels; averaging over a block hides the antialiasing of edges */
+struct flash {      /* delta E (CIE 1976) between a block's mean colours in preview and refined */
     double mean, p95;
 };
 
@@ -120,8 +120,8 @@ static struct flash flash_of(struct site *site, struct view *view)
     return flash;
 }
 
-/* Compares both tiers from the plant's own view, near some assets, and with plain materials; every other view with a dark backdrop. Dark
-   outlines remain as a difference, because previews have none. */
+/* Compares both tiers from the plant's own view, near some assets, and with plain materials; every other view has a dark
+   backdrop. Dark outlines remain a difference, because previews have none. */
 static void assert_no_flash(const char *path, const char *name)
 {
     enum { VIEWS = 6 };
@@ -165,10 +165,10 @@ struct textured_plate {
     float (*texcoords)[2];
     struct stand stand;
     struct view view;
-    bool floor; /* whether a floor lies 1 m below the plate, three times as wide */
+    bool floor; /* true: a floor, three times as wide as the plate, lies 1 m below it */
 };
 
-/* Makes a horizontal square of 2 m, x and y from -1 to 1, seen from above; the texture's columns run along x, its rows along y. */
+/* Makes a horizontal square of 2 m, x and y from -1 to 1, seen from above; the texture's columns run along x and its rows along y. */
 static void plate_init(struct textured_plate *plate, const double (*sensors)[3], size_t sensor_count)
 {
     struct toy *toy = toy_create();
@@ -226,7 +226,7 @@ static void paint_right(struct textured_plate *plate, const uint8_t rgba[4])
             memcpy(plate->texels[i], rgba, 4);
 }
 
-/* Returns the pixels in the middle of the left and of the right half. */
+/* Returns the pixels in the middle of the left half and of the right half. */
 static void halves(struct textured_plate *plate, enum tier tier, int left[3], int right[3])
 {
     plate->view.tier = tier;
@@ -347,7 +347,7 @@ TEST(test_holes_let_the_sun_through)
     }
 }
 
-/* Context is drawn in muted colours, so its textures in one tier are close to their mean colour in the other. */
+/* Context is drawn in muted colours, so where one tier draws its textures, the other must show nearly their mean colour. */
 TEST(test_textured_context_does_not_flash)
 {
     struct textured_plate plate = plain_plate();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A constant field at the very end of its range, or at the value of an isoline: no pixel may have an out-of-range colour or a line, even
-   on thin triangles seen at a grazing angle. */
+/* A constant field exactly at the end of its range, or at an isoline's value: no pixel may show an out-of-range colour or a
+   line, even on thin triangles at a grazing angle. */
 #include "tests/support/test.h"
 
 #include "tests/support/rig_case.h"
@@ -51,7 +51,7 @@ static int count_changed(struct stand *stand, struct view *view, const double ra
     return changed;
 }
 
-/* A value exactly at the end of the range looks like a value well inside; a value slightly outside looks like a value far outside. */
+/* A value exactly at the end of the range looks like one well inside; a value slightly outside looks like one far outside. */
 TEST(test_no_specks_at_the_ends)
 {
     static const enum look looks[] = { LOOK_DEFAULT, LOOK_GLOSSY, LOOK_FLAT };

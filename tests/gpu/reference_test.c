@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The displayed field compared with the field computed per fragment over all sensors: values, not colours, at random pixels of whole
-   plants, from near and far, for all parameters that a client may request. Two comparisons: at the pixel's own point on its level; and
-   with the finest level within a pixel, because a coarser level may move the surface that far. The second uses pixel centres first, and
-   then many samples per pixel, because much of a distant plant is smaller than a pixel. */
+/* The displayed field compared with the field computed per fragment over all sensors: values, not colours, at random pixels of
+   whole plants, from near and far, for all parameters that a client may request. There are two comparisons: at the pixel's own
+   point on its level; and with the finest level within a pixel, because a coarser level may move the surface that far. The
+   second uses pixel centres first and then many samples per pixel, because much of a distant plant is smaller than a pixel. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -12,9 +12,9 @@
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
 
-/* Image size: the default run uses a quarter of the pixels and compares as many points. */
+/* Image size: the default run has a quarter of the pixels and compares as many points. */
 static int width_px, height_px;
-enum { VIEWS = 14, SAMPLES = 715 }; /* VIEWS: number of views of a case; SAMPLES: number of samples of a view */
+enum { VIEWS = 14, SAMPLES = 715 }; /* VIEWS: number of views per case; SAMPLES: number of samples per view */
 enum { CLOSE_PX = 32 };             /* number of samples across two pixels, in each direction */
 static const double TOLERANCE = 1.0 / 255;
 
@@ -71,7 +71,7 @@ static void look_close(const struct view *view, int x, int y, struct view *close
     close->camera.fov_deg = 2 * atan(per_px / (1 + u * u + v * v)) * 180 / M_PI;
 }
 
-/* Returns the distance of a value from the range of the reference within a pixel: a level of detail may move the surface that far. */
+/* Returns how far a value lies outside the reference's range within a pixel: a level of detail may move the surface that far. */
 static double error_within_a_pixel(struct site *site, const struct pixels_seen *seen, size_t at, double value)
 {
     struct value_span span = { INFINITY, -INFINITY };
@@ -129,7 +129,8 @@ static double solid_angle(const double corners[3][3])
                                                       vec_dot(corners[2], corners[0]) * length[1]);
 }
 
-/* Returns whether the eye is inside the asset, by its winding number. Such cameras are avoided: surfaces inside bodies were removed. */
+/* Returns whether the eye is inside the asset, by its winding number. Such cameras are avoided, because surfaces inside bodies
+   were removed. */
 static bool is_inside(const struct scene_asset *asset, const double eye_m[3])
 {
     const struct asset_view *file = &asset->file->view;
@@ -179,7 +180,7 @@ struct reference_display { /* how a plant is shown in one case */
     uint64_t seed; /* seed of the case's views */
 };
 
-/* Applies the parameters as a client's message does. Returns false if they are refused. */
+/* Applies the parameters like a client's message. Returns false if they are refused. */
 static bool ask_for(const struct site *site, const struct reference_display *way, struct view *view)
 {
     struct params_change change;
@@ -208,7 +209,7 @@ static void compare_views(struct site *site, const struct reference_display *way
         view.tier = way->tier;
         if (i % 2) /* every other view has the plant file's reach */
             view.field.reach_m = (double)INFINITY;
-        site->random = way->seed + (uint64_t)i; /* the views of a case do not depend on the levels drawn */
+        site->random = way->seed + (uint64_t)i; /* a case has the same views, whichever levels are drawn */
         synthetic_random(&site->random);
         look_at_some_asset(site, away[i / 2], &view);
         assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, seen.shown));
@@ -236,16 +237,16 @@ static void say(const struct reference_display *way, const struct reference_tall
                   tally->beyond, 100 * tally->worst_beyond, tally->flags_differ);
 }
 
-/* Share of pixels that may err by more than 1/255 of the range at their own point, on the finest level and in refined frames that have
-   room for it; no pixel there may err by two such steps. */
+/* Share of pixels that may be off by more than 1/255 of the range at their own point, on the finest level and in refined frames
+   that have room for it. No pixel there may be off by two such steps. */
 static const double FINEST_OVER = 0.0005, FINEST_WORST = 2.0 / 255;
 
 struct bounds {           /* bounds for previews on the levels that are drawn */
-    double drawn, beyond; /* largest shares of pixels that err: at their own point; against the finest level within a pixel */
+    double drawn, beyond; /* largest shares of pixels that are off: at their own point; compared with the finest level within a pixel */
     double worst;
 };
 
-/* The default run takes every `each`-th case, different ones for each row. */
+/* The default run tests every `each`-th case, different ones for each row. */
 static void compare_group(struct site *site, int group, int row, int each, int refused, const struct bounds *bounds)
 {
     int bad = 0;
@@ -255,7 +256,7 @@ static void compare_group(struct site *site, int group, int row, int each, int r
         const struct reference_display way = {
             .group = group,
             .number = i + i / 4,
-            /* every fourth of the preview cases on drawn levels, where errors are largest; every seventh of the others */
+            /* every fourth preview case with drawn levels, where errors are largest; every seventh of the other cases */
             .each = (i & 12) == 8 ? 4 : 7,
             .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
             .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,
@@ -303,7 +304,7 @@ TEST(test_plant_room)
     struct site site;
     assert_true(site_init(&site, &rig, "tests/plants/plant_room.yaml", "plant_room"));
     compare_group(&site, 0, 0, 4, 0, &(struct bounds){ 0.001, 0.001, 0.008 });
-    /* mode paper is refused for assets that have single sensors and are not subdivided */
+    /* mode paper is refused for assets whose single sensors have no subdivision */
     compare_group(&site, 1, 2, 4, 8, &(struct bounds){ 0.001, 0.001, 0.008 });
     site_finish(&site);
 }

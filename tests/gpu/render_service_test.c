@@ -27,7 +27,7 @@ static struct render_service *service;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
 static int notices;
-static bool hardware; /* whether a GPU draws, which draws a refined frame in one step */
+static bool hardware; /* whether a GPU draws, which draws a refined frame in a single step */
 
 static void on_pictures(void *arg)
 {
@@ -149,7 +149,7 @@ TEST(test_a_small_picture_overtakes_a_large_one_of_another)
         render_service_forget(service, asked[i].client);
 }
 
-/* While a large frame of another address is drawn, a snapshot is not held up by a later refined frame of its own address. */
+/* While a large frame for another address is drawn, a snapshot is not held up by a later refined frame for its own address. */
 TEST(test_a_snapshot_goes_before_a_later_refinement)
 {
     if (hardware)
@@ -226,7 +226,7 @@ TEST(test_refinement_ends_while_others_go_on_moving)
     encoded_frame_destroy(&last);
 }
 
-/* Returns whether a client got its frames during another's refinement as fast as alone, except for an occasional refinement step. */
+/* Returns whether a client got its frames during another's refinement as fast as when alone, except for an occasional refinement step. */
 static bool refining_costs_little(int attempt)
 {
     enum { PICTURES = 40 };
@@ -253,7 +253,7 @@ static bool refining_costs_little(int attempt)
     }
     print_message("# %d pictures: %.1f ms alone, %.1f ms beside a refinement\n", PICTURES, (double)took_ns[0] / NS_PER_MS,
                   (double)took_ns[1] / NS_PER_MS);
-    /* A refinement step runs after 150 ms without a preview, and at most once between two previews. */
+    /* A refinement step runs after 150 ms without a preview, and otherwise at most once between two previews. */
     bool little = count_of("plantcast_render_steps_total") - steps <= 2 + took_ns[1] / (150 * NS_PER_MS);
     while (!refined) {
         struct encoded_frame *encoded = next();
@@ -263,7 +263,7 @@ static bool refining_costs_little(int attempt)
     return little;
 }
 
-/* If this thread is delayed by 150 ms, refinement steps run in between: then the measurement is repeated. */
+/* If this thread is delayed by 150 ms, refinement steps run in between; the measurement is then repeated. */
 TEST(test_refining_one_costs_a_mover_little)
 {
     if (hardware)
@@ -274,7 +274,7 @@ TEST(test_refining_one_costs_a_mover_little)
     assert_true(little);
 }
 
-/* A hundred clients request the same view at once, then each again after its frame, in two qualities. */
+/* A hundred clients request the same view at once, and each again after its frame, in two qualities. */
 TEST(test_a_hundred_viewers_cost_one_picture)
 {
     int64_t renders = count_of("plantcast_renders_total"), encodes = count_of(ENCODES);
@@ -349,7 +349,7 @@ TEST(test_depth_is_drawn_while_a_client_that_wants_it_is_present)
     render_service_forget(service, MOVER);
 }
 
-/* While a refined frame is drawn in steps, no other one begins, so the second is withdrawn before its drawing ends. */
+/* While a refined frame is drawn in steps, no other one begins, so the second request is withdrawn before it is drawn. */
 TEST(test_withdrawn_requests_are_not_drawn)
 {
     if (hardware)
@@ -367,7 +367,7 @@ TEST(test_withdrawn_requests_are_not_drawn)
             assert_true(!encoded->packet && encoded->absence == FRAME_SKIPPED);
         encoded_frame_destroy(&encoded);
     }
-    ask(MOVER, URGENCY_INPUT, 72); /* requests a frame again, as a client does when its view is shown again */
+    ask(MOVER, URGENCY_INPUT, 72); /* requests a frame again, as a client does when its view is unhidden */
     struct encoded_frame *encoded = next();
     assert_true(encoded->packet && encoded->client == MOVER);
     encoded_frame_destroy(&encoded);
@@ -398,7 +398,7 @@ static bool shares_time(void)
     return counts[1] > 2 * counts[0];
 }
 
-/* Both clients get equal time, not equal numbers of frames. Repeated if this thread is delayed in requesting the small frames. */
+/* Both clients get equal time, not equal numbers of frames. The test repeats if this thread is late in requesting the small frames. */
 TEST(test_time_is_shared_not_pictures)
 {
     bool shared = false;
@@ -423,7 +423,7 @@ static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, d
     return encoded;
 }
 
-/* Requests a refined frame, large enough for a context loss to happen during it. */
+/* Requests a refined frame large enough that a context loss happens during it. */
 static void ask_for_still(double turn)
 {
     ask_sized(REFINER, URGENCY_REFINE, turn, sweep(2400, 1200), sweep(1600, 800));
@@ -437,7 +437,7 @@ static struct encoded_frame *refined_of(double turn)
     return encoded;
 }
 
-/* The GL context is lost repeatedly during long and short frames: no frame is lost, and all are the same as before. */
+/* The GL context is lost repeatedly during long and short frames: no frame is lost, and all look the same as before. */
 TEST(test_lost_context_is_made_again_under_load)
 {
     enum { LOSSES = 3, MOVES = 4 };
@@ -492,7 +492,7 @@ static size_t address_space_bytes(void)
     return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Memory suffices for one more frame, but not for the samples that it is computed from. */
+/* Memory suffices for one more frame, but not for the samples from which it is computed. */
 TEST(test_no_memory_fails_that_picture_alone)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -517,7 +517,7 @@ TEST(test_no_memory_fails_that_picture_alone)
     encoded_frame_destroy(&after);
 }
 
-/* A frame that failed to encode was not shown: repeating the request must not be answered with "unchanged". */
+/* A frame that could not be encoded was not shown: the repeated request must not be answered with "unchanged". */
 TEST(test_what_could_not_be_encoded_is_drawn_again)
 {
     const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* H.264 has no encoder in this test */
@@ -624,7 +624,7 @@ static void remake(bool by_gl, size_t memory_bytes)
     assert_true(make_service(by_gl, memory_bytes));
 }
 
-/* Writes readings to the store; the event loop has not read them yet. */
+/* Writes readings to the store that the event loop has not read yet. */
 static void write_readings(double value)
 {
     for (int tag = 0; tag < (int)toy->plant.tag_count; tag++) {
@@ -633,7 +633,7 @@ static void write_readings(double value)
     }
 }
 
-/* Passes the store's readings to the service as the event loop does. ahead_ns: makes the snapshot younger than it is. */
+/* Passes the store's readings to the service as the event loop does. ahead_ns: dates the snapshot that much later. */
 static void pass_readings(int64_t ahead_ns)
 {
     struct snapshot *snapshot = test_snapshot(toy->plant.tag_count);
@@ -648,7 +648,7 @@ static void change_readings(double value)
     pass_readings(0);
 }
 
-/* Frames show the event loop's snapshot, which sessions get as text, although the store has newer readings. */
+/* Frames show the event loop's snapshot, which sessions also get as text, even if the store has newer readings. */
 TEST(test_frames_show_the_readings_of_the_texts)
 {
     remake(false, 0);
@@ -705,8 +705,8 @@ static void ask_for_refined(uint64_t client, enum look look)
     render_service_wake(service);
 }
 
-/* Requests a frame as a session does that shows a refined frame when a reading changes, after waiting waited_ns. Returns how many more
-   frames will come. */
+/* Requests a frame as a session does that shows a refined frame when a reading changes, after that has waited for waited_ns.
+   Returns how many more frames will come. */
 static int ask_for_data(uint64_t client, enum look look, int64_t waited_ns)
 {
     struct frame_request request = { .codec = WIRE_CODEC_JPEG,
@@ -722,8 +722,8 @@ static int ask_for_data(uint64_t client, enum look look, int64_t waited_ns)
     return answer == REQUEST_ADDED;
 }
 
-/* Readings change all the time and wait at most one second; the refined frame must still come, and no frame shows older readings than
-   the frame before. Returns whether no frame was abandoned meanwhile. */
+/* Readings change all the time and wait at most one second. The refined frame must still come, and no frame shows older
+   readings than the frame before. Returns whether no frame was abandoned meanwhile. */
 static bool refined_comes(enum look look, int64_t waited_ns)
 {
     int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
@@ -754,8 +754,8 @@ static bool refined_comes(enum look look, int64_t waited_ns)
     return count_of("plantcast_renders_abandoned_total") == abandoned;
 }
 
-/* Asserts that the refined frame comes although readings change, and that from then on each change gives a refined frame without further
-   steps. */
+/* Asserts that the refined frame comes although readings change, and that from then on each change yields a refined frame
+   without further steps. */
 static void assert_refined_comes(enum look look, int64_t waited_ns)
 {
     assert_true(refined_comes(look, waited_ns));
@@ -795,7 +795,7 @@ TEST(test_changing_readings_leave_pictures_without_room)
     assert_true(refined_comes(LOOK_GLOSSY, 2 * NS_PER_S));
 }
 
-/* With GL no recolouring data is cached: a frame is abandoned for new readings a few times, each time later, and finally completed. */
+/* GL caches no data for recolouring: a frame is abandoned for new readings a few times, each time later, and is finally completed. */
 TEST(test_what_takes_long_by_gl_comes_in_the_end)
 {
     if (hardware)
@@ -828,20 +828,20 @@ static void ask_view(uint64_t client, enum urgency urgency, enum tier tier, doub
     render_service_wake(service);
 }
 
-/* A refined frame waits for another client's frame, and a preview of the same view overtakes it. The client never shows the late frame,
-   so repeating the request must deliver that picture. */
+/* A refined frame waits for another client's frame, and a preview of the same view overtakes it. The client never shows the
+   late frame, so the repeated request must deliver that picture. */
 TEST(test_an_overtaken_refinement_comes_when_it_is_asked_for_again)
 {
     enum { OVERTAKEN = 201, LATER = 202 };
     uint64_t preview_number = 0, refined_number = 0;
     if (hardware)
         skip();
-    remake(true, 0); /* the software renderer recolours a refined frame with newer readings, and gives it the newest number */
+    remake(true, 0); /* the software renderer recolours a refined frame with newer readings and gives it the newest number */
     int64_t steps = count_of("plantcast_render_steps_total");
     ask(REFINER, URGENCY_REFINE, 31);
     await_step(steps + 1);
     ask_view(OVERTAKEN, URGENCY_DATA, TIER_REFINED, 33);
-    ask_view(LATER, URGENCY_DATA, TIER_PREVIEW, 35); /* the answer to this request shows that the request before was begun and deferred */
+    ask_view(LATER, URGENCY_DATA, TIER_PREVIEW, 35); /* the answer to this request shows that the one before was begun and then deferred */
     for (int left = 4; left > 0; left--) {
         struct encoded_frame *encoded = next();
         if (encoded->client == LATER)
@@ -864,7 +864,7 @@ TEST(test_an_overtaken_refinement_comes_when_it_is_asked_for_again)
     remake(false, 0);
 }
 
-/* Bands cannot be recoloured quickly: the refined frame is drawn again and delivered. */
+/* Bands cannot be recoloured quickly, so the refined frame is drawn again and delivered. */
 TEST(test_readings_change_pictures_that_are_not_quick)
 {
     int64_t abandoned = count_of("plantcast_renders_abandoned_total");
@@ -899,8 +899,8 @@ TEST(test_stop_waits_for_no_refinement)
     assert_true(count_of("plantcast_renders_total") == renders);
 }
 
-/* With a GPU, or simulating one: several frames are in flight at once. Each reaches its client and shows the requested view; equal
-   requests meanwhile share it; and a context loss meanwhile loses no frame. */
+/* With a real or simulated GPU, several frames are in flight at once. Each reaches its client and shows the requested view;
+   equal requests meanwhile share it; and a context loss meanwhile loses no frame. */
 TEST(test_pictures_fly)
 {
     enum { CLIENTS = 8, ROUNDS = 6, FIRST = 100 };

@@ -35,7 +35,7 @@ TEST_WITH(test_content_is_that_of_the_frame, reset, NULL)
     frame_unref(&frame);
 }
 
-/* Each half of a split view is planned before either is drawn. */
+/* Both halves of a split view are planned before either is drawn. */
 TEST_WITH(test_plan_holds_while_another_is_made, reset, NULL)
 {
     view.camera.eye_m[1] += 0.3; /* a new camera, so that both frames are drawn completely */
@@ -107,7 +107,7 @@ TEST_WITH(test_content_counts_what_can_be_seen, reset, NULL)
     assert_true(content() != before);
 }
 
-/* Many changes, each too small to be visible, must become visible together. */
+/* Many changes, each too small to be visible, must together become visible. */
 TEST_WITH(test_slow_drift_is_not_lost, reset, NULL)
 {
     uint64_t before = content();
@@ -157,7 +157,7 @@ static void assert_same_picture(const struct frame *a, const struct frame *b)
                     a->markers[i].y_px == b->markers[i].y_px && a->markers[i].occluded == b->markers[i].occluded);
 }
 
-/* Cases of progressive rendering; a snapshot may request the preview tier too. */
+/* Cases of progressive rendering; a snapshot may also request the preview tier. */
 static const struct {
     enum tier tier;
     enum look look;
@@ -170,7 +170,7 @@ static const struct {
     { TIER_PREVIEW, LOOK_DEFAULT, 0, -1 },
 };
 
-/* While a frame is being drawn in steps, other views are drawn, readings change, and its light is evicted from the cache. */
+/* While a frame is drawn in steps, other views are drawn, readings change, and the frame's light is evicted from the cache. */
 TEST_WITH(test_bit_by_bit_is_the_same_picture, reset, NULL)
 {
     view.width_px = 801;
@@ -304,7 +304,7 @@ static long brightness(const struct frame *frame)
     return sum;
 }
 
-/* More lights than the cache holds: each gives the same frame again. */
+/* More lights than fit into the cache: each of them gives the same frame when used again. */
 TEST_WITH(test_light_can_be_chosen, reset, NULL)
 {
     long first[5];
@@ -322,7 +322,7 @@ TEST_WITH(test_light_can_be_chosen, reset, NULL)
         }
 }
 
-/* The default light is the same for all window sizes; otherwise each size would need a baked light of its own. */
+/* All window sizes share the default light; otherwise each size would need its own baked light. */
 TEST_WITH(test_default_light_is_one, reset, NULL)
 {
     struct view wide, tall;
@@ -430,7 +430,7 @@ TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
     frame_unref(&after);
 }
 
-/* The memory of what the renderer keeps has a bound. Lighting is excluded: two sets always exist, one displayed and one being baked. */
+/* The memory of the renderer's caches is bounded. Lighting is excluded: two sets always exist, one displayed and one being baked. */
 TEST_WITH(test_what_is_kept_has_a_bound, reset, NULL)
 {
     size_t full[RENDER_STORES], bytes[RENDER_STORES], bound = (size_t)1 << 20;

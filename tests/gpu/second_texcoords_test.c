@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Textures with two mappings, from a GLB to a frame: a material whose base colour uses TEXCOORD_0 and whose other four textures are
-   mapped mirrored must look like one whose four images are mirrored instead. */
+/* Textures with two mappings, from a GLB to a frame. One material's base colour uses TEXCOORD_0, and its other four textures
+   are mapped mirrored. It must look like a material whose four images are mirrored instead. */
 #include "tests/support/test.h"
 
 #include <png.h>
@@ -15,8 +15,8 @@
 
 enum { SIDE = 32, TEXELS = SIDE * SIDE, WIDTH = 320, HEIGHT = 180 };
 enum map { BASE, METAL, NORMAL, OCCLUSION, GLOW, MAPS };
-/* How the other four textures are mirrored: by a second coordinate set; by a transform that names this set and overrides another; by a
-   transform of the first set; by mirrored images with equal mapping; or they are absent. */
+/* How the other four textures are mirrored: by a second coordinate set; by a transform that names this set and overrides
+   another; by a transform of the first set; by mirrored images with the same mapping. Or they are absent. */
 enum way { SECOND_SET, NAMED_BY_TRANSFORM, TRANSFORMED, MIRRORED_IMAGES, BASE_ONLY, WAYS };
 static const char *const way_names[WAYS] = { "second set", "named by transform", "transformed", "mirrored images", "base only" };
 static const char PLANT[] = "plant: {name: P, time_zone: UTC}\n"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shading must not be read as value: frames of a heat exchanger and a tank are read back by the nearest legend colour. */
+/* Shading must not be mistaken for a value: frames of a heat exchanger and a tank are read back by the nearest legend colour. */
 #include "tests/support/test.h"
 
 #include <turbojpeg.h>
@@ -60,7 +60,7 @@ static void through_standard_jpeg(struct frame *frame, const struct delivery_pat
     tjDestroy(turbo);
 }
 
-/* Replaces the pixels with those after JPEG compression as a stream uses it. */
+/* Replaces the pixels with those after JPEG compression, as used by a stream. */
 static void through_jpeg(struct frame *frame, const struct delivery_path *way)
 {
     struct encoder *encoder = encoder_create(rig.log, "jpeg", NULL);
@@ -72,8 +72,8 @@ static void through_jpeg(struct frame *frame, const struct delivery_path *way)
     encoder_destroy(&encoder);
 }
 
-/* Returns the error with which a viewer reads values from a shaded frame: its 95th percentile, in percent of the range. truth: the same
-   frame in the flat look, without edges. */
+/* Returns the error with which a viewer reads values from a shaded frame: the 95th percentile, in percent of the range. truth:
+   the same frame in the flat look, without edges. */
 static double misread(const struct colormap *map, const struct frame *truth, const struct frame *shaded, bool deuteranope)
 {
     double *errors = mem_array(WIDTH * HEIGHT, sizeof(*errors)), p95;
@@ -118,7 +118,7 @@ static double measure(const struct view *view, double p95[WAYS])
     return worst;
 }
 
-/* distance: 1 places the camera so that the whole plant fills the image. */
+/* distance: at 1, the whole plant fills the image. */
 static void look_from(double distance, struct view *view)
 {
     view_default(&stand.toy->scene, WIDTH, HEIGHT, view);
@@ -126,7 +126,7 @@ static void look_from(double distance, struct view *view)
         view->camera.eye_m[c] = view->camera.target_m[c] + distance * (view->camera.eye_m[c] - view->camera.target_m[c]);
 }
 
-/* A camera close enough to read values: the assets fill a good part of the image. */
+/* A camera close enough to read values: assets fill a good part of the image. */
 static void look_close(struct view *view)
 {
     look_from(0.5, view);
@@ -173,7 +173,7 @@ TEST_WITH(test_glossy_would_be_misread, set_up, stand_tear_down)
     look_close(&view);
     view.look = LOOK_GLOSSY;
     measure(&view, p95);
-    assert_true(p95[0] > 3); /* the limits of the test above would detect a map that misreads */
+    assert_true(p95[0] > 3); /* a map that is misread would exceed the limits of the test above */
 }
 
 /* Lightness differences between the tiers: the change from preview to refined must not flash. */

@@ -9,7 +9,7 @@
 static struct rig rig;
 static struct stand stand;
 
-/* Isolines, bands and logarithmic scales. Edges of lines differ, because GL measures slopes differently. */
+/* Isolines, bands and logarithmic scales. Edges of lines differ, because GL computes slopes differently. */
 TEST(test_lines_and_scales)
 {
     for (int i = 0; i < 8; i++) {
@@ -66,7 +66,7 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
     return frame;
 }
 
-/* Two render jobs are in progress at once, so that the second one is a new job that never drew anything. */
+/* Two render jobs are in progress at once, so the second is a new job that has never drawn anything. */
 TEST(test_nothing_in_sight)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 320, 180);
@@ -80,7 +80,7 @@ TEST(test_nothing_in_sight)
     frame_unref(&frame);
 }
 
-/* A pixel's centre may lie outside the sliver that represents the pixel; its shadow must not be looked up along the sliver's extension. */
+/* A pixel's centre may lie outside the sliver that the pixel shows; its shadow must not be looked up on an extension of the sliver. */
 TEST(test_shadows_on_slivers)
 {
     for (int light = 0; light < sweep(3, 1); light++) {
@@ -133,8 +133,8 @@ TEST(test_thin_poles_have_no_beads)
     stand = others;
 }
 
-/* A frame drawn in steps shows the readings of its beginning, also where the field is evaluated at each pixel, whatever other frames show
-   in between. */
+/* A frame drawn in steps shows the readings from its beginning, even where the field is evaluated per pixel, whatever other
+   frames show in between. */
 TEST(test_readings_change_between_steps)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 160, 90), moving;

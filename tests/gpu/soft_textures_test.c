@@ -142,7 +142,7 @@ TEST(test_previews)
 
 TEST(test_refined)
 {
-    compare_all(TIER_REFINED, 0.06); /* rims of holes are smooth here, and the nearest pane is always drawn in front */
+    compare_all(TIER_REFINED, 0.06); /* here rims of holes are smooth, and the nearest pane is always drawn in front */
 }
 
 /* Each plate alone, so that nothing else differs. */
@@ -161,7 +161,7 @@ TEST(test_each)
         }
 }
 
-/* Recolouring what is seen through glass and gratings equals drawing it again. */
+/* Recolouring what is visible through glass and gratings equals drawing it again. */
 TEST(test_new_readings)
 {
     struct view view;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Software frames of whole plants compared with the values that reference_test verifies: in the flat look each pixel's colour is read
-   back as a value, in previews and in refined frames, on every drawn level. Values are equal where a pixel and its neighbours show one
-   surface. Elsewhere rounding decides in a preview, and a refined frame antialiases rims and surfaces smaller than a pixel. */
+/* Software frames of whole plants compared with the values that reference_test verifies: in the flat look each pixel's colour
+   is read back as a value, in previews and refined frames, on every drawn level. Values are equal where a pixel and its
+   neighbours show one surface. Elsewhere rounding decides in a preview, and a refined frame antialiases rims and surfaces
+   smaller than a pixel. */
 #include "tests/support/test.h"
 
 #include "tests/support/planned.h"
@@ -33,7 +34,7 @@ static bool is_clear(const struct scene *scene, const double eye_m[3])
     return true;
 }
 
-/* Chooses a random camera at a random asset with a field, `away` times the asset's size from it, or farther in confined places. */
+/* Chooses a random camera at a random asset with a field, `away` times the asset's size from it, or farther where space is tight. */
 static void look_at_some_asset(struct site *site, double away, struct view *view)
 {
     do {
@@ -49,7 +50,7 @@ static bool has_value(const float number[4])
     return number[1] >= 0 && number[1] < 0.5f && number[2] < 0.5f;
 }
 
-/* Returns whether depth bends here, as at an edge. In the image, depth is linear on a flat surface, and nearly linear on a curved one. */
+/* Returns whether depth bends here, as at an edge. In the image, depth is linear on a flat surface and nearly linear on a curved one. */
 static bool bends(const float (*numbers)[4], int at, int step)
 {
     double before = (double)numbers[at - step][3], here = (double)numbers[at][3], after = (double)numbers[at + step][3];
@@ -68,10 +69,10 @@ static bool is_within(const float (*numbers)[4], int at)
 }
 
 struct soft_values_tally {
-    /* within: pixels within one surface; off, unreadable: those of them with another colour than their value's, and with a colour that is
+    /* within: pixels within one surface; off, unreadable: those whose colour is not their value's, and those whose colour is
        not in the map */
     int within, off, unreadable;
-    int rims, rims_off;          /* rims: other pixels with a value; rims_off: those of them with another colour */
+    int rims, rims_off;          /* rims: other pixels with a value; rims_off: those with another colour */
     int most;
 };
 

@@ -65,7 +65,7 @@ TEST(test_cameras)
     }
 }
 
-/* Orthographic cameras all around and above, wide ones and narrow ones that stand among the pipes. */
+/* Orthographic cameras all around and above: wide ones, and narrow ones that stand among the pipes. */
 TEST(test_orthographic)
 {
     for (int i = 0; i < 24; i++) {
@@ -79,7 +79,7 @@ TEST(test_orthographic)
     }
 }
 
-/* Sections by a horizontal plane, by a slanted plane and by a box. Closed bodies get caps; of open ones the inside is visible. */
+/* Sections by a horizontal plane, by a slanted plane and by a box. Closed bodies get caps; open ones show their inside. */
 TEST(test_cuts)
 {
     for (int i = 0; i < 36; i++) {
@@ -138,7 +138,7 @@ TEST(test_hidden_assets)
     }
 }
 
-/* From the third frame on, a still camera is only recoloured; hatching then has softer edges. */
+/* From the third frame on, a still camera's frame is only recoloured; hatching then has softer edges. */
 TEST(test_still_camera)
 {
     struct view view = soft_view(&stand, TIER_PREVIEW, 640, 360);
@@ -163,7 +163,7 @@ TEST(test_still_camera)
     toy_fill(stand.snapshot, 0);
 }
 
-/* After a camera stood still, a moved camera or a hidden asset must not reuse the cached frame. */
+/* After the camera stood still, a frame with a moved camera or a hidden asset must not reuse the cached frame. */
 TEST(test_moves_after_standing)
 {
     struct view view = soft_view(&stand, TIER_PREVIEW, 320, 200);
@@ -195,7 +195,7 @@ TEST(test_lines_and_scales)
     }
 }
 
-/* Places the camera in front of the middle of an edge, so close that its triangles extend far beyond the image. */
+/* Places the camera in front of the middle of an edge, so close that the edge's triangles extend far beyond the image. */
 static void look_closely(const struct scene_asset *asset, uint32_t v, uint32_t w, struct view *view)
 {
     const struct asset_view *file = &asset->file->view;
@@ -217,7 +217,7 @@ static bool is_rim(int a, int b)
     return (a > 127) != (b > 127);
 }
 
-/* Borders of data and of uncertainty in triangles that are clipped because they extend far beyond the image. */
+/* Borders of data and of uncertainty within triangles that are clipped because they extend far beyond the image. */
 TEST(test_patterns_close_by)
 {
     enum { TANK = 1 }; /* the tank has a bad and an uncertain sensor */
@@ -255,7 +255,7 @@ static void set_limits(bool set)
             plant->tags[tag].alarms.limits[i] = set && tag != 2 ? limits[i] : NAN;
 }
 
-/* One tag has no limits: the area near it is plain. Assets without a field are grey. */
+/* One tag has no limits, so the area near it is plain. Assets without a field are grey. */
 TEST(test_operator)
 {
     set_limits(true);
@@ -309,7 +309,7 @@ static void compare_kernels(const struct view *view, const struct soft_kernels *
 TEST(test_kernels)
 {
     const struct soft_kernels *widest = stand.renderer->by_soft->kernels;
-    /* widths whose last tile is 16 or 8 columns wide, and heights whose last tile has one row */
+    /* widths whose last tile has 16 or 8 columns, and heights whose last tile has one row */
     static const int widths_px[] = { 640, 333, 37, 322, 330 };
     struct view view;
     if (widest == &soft_kernels_plain) {
@@ -361,7 +361,7 @@ TEST(test_sky)
     assert_in_range(worst, 0, 2);
 }
 
-/* Ghosts before and behind other assets, with sections and, in previews, with a still camera. */
+/* Ghosts in front of and behind other assets, with sections and, in previews, with a still camera. */
 TEST(test_ghosts)
 {
     for (int i = 0; i < 24; i++) {

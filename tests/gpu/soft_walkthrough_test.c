@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A walk through a plant: frames without a GPU compared with GL, with surfaces in front of the eye, next to it and behind it. */
+/* A walk through a plant: frames without a GPU compared with GL, with surfaces in front of, beside and behind the eye. */
 #include "tests/support/test.h"
 
 #include "render/split_view.h"
@@ -38,7 +38,7 @@ static int compare(struct site *site, const struct view *view)
     return count;
 }
 
-/* Chooses a random place among the assets at eye height, looking ahead or slightly down. */
+/* Chooses a random point among the assets at eye height, looking ahead or slightly down. */
 static void stand_somewhere(struct site *site, double height_m, struct view *view)
 {
     double turn = 2 * M_PI * synthetic_random_unit(&site->random), down = 0.6 * synthetic_random_unit(&site->random);

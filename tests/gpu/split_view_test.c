@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Split views: each half equals the frame of its own view, markers and labels stay in their half, and progressive rendering equals
-   drawing at once. */
+/* Split views: each half equals the frame of its own view, markers and labels stay in their half, and progressive rendering
+   equals drawing at once. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility: hidden, isolated, ghosted and clipped assets, their colours, markers and content hashes, and orthographic cameras. Runs as
-   a session without a GPU does, where some views are left to GL and must match across that border, and then with GL only. */
+/* Visibility: hidden, isolated, ghosted and clipped assets, their colours, markers and content hashes, and orthographic
+   cameras. Runs first as a session without a GPU does, where some views are left to GL and must match the others, and then with
+   GL only. */
 #include "tests/support/test.h"
 
 #include "render/pick/pick.h"
@@ -132,8 +133,8 @@ TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
     frame_unref(&none);
 }
 
-/* The tank stands in front of the exchanger's end, or is hidden: the part seen through the ghost keeps its colours except for lines and
-   dots. */
+/* The tank stands in front of the exchanger's end, or is hidden: the part seen through the ghost keeps its colours, except for
+   lines and dots. */
 TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { 11, 2.5, 2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
@@ -159,7 +160,7 @@ TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
     }
 }
 
-/* On a plane seen at a grazing angle, depth changes fast from pixel to pixel; that is no outline. */
+/* On a plane at a grazing angle, depth changes fast from pixel to pixel, which must not count as an outline. */
 TEST_WITH(test_a_steep_ghost_is_seen_through, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { -8, -1, 1.5 }, .target_m = { 0, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
@@ -195,8 +196,8 @@ static bool is_neutral(const uint8_t *bgrx)
     return abs(bgrx[0] - bgrx[1]) < 12 && abs(bgrx[1] - bgrx[2]) < 12 && bgrx[1] > 60 && bgrx[1] < 120;
 }
 
-/* The exchanger lies along x with its axis at y = 0, z = 1.2. The camera in the south sees its inside, because the southern half is
-   clipped away. */
+/* The exchanger lies along x with its axis at y = 0, z = 1.2. The camera in the south sees its inside, because the southern
+   half is clipped away. */
 TEST_WITH(test_a_cut_opens_a_neutral_inside, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { 0, -8, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
@@ -225,8 +226,8 @@ TEST_WITH(test_a_cut_opens_a_neutral_inside, reset, NULL)
         }
 }
 
-/* Makes a body from -1 to 1 with another asset inside, both with a sensor. hollow: its walls are 0.2 thick; open: one of many triangles
-   is missing. */
+/* Makes a body from -1 to 1 with another asset inside, each with a sensor. hollow: the body's walls are 0.2 thick; open: one of
+   its many triangles is missing. */
 static struct toy *nested(bool hollow, bool open)
 {
     static const double sensors[2][1][3] = { { { 1, 0, 0 } }, { { 0, 0, 0.5 } } };
@@ -250,8 +251,8 @@ static struct toy *nested(bool hollow, bool open)
     return toy;
 }
 
-/* Measures where neutral pixels in the middle row begin and end, in metres to the right of the centre. box: clips the back too, so that
-   rays leave the kept part inside the body. */
+/* Measures where neutral pixels in the middle row begin and end, in metres to the right of the centre. box: also clips the
+   back, so that rays leave the visible part inside the body. */
 static void cut_through(struct stand *from, enum tier tier, bool core_cut, bool box, double *first_m, double *last_m, struct pick *pick)
 {
     enum { SIDE = 200 };
@@ -275,7 +276,7 @@ static void cut_through(struct stand *from, enum tier tier, bool core_cut, bool 
     frame_unref(&frame);
 }
 
-/* Solid: the cap hides the inside. Hollow: only the walls have caps. Open: the inside is visible as without caps. */
+/* Solid: the cap hides the inside. Hollow: only the walls have caps. Open: the inside is visible, as without caps. */
 TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
 {
     double first_m, last_m;
@@ -303,7 +304,7 @@ TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
     }
 }
 
-/* Clipped parts hide nothing, and the parts behind the plane stay where they are. */
+/* Clipped parts hide nothing, and parts behind the plane stay unchanged. */
 TEST_WITH(test_a_cut_leaves_the_rest_alone, reset, NULL)
 {
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 50 } } };
@@ -340,7 +341,7 @@ TEST_WITH(test_bit_by_bit_is_the_same, reset, NULL)
     frame_unref(&bits);
 }
 
-/* In an orthographic view a metre has the same number of pixels everywhere, and depth still hides. */
+/* In an orthographic view a metre spans the same number of pixels everywhere, and nearer objects still hide farther ones. */
 TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { 1.3, -8, 1.2 }, .target_m = { 1.3, 0, 1.2 }, .up = { 0, 0, 1 }, .height_m = 5 };
@@ -359,7 +360,7 @@ TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
         assert_int_equal(frame->markers[0].occluded, 0); /* on the exchanger's southern side */
         assert_true(count_value(frame, 30) > 3000);
         frame_unref(&frame);
-        view.camera.eye_m[1] = -0.1; /* the eye is in the middle of the plant: nothing is cut off in front */
+        view.camera.eye_m[1] = -0.1; /* the eye is in the middle of the plant, yet nothing in front of it is cut off */
         frame = stand_draw(&stand, &view);
         assert_int_equal(frame->markers[0].occluded, 0);
         frame_unref(&frame);
@@ -404,7 +405,7 @@ static void stand_room(struct stand *room, struct view *of)
     of->look = LOOK_MATERIALS;
 }
 
-/* With hidden walls the ball is brighter than inside the room, and the walls, when shown, look as before. */
+/* With hidden walls the ball is brighter than inside the room; when shown again, the walls look as before. */
 TEST_WITH(test_what_is_hidden_leaves_no_dark, reset, NULL)
 {
     struct stand room;

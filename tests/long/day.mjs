@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A day of a plant in one hour: temperatures recorded on a rig, 24 times as fast; twenty users who move their cameras; the plant file
-// changed and reloaded; devices that stop answering; a refused tag; a full disk; a clock set forward and back by an hour; the end of a
-// month. MINUTES: duration.
-// Prints memory, descriptors, threads and latency, and their growth. Requires a field equal to a fresh computation to the last bit, a
-// history without gaps, and no growth of descriptors and threads.
+// A day of a plant in one hour: temperatures recorded on a rig, 24 times as fast; twenty users who move their cameras; the
+// plant file changed and reloaded; devices that stop answering; a refused tag; a full disk; a clock set forward and back by an
+// hour; the end of a month. MINUTES: duration. Prints memory, descriptors, threads and latency, and their growth. Requires a
+// field equal to a fresh computation to the last bit, a history without gaps, and no growth of descriptors and threads.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -41,8 +40,8 @@ const hold = async (tag, value) => {
     });
 };
 
-// A unique value of PI-1 that the history must contain exactly in the end. It lies above or below all readings before and after it, because
-// history drops values on the line between two readings.
+// A unique value of PI-1 that the history must contain exactly. It lies above or below all readings before and after it,
+// because history drops values on the line between two readings.
 const mark = async () => {
     const n = marked++, value = (n % 2 ? -2.375 : 12.375) + n / 1024;
     const from_s = Math.floor(clock.now() / 1000) - 1;
@@ -110,9 +109,9 @@ const events = [
     },
 ];
 
-// Compares, at points on both boxes, the daemon's field after all these events with that of a program that starts with the current
-// readings. Both report the readings and qualities used. If those differ, as when the device answers late on a busy machine, both are asked
-// again.
+// Compares, at points on both boxes, the daemon's field after all these events with that of a program newly started with the
+// current readings. Both report the readings and qualities that they used. If those differ, as when the device answers late on
+// a busy machine, both are asked again.
 async function drift(round) {
     for (const [i, tag] of ['TI-1', 'TI-2', 'PI-1'].entries())
         await hold(tag, [20 + round % 50, 70 - round % 50, round % 10][i]);
@@ -173,8 +172,8 @@ test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 600
     for (const key of ['memory_mb', 'descriptors', 'threads', 'p95_ms'])
         console.log(`# ${key}: ${rows[0][key].toFixed(1)} at first, ${rows.at(-1)[key].toFixed(1)} at last, ` +
             `${slope(rows, key).toFixed(2)} an hour`);
-    // Compares the medians of the first and the last third, because descriptors of closing connections exist for a moment and memory is
-    // released before the end of a month when no client watches. Each further month adds its file, read and written.
+    // Compares the medians of the first and the last third: descriptors of closing connections exist for a moment, and without
+    // a watching client, memory is released before the end of a month. Each further month adds its file, read and written.
     const third = Math.ceil(rows.length / 3), median = (part, key) => part.map((row) => row[key]).sort((a, b) => a - b)[third >> 1];
     for (const [key, growth, more] of [['descriptors', 1, MONTH_DESCRIPTORS], ['threads', 1, 0], ['memory_mb', GROWTH, 0]]) {
         const early = median(rows.slice(0, third), key), late = median(rows.slice(-third), key);

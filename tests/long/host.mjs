@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole host for hours: two cores, PostgreSQL, two renderers, HAProxy, Prometheus, operators, the load generator, and a fault a minute.
-// Requires that no alarm and no acknowledgement is lost or recorded twice, that two cores never poll, that operators are blind for at most
-// 10 s a fault, that memory and descriptors do not grow, and that alerts fire and clear. MINUTES: duration. SEED: order of the faults.
-// FAULT_S: seconds from one fault to the next. ONLY: names of faults, separated by commas.
-// build/soak-host.txt has the table after each fault.
+// A whole host for hours: two cores, PostgreSQL, two renderers, HAProxy, Prometheus, operators, the load generator, and one
+// fault per minute. Requires that no alarm and no acknowledgement is lost or recorded twice, that two cores never poll at once,
+// that operators are blind for at most 10 s per fault, that memory and descriptors do not grow, and that alerts fire and clear.
+// MINUTES: duration. SEED: order of the faults. FAULT_S: seconds from one fault to the next. ONLY: names of faults, separated
+// by commas. build/soak-host.txt has the table after each fault.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, writeFileSync } from 'node:fs';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Replays an hour of temperatures recorded on a rig through Modbus at 60 times the speed. The history must return each tag within its
-// deviation, and a spike, a gap and the changes of quality exactly.
+// Replays an hour of temperatures recorded on a rig through Modbus at 60 times the speed. The history must return each tag
+// within its deviation; a spike, a gap and changes of quality exactly.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -11,7 +11,7 @@ import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv');
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : existsSync(SERIES) ? false : `${SERIES} is not there`;
-// FAR_S: largest distance, in seconds of wall clock, between a read and its nominal time
+// FAR_S: largest deviation, in seconds of wall clock, of a read from its nominal time
 const SPEED = 60, WALL_S = 60, WITHIN = 0.2, FAR_S = 0.35;
 const BACK_S = 4; // seconds until a device that answers again is polled again
 const CODES = { Bad_CommunicationError: 0x80050000, Uncertain_NoCommunicationLastUsableValue: 0x408f0000, Bad_NoCommunication: 0x80310000 };

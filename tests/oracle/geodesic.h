@@ -19,11 +19,11 @@ struct oracle_mesh { /* a manifold mesh; triangles: 3 indices each */
 /* Returns the vertex at position p, within 1e-5, or -1. */
 long oracle_vertex_at(const struct oracle_mesh *mesh, const float p[3]);
 
-/* Computes distances from the point with these weights on a triangle to every vertex (Xin & Wang 2009). Returns false if the mesh is not
-   a manifold or CGAL failed. */
+/* Computes distances from the point with these barycentric weights on a triangle to every vertex (Xin & Wang 2009). Returns
+   false if the mesh is not a manifold or CGAL failed. */
 bool oracle_distances(const struct oracle_mesh *mesh, size_t triangle, const double weights[3], double *distances);
 
-/* Computes the outer surface of two closed meshes. The caller frees positions and triangles of the result with free(). */
+/* Computes the outer surface of two closed meshes. The caller frees the result's positions and triangles with free(). */
 bool oracle_union(const struct oracle_mesh *a, const struct oracle_mesh *b, struct oracle_mesh *result);
 
 #ifdef __cplusplus

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A slow link: forwards TCP connections to a port of this machine, limits the bytes per second from there and delays both directions.
-   Its socket buffers are small, so that excess data waits at the sender, as on a real link. Runs until its standard input ends.
+/* A slow link: forwards TCP connections to a port of this machine, limits the bytes per second received from there and delays
+   both directions. Its socket buffers are small, so that excess data waits at the sender, as on a real link. Runs until its
+   standard input ends.
 
    usage: relay PORT BYTES_PER_S DELAY_MS   (prints "relay: listening PORT") */
 #include <arpa/inet.h>
@@ -161,7 +162,7 @@ int main(int argc, char **argv)
     fflush(stdout);
     for (char byte = 1; byte;) {
         struct pollfd waits[2] = { { .fd = listener, .events = POLLIN }, { .fd = STDIN_FILENO, .events = POLLIN } };
-        poll(waits, 2, 1); /* waiting in steps of 1 ms is fine enough for all links */
+        poll(waits, 2, 1); /* polls in steps of 1 ms, which is fine enough for all links */
         if (waits[0].revents)
             accept_one(listener, links, atoi(argv[1]), atof(argv[2]));
         if (waits[1].revents && read(STDIN_FILENO, &byte, 1) <= 0)

@@ -44,7 +44,7 @@ struct facility {
     long flange; /* index of the mesh that all flanges share */
 };
 
-struct pipe_mesh { /* a tube of rows x around vertices, closed in the second direction */
+struct pipe_mesh { /* a tube with rows x around vertices, closed in the second direction */
     float (*places)[3], (*normals)[3];
     uint32_t *indices;
     size_t vertices, corners;
@@ -151,7 +151,7 @@ static void make_tank(struct pipe_mesh *mesh, int rows, int around, double radiu
     mem_free(rings);
 }
 
-/* Makes a pipe run in the plane z = 1 m with quarter bends to the left and right alternately. */
+/* Makes a pipe run in the plane z = 1 m with quarter bends alternately to the left and to the right. */
 static void make_run(struct pipe_mesh *mesh, int rows, int around, double radius, double length)
 {
     struct pipe_ring *rings = mem_array((size_t)rows, sizeof(*rings));
@@ -208,7 +208,7 @@ static void add_sensors(struct facility *f, long asset, const struct pipe_mesh *
     }
 }
 
-/* Distributes tags to assets in turn; each further round uses the next group. */
+/* Assigns tags to assets in turn; each further round uses the next group. */
 static void add_singles(struct facility *f, long asset, const struct pipe_mesh *body, const double at[3])
 {
     for (long tag = asset, group = 0; tag < f->options.singles; tag += f->options.assets, group++) {

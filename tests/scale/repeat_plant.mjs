@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes a plant with many copies of a real one side by side, each with its own names. usage: repeat_plant.mjs MODEL.rvm COPIES OUT.rvm
-// MODEL.att, if it exists, becomes OUT.att.
+// Writes a plant with many copies of a real one side by side, each with its own names. usage: repeat_plant.mjs MODEL.rvm COPIES
+// OUT.rvm MODEL.att, if it exists, becomes OUT.att.
 import { closeSync, existsSync, openSync, readFileSync, writeFileSync, writeSync } from 'node:fs';
 import { copyGroup, readRvm, writeRvm } from '../e2e/support/rvm_file.mjs';
 

@@ -6,7 +6,7 @@
 
 /* Adds a closed box of 12 triangles and 8 vertices as a node of its own, in the model's units and axes. Returns the node's mesh. */
 int boxes_add(struct model_maker *maker, const char *node, const double low[3], const double high[3]);
-/* Adds a primitive to a mesh. mode: as glTF numbers it (0 points, 1 lines, 4 triangles). */
+/* Adds a primitive to a mesh. mode: glTF's number (0 points, 1 lines, 4 triangles). */
 void boxes_add_primitive(struct model_maker *maker, int mesh, int mode, const float (*corners)[3], size_t count);
 /* Writes FOLDER/NAME and leaves the maker empty. */
 void boxes_write(struct model_maker *maker, const char *folder, const char *name);

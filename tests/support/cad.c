@@ -126,12 +126,12 @@ static void on_torus(const double size[3], double u, double v, double out[3])
     out[2] = size[0] * sin(2 * PI * v);
 }
 
-/* Pipe whose axis runs along a circle about (0, 1), then along the mirror image of that arc at its end. */
+/* Pipe whose axis follows an arc about (0, 1), then the mirror image of that arc at its end. */
 static void on_bent_pipe(const double size[3], double u, double v, double out[3])
 {
     const double bend = 0.75 * PI;
     double s = (u < 0.5 ? u : 1 - u) * 2 * bend, x = sin(s), y = 1 - cos(s), nx = -sin(s), ny = cos(s);
-    if (u >= 0.5) { /* the second bend is the first one, rotated by half a turn about its end */
+    if (u >= 0.5) { /* the second bend is the first one rotated by half a turn about its end */
         x = 2 * sin(bend) - x;
         y = 2 * (1 - cos(bend)) - y;
     }
@@ -269,7 +269,7 @@ static bool in_thin_box(const int size[3], const int cell[3])
 void cad_sphere(struct cad *cad, struct cad_random *random, int cells)
 {
     make_block(cad, random, &(struct block){ { cells, cells, cells }, in_cube });
-    for (size_t v = 0; v < cad->vertex_count; v++) { /* projects the cube onto the sphere; its squares are spread evenly over the angle */
+    for (size_t v = 0; v < cad->vertex_count; v++) { /* projects the cube onto the sphere, with its squares spaced evenly in angle */
         double p[3], length = 0;
         for (int axis = 0; axis < 3; axis++) {
             p[axis] = tan((2 * (double)cad->positions[v][axis] / cells - 1) * PI / 4);
@@ -454,7 +454,7 @@ static int *choose_patches(const struct cad *from, struct cad_random *random)
     return patch;
 }
 
-/* Moves vertices where patches meet towards the centre of one of their triangles, which opens gaps between the patches. */
+/* Moves vertices on the seams between patches towards the centre of one of their triangles, which opens gaps between the patches. */
 static void break_to_patches(struct cad *to, const struct cad *from, struct cad_random *random, uint32_t *vertex_of)
 {
     int *patch = choose_patches(from, random), *owner = mem_array(from->vertex_count, sizeof(*owner));

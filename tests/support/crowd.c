@@ -20,7 +20,7 @@
 #include "value/quality.h"
 
 static const double GAP = 1.01; /* distance between the centres of neighbours, in multiples of their size */
-/* width divided by height of the ground area, which fills a wide picture when seen obliquely from above */
+/* width divided by height of the ground area, chosen to fill a wide picture when seen obliquely from above */
 static const double ASPECT = 1.0;
 
 struct places { /* positions of the sensors, in the asset's frame */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant for benchmarks: many instances of one model in a grid, each with sensors of its own. It is made of files and really prepared. */
+/* A plant for benchmarks: many instances of one model in a grid, each with its own sensors. It is written as files and really prepared. */
 #ifndef TESTS_SUPPORT_CROWD_H
 #define TESTS_SUPPORT_CROWD_H
 #include <stdint.h>

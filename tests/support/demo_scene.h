@@ -19,7 +19,7 @@ struct demo_scene {
     struct renderer *renderer;
 };
 
-/* Returns false if the demo is not prepared, or if there is no renderer. Call demo_scene_close() in both cases. */
+/* Returns false if the demo is not prepared or there is no renderer. Call demo_scene_close() in both cases. */
 static inline bool demo_scene_open(struct demo_scene *demo)
 {
     struct diag diag = { 0 };

@@ -69,7 +69,7 @@ static uint16_t near_symbol(const struct depth_read *read, struct payload_bytes 
     return symbol(bytes, n.left > far ? n.left : n.up > far ? n.up : n.corner > far ? n.corner : far);
 }
 
-/* Returns the mask bit (x, y) of the whole grid for the prediction in a cell; 0 beyond the edge. */
+/* Returns the mask bit (x, y) of the whole grid, as used to predict masks in `cell`; 0 beyond the edge. */
 static int bit_at(const struct depth_read *read, int cell, int x, int y)
 {
     int side = read->wire.mask_side, other = y / side * read->wire.columns + x / side;

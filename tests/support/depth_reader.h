@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads depth grids as PROTOCOL.md describes them, written without the code of the server. */
+/* Reads depth grids as described in PROTOCOL.md, without using the server's code. */
 #ifndef TESTS_SUPPORT_DEPTH_READER_H
 #define TESTS_SUPPORT_DEPTH_READER_H
 #include "render/depth_grid.h"

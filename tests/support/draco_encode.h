@@ -20,8 +20,8 @@ struct draco_input {
     bool sequential; /* true: sequential encoding; false: edgebreaker */
 };
 
-/* Returns the compressed mesh; the caller frees it with mem_free. *vertex_count: number of vertices that it decodes to. Unique ids: 0
-   positions, then normals, then colours. Aborts on failure. */
+/* Returns the compressed mesh; the caller frees it with mem_free. *vertex_count: number of vertices that it decodes to. Unique
+   ids: 0 for positions, followed by normals, then colours. Aborts on failure. */
 unsigned char *draco_encode(const struct draco_input *input, size_t *size, uint32_t *vertex_count);
 
 #ifdef __cplusplus

@@ -14,7 +14,7 @@ struct gltf_case {
 /* Set-up and tear-down for cmocka; the state is a struct gltf_case. */
 int gltf_case_set_up(void **state);
 int gltf_case_tear_down(void **state);
-/* Reads a model in place of the last one. c->why says what is wrong if c->good is false. */
+/* Reads a model, replacing the last one. If c->good is false, c->why says what is wrong. */
 void gltf_case_read(struct gltf_case *c, const char *path);
 /* writes the bytes to a file in the folder and reads it */
 void gltf_case_load(struct gltf_case *c, const char *name, const void *bytes, size_t size);

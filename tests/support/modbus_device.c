@@ -29,7 +29,7 @@ struct device_thread {
     modbus_mapping_t *mapping, *wrong;
     int listen_fd, stop_fd;
     int line_fd; /* the terminal's slave end, kept open so that the terminal survives while nobody else has it open */
-    int header;  /* number of bytes before the function code; the last of them is the unit */
+    int header;  /* number of bytes before the function code; the last of them is the unit number */
     int clients[MAX_CLIENTS];
     struct {
         int64_t since_ns, heard_ns;
@@ -76,7 +76,7 @@ static bool stopped_within(struct device_thread *t, int ms)
     return poll(&stop, 1, ms) > 0;
 }
 
-/* Writes the answer that libmodbus would send into `reply`; a socket pair captures it. Returns its length. */
+/* Writes the answer that libmodbus would send into `reply`, captured through a socket pair. Returns its length. */
 static int catch_reply(struct device_thread *t, const uint8_t *request, int bytes, modbus_mapping_t *mapping, uint8_t *reply)
 {
     int pair[2], fd = modbus_get_socket(t->modbus);
@@ -99,7 +99,7 @@ static void drip(struct device_thread *t, int fd, const uint8_t *request, int by
             break;
 }
 
-/* Sends a wrong answer with the transaction number of `behind` requests ago. */
+/* Sends a wrong answer with the transaction number of an earlier request, `behind` requests ago. */
 static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request, int bytes, int behind)
 {
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -112,7 +112,7 @@ static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request,
     (void)!write(fd, reply, (size_t)count); /* the client may have closed the connection */
 }
 
-/* Makes the answer of another unit; its RTU checksum must cover the other unit's number. */
+/* Makes the answer of another unit, whose RTU checksum must cover the other unit's number. */
 static int catch_foreign(struct device_thread *t, const uint8_t *request, int bytes, uint8_t *reply)
 {
     uint8_t foreign[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -191,7 +191,7 @@ static void accept_client(struct device_thread *t)
     atomic_fetch_add(&t->device->connections, 1);
 }
 
-/* Directs the answer to the newest connection, as a serial device server does, which forwards the bytes of its serial line. */
+/* Directs the answer to the newest connection, like a serial device server, which forwards the bytes of its serial line. */
 static void turn_to_newest(struct device_thread *t)
 {
     struct pollfd pending = { .fd = t->listen_fd, .events = POLLIN };

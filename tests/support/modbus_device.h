@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus device for tests, on TCP, RTU over TCP or a pseudo terminal: a libmodbus server on a thread, which can be told to misbehave.
-   Holding register r holds the value r. */
+/* A Modbus device for tests, on TCP, RTU over TCP or a pseudo terminal: a libmodbus server on its own thread, which can be told
+   to misbehave. Holding register r has the value r. */
 #ifndef TESTS_MODBUS_DEVICE_H
 #define TESTS_MODBUS_DEVICE_H
 #include <stdatomic.h>
@@ -31,7 +31,7 @@ struct modbus_device { /* members may be set before the start or while the devic
     _Atomic int bad_times;               /* number of requests that get bad_code; 0: all */
     _Atomic int said_length;             /* length that the answers of DEVICE_MEASURED state */
     _Atomic int said_unit;               /* unit number that the answers of DEVICE_RENAMED state */
-    _Atomic int answers_per_connection;  /* answers before the connection is closed, or with `hushes` falls silent; 0: unlimited */
+    _Atomic int answers_per_connection;  /* answers before the connection is closed or, with `hushes`, falls silent; 0: unlimited */
     _Atomic bool hushes, resets;         /* resets: resets connections instead of closing them */
     _Atomic int deaf_ms;                 /* ignores requests that arrive sooner after connecting */
     _Atomic int first_late_ms;           /* delay of a connection's first answer */
@@ -39,12 +39,12 @@ struct modbus_device { /* members may be set before the start or while the devic
     _Atomic int idle_ms;                 /* closes a connection that was idle for this long; 0: never */
     _Atomic int mute_register;           /* requests for this register are never answered; 0: none */
     _Atomic int dead_unit;               /* unit whose requests get exception 11; -1: all units; 0: none */
-    _Atomic int dead_late_ms;            /* delay of the answer for dead_unit, during which the device answers no other request either */
+    _Atomic int dead_late_ms;            /* delay of the answer for dead_unit, during which the device answers no other request */
     _Atomic int silent_unit;             /* unit that never answers; 0: none */
     _Atomic int requests, refused, connections;
     _Atomic int functions;               /* bit f: function code f was requested */
     _Atomic int most;                    /* largest number of registers or bits in one request */
-    /* last_ns: time of the last answer; least_gap_ns: shortest pause between an answer and the next request, 0: not known yet */
+    /* last_ns: time of the last answer; least_gap_ns: shortest pause between an answer and the next request, 0: unknown */
     _Atomic int64_t last_ns, least_gap_ns;
     enum device_wire wire;               /* set before the start; RTU knows unit 1 only */
     const char *address;                 /* address to listen on; NULL: 127.0.0.1 */

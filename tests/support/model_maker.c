@@ -80,7 +80,7 @@ void maker_require(struct model_maker *maker, const char *extension)
     maker_add(maker, "extensionsUsed", json_string(extension));
 }
 
-/* Returns the JSON of the model. Its root nodes are those that are no node's child; the loader finds them without a scene. */
+/* Returns the model's JSON. Its root nodes are those that are not children; the loader finds them without a scene. */
 static char *json_of(struct model_maker *maker, const char *uri)
 {
     json_t *buffers = json_object_get(maker->root, "buffers"), *first = json_array_get(buffers, 0);

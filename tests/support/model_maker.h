@@ -18,7 +18,7 @@ struct model_maker {
 void maker_init(struct model_maker *maker);
 void maker_finish(struct model_maker *maker);
 
-/* Functions that return int return the index of what they appended. Lists in the JSON are created as needed. */
+/* Functions that return int append something and return its index. Lists in the JSON are created as needed. */
 int maker_add(struct model_maker *maker, const char *list, json_t *object);
 /* appends a buffer view over these bytes; stride 0: the view states no stride */
 int maker_view(struct model_maker *maker, const void *bytes, size_t count, int stride);
@@ -30,9 +30,9 @@ int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *mo
 void maker_require(struct model_maker *maker, const char *extension);
 json_t *maker_get(struct model_maker *maker, const char *list, int number);
 
-/* Return the file; the caller frees it with mem_free: a GLB, or JSON with its buffer in a data URI. */
+/* Return the file, which the caller frees with mem_free: a GLB, or JSON with its buffer in a data URI. */
 char *maker_glb(struct model_maker *maker, size_t *size);
-/* Returns a GLB file with one node that has this mesh; mem_free. */
+/* Returns a GLB file with one node that has this mesh; free with mem_free. */
 char *maker_glb_of(const struct cad *cad, const char *node, size_t *size);
 char *maker_gltf(struct model_maker *maker, size_t *size);
 char *maker_data_uri(const char *kind, const void *bytes, size_t count);

@@ -126,7 +126,7 @@ static void strips(struct model_maker *m, const struct wavy_sheet *s, struct see
     finish(m, seed);
 }
 
-/* Each square is a fan of four corners; all fans use the same index accessor. Also adds lines and points, which must be ignored. */
+/* Each square is a fan of four corners; all fans share one index accessor. Also adds lines and points, which must be ignored. */
 static void fans(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, json_null()), list = maker_numbers(m, (uint8_t[4]){ 0, 1, 2, 3 }, 4, UBYTE, 4, "SCALAR");
@@ -211,7 +211,7 @@ static void quantized(struct model_maker *m, const struct wavy_sheet *s, struct 
 
 /* --- meshopt ------------------------------------------------------------------------------------------------------------- */
 
-/* Appends a buffer view that exists compressed only, in buffer 0; buffer 1 has no data and only gives the uncompressed size. */
+/* Appends a buffer view that exists only compressed, in buffer 0; buffer 1 has no data and only states the uncompressed size. */
 static int packed_view(struct model_maker *m, const void *bytes, size_t count, size_t stride, const char *mode, const char *filter)
 {
     bool list = strcmp(mode, "TRIANGLES") == 0, sequence = strcmp(mode, "INDICES") == 0;
@@ -267,7 +267,7 @@ static void meshopt_filters(struct model_maker *m, const struct wavy_sheet *s, s
     finish(m, seed);
 }
 
-/* Two instances; one is rotated upside down by a quaternion that was encoded with meshopt's filter. */
+/* Two instances; a quaternion encoded with meshopt's filter rotates one of them upside down. */
 static void meshopt_instances(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     const float turns[2][4] = { { 0, 0, 0, 1 }, { 1, 0, 0, 0 } }, places[2][3] = { { 0, 0, 0 }, { 0, 0, 5 } };
@@ -317,7 +317,7 @@ static void draco_sequential(struct model_maker *m, const struct wavy_sheet *s, 
 
 /* --- trees, instances, materials ----------------------------------------------------------------------------------------- */
 
-/* Shared meshes: plain, mirrored, deep in a node tree, and placed by a matrix. */
+/* Shared meshes: plain, mirrored, deep in a node tree, and positioned by a matrix. */
 static void tree(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, plain_primitive(m, s));
@@ -382,7 +382,7 @@ static void textured_by_uri(struct model_maker *m, const struct wavy_sheet *s, s
     finish(m, seed);
 }
 
-/* Textures on two sets of texture coordinates; a second texture uses the second set with a transform of its own. */
+/* Textures on two sets of texture coordinates; a second texture uses the second set with its own transform. */
 static void textured_twice(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int image = maker_add(m, "images", json_pack("{s:i,s:s}", "bufferView", maker_view(m, png, sizeof(png), 0), "mimeType", "image/png"));

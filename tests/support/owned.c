@@ -20,7 +20,7 @@ static struct {
         void *resource;
     } *items;
     size_t count, capacity;
-    pid_t process; /* id of the process that owns the resources: a forked child releases nothing of its parent's */
+    pid_t process; /* id of the process that owns the resources: a forked child releases none of its parent's */
     pthread_mutex_t lock;
 } owned = { .lock = PTHREAD_MUTEX_INITIALIZER };
 

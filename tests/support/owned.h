@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resources that belong to the running test: they are released after its tear-down, the newest first. Resources of a group's set-up, and
-   of programs without tests, are released when the program exits. Thread: any. */
+/* Resources that belong to the running test and are released after its tear-down, the newest first. Resources of a group's
+   set-up, and of programs without tests, are released when the program exits. Thread: any. */
 #ifndef TESTS_OWNED_H
 #define TESTS_OWNED_H
 #include <jansson.h>
@@ -20,7 +20,7 @@ size_t owned_count(void);
 /* Releases all but the `kept` oldest resources. */
 void owned_release(size_t kept);
 
-/* Each of these functions creates a resource and hands it over with owned_add(), so that its caller never releases it. */
+/* Each of these functions creates a resource and hands it over with owned_add(), so that its caller need not release it. */
 json_t *test_json(json_t *json); /* hands `json` over and returns it; accepts NULL */
 char *test_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 struct log *test_log(void); /* returns a log that prints errors only */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant file and a tag list in a folder of their own, loaded, and assertions on what was found in them. For cmocka tests. */
+/* A plant file and a tag list in their own folder, loaded, and assertions on the findings about them. For cmocka tests. */
 #ifndef TESTS_PLANT_CASE_H
 #define TESTS_PLANT_CASE_H
 #include "plant/plant.h"
@@ -12,13 +12,13 @@ struct plant_case {
 
 int plant_case_set_up(void **state);
 int plant_case_tear_down(void **state);
-/* Writes both files (the list as tags.csv) and loads them in place of those loaded before. */
+/* Writes both files (the list as tags.csv) and loads them, replacing those loaded before. */
 void plant_case_load(struct plant_case *c, const char *yaml, const char *csv);
 void plant_case_forget(struct plant_case *c);
 void plant_case_assert_loaded(struct plant_case *c, int warnings);
 
 struct expected_finding {
-    const char *file; /* end of the path of the file that the finding is about */
+    const char *file; /* end of the path of the file to which the finding refers */
     int line, column;
     const char *words; /* words that the text of the finding contains */
 };

@@ -9,7 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* The same numbers as in tests/e2e/support/ports.mjs. All ports are below the system's own range for outgoing connections
+/* The same numbers as in tests/e2e/support/ports.mjs. All ports lie below the system's own range for outgoing connections
    (net.ipv4.ip_local_port_range begins at 32768). */
 enum { FIRST = 20000, COUNT = 1500, EACH = 4, LOCKS = FIRST + COUNT * EACH };
 

@@ -3,8 +3,8 @@
 #ifndef TESTS_PORTS_H
 #define TESTS_PORTS_H
 
-/* Returns a port at which nothing listens, with the three after it also free. No other test gets them while this process lives, and the
-   system does not use them for outgoing connections. Aborts if there is none. */
+/* Returns a port on which nothing listens; the three after it are free too. No other test gets them while this process lives,
+   and the system does not use them for outgoing connections. Aborts if there are none. */
 int free_port(void);
 
 #endif

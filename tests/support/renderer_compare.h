@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads numbers instead of colours from a renderer, and turns off what saves it time. Thread: the one that made the GL context. */
+/* Reads numbers instead of colours from a renderer, and disables its optimisations. Thread: the one that created the GL context. */
 #ifndef TESTS_RENDERER_COMPARE_H
 #define TESTS_RENDERER_COMPARE_H
 #include <stdbool.h>
@@ -12,16 +12,16 @@ struct renderer; /* render/renderer.h */
 struct snapshot;
 struct view;
 
-/* Occlusion culling runs only for frames with at least this many triangles; INT_MAX: never (clusters outside the frustum are still culled).
-   The initial value is the number from which culling saves time. */
+/* Occlusion culling runs only for frames with at least this many triangles; INT_MAX: never (clusters outside the frustum are
+   still culled). By default this is the number from which culling saves time. */
 void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles);
-/* Returns how many assets occlusion culling removed from the last frame that GL drew; waits for that frame. */
+/* Returns how many assets occlusion culling removed from the last frame drawn by GL; waits for that frame. */
 size_t renderer_occluded_count(const struct renderer *renderer);
 /* Draws each asset with GL calls of its own (one_by_one true) instead of batching equal ones. */
 void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
-/* Fills `out` with the field's values at one sample per pixel, rows from the top. Channels: position in the range (unclamped, always
-   linear), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near, 0 far). finest:
-   uses the finest levels of detail only. Returns false on failure, logged. */
+/* Fills `out` with the field's values at one sample per pixel, rows from the top. Channels: position in the range (unclamped,
+   always linear), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near,
+   0 far). finest: uses only the finest levels of detail. Returns false on failure, logged. */
 bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4]);
 
 #endif

@@ -13,8 +13,8 @@
 
 #define MAX_BYTES ((size_t)1 << 20)
 
-/* Changes one byte, a run of bytes, a digit, or cuts off the end. Only the last changes the length, so that lengths in headers stay
-   valid otherwise. */
+/* Changes one byte, a run of bytes or a digit, or cuts off the end. Only the last changes the length, so that otherwise lengths
+   in headers stay valid. */
 static size_t change(uint8_t *bytes, size_t count)
 {
     if (count == 0)

@@ -51,7 +51,7 @@ int rig_run(struct rig *rig)
     return failed;
 }
 
-/* Returns the folder in which tests/run lets programs share expensive results: named after a hash of what they depend on. NULL: nothing
+/* Returns the folder in which tests/run lets programs share expensive results, named after a hash of the inputs. NULL: nothing
    is shared. */
 static char *shared_folder(const struct scene *scene)
 {
@@ -121,7 +121,7 @@ static uint32_t color_hash(uint32_t r, uint32_t g, uint32_t b)
 
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
 {
-    enum { SLOTS = 1024 }; /* hash table by colour with linear probing; the first of equal colours is found */
+    enum { SLOTS = 1024 }; /* hash table by colour with linear probing, which finds the first of equal colours */
     static const struct colormap *known;
     static int16_t places[SLOTS];
     if (known != map) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared parts of GL tests: the context that PLANTCAST_GL names, a plant to draw, and pictures of it. */
+/* Shared parts of GL tests: the context named by PLANTCAST_GL, a plant to draw, and pictures of it. */
 #ifndef TESTS_SUPPORT_RIG_H
 #define TESTS_SUPPORT_RIG_H
 #include "plant/colormaps.h"
@@ -13,7 +13,7 @@ struct rig {
     struct workers *workers;
 };
 
-/* Returns false if there is no such context; then prints a TAP line, and the program should exit with success. */
+/* Returns false if there is no such context; it then prints a TAP line, and the program should exit with success. */
 bool rig_init(struct rig *rig, const char *test);
 void rig_finish(struct rig *rig);
 /* Makes the rig, runs the tests of the program (tests/support/test.h) and finishes the rig. Returns the exit code for main. */
@@ -26,10 +26,10 @@ struct stand { /* one plant and its renderer */
     struct renderer *renderer;
     struct snapshot *snapshot;
 };
-/* Makes a renderer for the toy (a plant made in memory), and takes ownership of the toy. */
+/* Makes a renderer for the toy (a plant made in memory) and takes ownership of the toy. */
 void stand_init(struct stand *stand, struct rig *rig, struct toy *toy);
 void stand_finish(struct stand *stand);
-/* Writes the i-th camera of a tour: all around, from far away, from below and from among the pipes, where triangles pass the eye. */
+/* Writes the i-th camera of a tour: all around, from far away, from below, and among the pipes, where triangles extend behind the eye. */
 void stand_look(const struct stand *stand, int i, struct view *view);
 struct frame *stand_draw(struct stand *stand, const struct view *view); /* draws the view; never returns NULL */
 
@@ -38,10 +38,11 @@ bool is_color(const uint8_t *bgrx, const uint8_t rgb[3]); /* returns whether the
 bool is_grey(const uint8_t *bgrx);
 /* Returns the index (0..255) of a colour that is exactly in the map, or -1. */
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx);
-/* Returns by how many map entries a pixel's colour differs from that at `place` (0..1, or outside); -1: the colour is not in the map. */
+/* Returns by how many map entries a pixel's colour differs from the colour at `place` (0..1, or outside); -1: the colour is not
+   in the map. */
 int map_colors_off(const struct colormap *map, const uint8_t *bgrx, double place);
-/* Returns the index of the map's nearest colour in CIELAB, which is what a reader of the legend sees. deuteranope: compares as a reader
-   without green vision sees both colours (Machado, Oliveira and Fernandes, 2009). */
+/* Returns the index of the map's nearest colour in CIELAB, which is the one that a reader of the legend picks. deuteranope:
+   compares the colours as a reader without green vision sees them (Machado, Oliveira and Fernandes, 2009). */
 int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deuteranope);
 
 #endif

@@ -48,7 +48,7 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Adds the triangles of a (columns + 1) x (rows + 1) grid of vertices that were just added, row by row. */
+/* Adds the triangles of a (columns + 1) x (rows + 1) grid of vertices just added row by row. */
 static void add_grid(struct test_shape *shape, uint32_t first, int columns, int rows)
 {
     for (int y = 0; y < rows; y++)

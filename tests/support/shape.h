@@ -24,7 +24,7 @@ struct test_shape { /* zero-initialise */
 /* Adds a grid of n x n squares in a plane through `corner`, along u and v; its normal is u x v. */
 void shape_plate(struct test_shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n);
 void shape_box(struct test_shape *shape, uint32_t material, const double low[3], const double high[3]);
-/* Adds a cylinder or cone from a to b; the radius goes from ra to rb. round: not 0 for round caps, 0 for flat ones. */
+/* Adds a cylinder or cone from a to b with radii ra and rb there. round: 0 for flat caps, otherwise round ones. */
 void shape_cylinder(struct test_shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round);
 /* Adds a sphere of 2 n x n squares. */
 void shape_sphere(struct test_shape *shape, uint32_t material, const double middle[3], double radius, int n);

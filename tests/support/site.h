@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A whole plant from its file, prepared, with a renderer and random readings. */
+/* A prepared plant loaded from its file, with a renderer and random readings. */
 #ifndef TESTS_SUPPORT_SITE_H
 #define TESTS_SUPPORT_SITE_H
 #include "tests/support/rig.h"
@@ -17,8 +17,8 @@ struct site {
 };
 
 bool site_is_there(const char *model); /* returns whether ../shared/data/models has the model */
-/* Loads the plant. name: of the folder into which it is prepared, once for all programs that run at a time; NULL: it is prepared
-   already. Returns false on failure. */
+/* Loads the plant. name: of the folder into which it is prepared, once for all programs that run at the same time; NULL:
+   already prepared. Returns false on failure. */
 bool site_init(struct site *site, struct rig *rig, const char *path, const char *name);
 void site_finish(struct site *site);
 /* Sets the camera: from a random side of a random asset with a field, at `away` times the asset's size. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene in static memory. The protocol's test vectors name its groups and assets. */
+/* A scene in static memory whose groups and assets are named in the protocol's test vectors. */
 #include "tests/support/small_scene.h"
 
 #include <math.h>

@@ -14,11 +14,11 @@ struct frame *soft_draw_anew(struct stand *stand, const struct view *view);
 struct frame *soft_draw_by_gl(struct stand *stand, const struct view *view);
 /* returns the largest difference of the three colour channels */
 int soft_difference(const struct frame *a, const struct frame *b, int pixel);
-/* Asserts that at most the share may_differ of the pixels differs, where edges, shadow borders or thin lines run through them. */
+/* Asserts that at most the fraction may_differ of the pixels differs; these are at edges, shadow borders or thin lines. */
 void soft_assert_same_pixels(const struct frame *soft, const struct frame *gl, double may_differ);
 /* Draws both frames and asserts that pixels, markers and labels are the same. */
 void soft_assert_like_gl(struct stand *stand, const struct view *view, double may_differ);
-/* main() of a test: makes the rig and the stand of a toy. Skipped on machines with a GPU. */
+/* main() of a test: makes the rig and a toy plant's stand. Skipped on machines with a GPU. */
 int soft_run(const char *name, struct rig *rig, struct stand *stand, struct toy *(*make_toy)(void));
 
 #endif

@@ -16,12 +16,12 @@ extern struct cad_random chance;
 /* Returns a random number between low and high. */
 double between(double low, double high);
 
-/* Returns the surface of the shape, made with the default parameters. Fails the test if there is none. */
+/* Returns the surface of the shape with default parameters. Fails the test if there is none. */
 struct surface *surface_of(const struct cad *cad);
 
-/* Returns the value at a vertex that these readings of all sensors give. */
+/* Returns the value at a vertex that results from these readings of all sensors. */
 double influence_value(const struct influence *influence, const double *readings, size_t vertex);
-/* Adds a triangle at x = 5, apart from a shape of size 1. */
+/* Adds a triangle at x = 5, separate from a shape of size 1. */
 void add_triangle_apart(struct cad *cad);
 
 /* Set-up and tear-down of a cmocka group. */

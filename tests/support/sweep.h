@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Says how much of a large set of random views, shapes or faults a test tries: all of it if PLANTCAST_LONG=1 (`make test-long`). */
+/* How much of a large set of random views, shapes or faults a test tries: all of it if PLANTCAST_LONG=1 (`make test-long`). */
 #ifndef TESTS_SWEEP_H
 #define TESTS_SWEEP_H
 #include <stdbool.h>
@@ -20,15 +20,15 @@ static inline int sweep(int whole, int part)
     return sweep_is_whole() ? whole : part;
 }
 
-/* Returns whether item i of a row is tried: every item in a long run, otherwise every n-th, with another offset in each row, so that n
-   rows together try each item. */
+/* Returns whether item i of a row is tested: in a long run every item, otherwise every nth, with a different offset in each
+   row, so that n rows together cover each item. */
 static inline bool sweep_takes(int row, int i, int n)
 {
     return sweep_is_whole() || i % n == row % n;
 }
 
-/* Returns the seed of a test's random numbers and prints it: PLANTCAST_SEED if set; otherwise always the same by default, so that
-   failures repeat, and another one in each long run. */
+/* Returns the seed of a test's random numbers and prints it: PLANTCAST_SEED if set; otherwise a new one in each long run, and
+   always the same in other runs, so that failures repeat. */
 static inline uint64_t sweep_seed(void)
 {
     const char *given = getenv("PLANTCAST_SEED");

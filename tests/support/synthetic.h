@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A made-up plant of point clouds with sensors, as plain structs, for tests and benchmarks of the field. */
+/* A synthetic plant of point clouds with sensors, as plain structs, for tests and benchmarks of the field. */
 #ifndef TESTS_SYNTHETIC_H
 #define TESTS_SYNTHETIC_H
 #include "scene/scene.h"
@@ -8,7 +8,7 @@
 struct synthetic_params {
     size_t vertices, sensors; /* number on each asset; sensor i is exactly at vertex i */
     size_t assets;            /* number of instances of the file; 0: one */
-    size_t island;            /* number of vertices, the last ones, that no sensor reaches along the surface */
+    size_t island;            /* number of vertices, at the end, that no sensor reaches along the surface */
     double min, max;          /* range of the only group; 0, 0: 0..100 */
     uint64_t seed;
 };
@@ -22,17 +22,17 @@ struct synthetic {
     void *bytes;
 };
 
-/* Creates the plant. Positions are random in a box of 10 x 6 x 4 m. Distances along the surface are the sums of the distances along the
-   three axes. Tag number: asset * sensors + sensor. Never returns NULL. */
+/* Creates the plant. Positions are random in a box of 10 x 6 x 4 m. A distance along the surface is the sum of the distances
+   along the three axes. Tag number: asset * sensors + sensor. Never returns NULL. */
 struct synthetic *synthetic_create(const struct synthetic_params *params);
 #define synthetic_create(...) synthetic_create(&(struct synthetic_params){ __VA_ARGS__ })
 void synthetic_destroy(struct synthetic **synthetic);
 
-/* Returns a random number; the same seed gives the same numbers everywhere. */
+/* Returns a random number; the same seed gives the same numbers on every machine. */
 uint64_t synthetic_random(uint64_t *state);
 double synthetic_random_unit(uint64_t *state); /* returns a number in [0, 1) */
 
-/* Sets a distance along the surface in the file, rounded as files store it. */
+/* Sets a distance along the surface in the file, rounded as in stored files. */
 void synthetic_set_distance(struct synthetic *synthetic, size_t sensor, size_t vertex, float distance_m);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Declares the tests of a program. Each test registers itself, so that none can be forgotten; tests run in the order of the file. */
+/* Declares the tests of a program. Each test registers itself, so that none can be forgotten; they run in the order of the file. */
 #ifndef TESTS_SUPPORT_TEST_H
 #define TESTS_SUPPORT_TEST_H
 #include <math.h>
@@ -18,10 +18,10 @@
 #include "tests/support/sweep.h"
 #include "tests/support/temp.h"
 
-/* Defines a test: TEST(readings_age) { ... }. `state` is what its fixture made. */
+/* Defines a test: TEST(readings_age) { ... }. `state` is what its fixture created. */
 #define TEST(name) TEST_WITH(name, NULL, NULL)
 
-/* Defines a test with fixtures of its own: functions that run before and after it, or NULL. */
+/* Defines a test with its own fixtures: functions that run before and after it, or NULL. */
 #define TEST_WITH(name, set_up, tear_down)                                                                                                 \
     static void name(void **state);                                                                                                        \
     static int name##_ends(void **state)                                                                                                   \
@@ -44,8 +44,8 @@
     }                                                                                                                                      \
     static void name##_on(__attribute__((unused)) argument)
 
-/* Defines set_up() and tear_down() of a fixture: a `type` that is zeroed before each test, then handed to begin(), to the test and to
-   end(). end: NULL if the fixture has only what the test owns (tests/support/owned.h). */
+/* Defines set_up() and tear_down() of a fixture: a `type` that is zeroed before each test, then passed to begin(), to the test
+   and to end(). end: NULL if the test owns everything in the fixture (tests/support/owned.h). */
 #define TEST_FIXTURE(type, begin, end)                                                                                                     \
     static int set_up(void **state)                                                                                                        \
     {                                                                                                                                      \
@@ -73,11 +73,11 @@
 /* Called by the macros above, before main. */
 void test_add(const struct CMUnitTest *test, int line);
 void test_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
-/* Runs a test's tear-down, which may be NULL, and releases what the test owns. Returns what tear_down returned, or 0. */
+/* Runs a test's tear-down, which may be NULL, and releases what the test owns. Returns the result of tear_down, or 0. */
 int test_end(CMFixtureFunction tear_down, void **state);
 
-/* Runs the tests of this program and prints TAP. Returns the number of failures. name: of the group, or NULL for the program's name. A
-   program without main() gets one that calls this with NULL. */
+/* Runs the tests of this program and prints TAP. Returns the number of failures. name: of the group, or NULL for the program's
+   name. A program without main() gets one that calls this with NULL. */
 int tests_run(const char *name);
 /* What the main() of such a program calls instead of tests_run() if an object of the program defines it. */
 int tests_main(void);

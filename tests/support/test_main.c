@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* main() for test programs that have none: the linker takes this object from the archive only then. */
+/* main() for test programs without one: only then does the linker take this object from the archive. */
 #include "tests/support/test.h"
 
 #pragma weak tests_main

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant made in memory, for tests of everything after preprocessing: assets from shapes, with real asset files. */
+/* A plant made in memory, for tests of everything after preprocessing: assets made from shapes, with real asset files. */
 #ifndef TESTS_SUPPORT_TOY_H
 #define TESTS_SUPPORT_TOY_H
 #include "scene/scene.h"
@@ -23,14 +23,14 @@ int toy_add(struct toy *toy, const char *id, struct test_shape *shape, const dou
 /* Adds another instance of asset `of`, with its own tags at the same places; plant_from_shape: column-major, without shear. Returns its
    index. */
 int toy_add_again(struct toy *toy, const char *id, int of, const double plant_from_shape[16]);
-/* Call it after the last asset. Returns readings for every tag, all Bad_WaitingForInitialData. */
+/* Call it after adding the last asset. Returns readings for every tag, all Bad_WaitingForInitialData. */
 struct snapshot *toy_snapshot(const struct toy *toy);
 void toy_set(struct snapshot *snapshot, int tag, double value, uint32_t quality);
 
 /* Sets the eight tags of toy_unit(): one value is beyond the range, one is uncertain and one is bad; `more` is added to all. */
 void toy_fill(struct snapshot *snapshot, double more);
 
-/* Returns a plant with a heat exchanger with 5 sensors on saddles, a tank with 3, and pipes and a pump without sensors. */
+/* Returns a plant with a heat exchanger with 5 sensors, on saddles; a tank with 3 sensors; and pipes and a pump without sensors. */
 struct toy *toy_unit(void);
 
 #endif

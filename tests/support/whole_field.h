@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the field at all vertices of an asset, whose levels of detail are then all valid. */
+/* Computes the field at all vertices of an asset, which makes all of its levels of detail valid. */
 #ifndef TESTS_WHOLE_FIELD_H
 #define TESTS_WHOLE_FIELD_H
 #include "field/field.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares the field of a plant with one asset with a solution on its surface.
+/* Compares the field of a plant that has one asset with a solution on its surface.
    usage: compare numbers PLANT.yaml SOLUTION VALUES.csv   prints one JSON line per interpolation and distance
           compare pictures PLANT.yaml SOLUTION <LIST       each line of LIST: field, solution or error; a file to write; the
                                                            arguments of `plantcast snapshot`; separated by tabs
    parts.py: write_solution() writes SOLUTION. Errors are |field - solution| at the asset's finest vertices, weighted by the surrounding
-   area; the solution there is taken at the nearest point of its skin. */
+   area; the solution is taken at the nearest point of its skin. */
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ struct solution {
     bool *outside;  /* by triangle of the skin: true if the triangle is on the outside */
 };
 
-struct heat_truth { /* the simulated solution, carried over to the vertices of the asset file */
+struct heat_truth { /* the simulated solution, transferred to the vertices of the asset file */
     double *values, *area_m2, *outside_m2;
     size_t count;
 };
@@ -81,7 +81,7 @@ static double triangle_m2(const float a[3], const float b[3], const float c[3])
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
 }
 
-/* Interpolates the solution at the asset's vertices. A triangle counts as outside if the skin triangle nearest to its centre does. */
+/* Interpolates the solution at the asset's vertices. A triangle counts as outside if the skin triangle nearest to its centre is outside. */
 static void find_truth(const struct solution *solution, const struct asset_view *view, struct heat_truth *truth)
 {
     struct bvh *bvh = bvh_create(&solution->skin);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which alarm a wall shows: the highest priority first, then the oldest; several take turns; none during an alarm flood.
+// Which alarm a wall shows: the highest priority first, then the oldest; several take turns; during an alarm flood none.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { AlarmCall, byEquipment, FLOOD, TURN_MS } from '../../clients/web/core/alarm_call.js';

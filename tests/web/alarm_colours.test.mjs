@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarm colours are reserved: each stays apart from every colour of every map by CIEDE2000, for normal sight, deuteranopes and protanopes,
-// and the rims of a ring are seen on each of these colours. Prints the least distances as a table.
+// Alarm colours are reserved: by CIEDE2000, each differs enough from every colour of every map, for normal sight, deuteranopes
+// and protanopes, and the rims of a ring are visible on each of these colours. Prints the smallest distances as a table.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -13,15 +13,15 @@ const SIGHTS = {
     deuteranope: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
     protanope: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
 };
-// Least CIEDE2000 distances. A search of sRGB in steps of 17 found no saturated colours with much larger ones: the maps cover nearly all
-// hues that dichromats tell apart. The rims of the ring make up for it.
+// Smallest allowed CIEDE2000 distances. A search of sRGB in steps of 17 found no saturated colours with much larger ones: the
+// maps cover nearly all hues that dichromats can distinguish. The rims of the ring make up for it.
 const LEAST = { normal: 9, deuteranope: 4.5, protanope: 4 }, LEAST_RIM = 30, LEAST_MUTUAL = 10;
 const RIMS = ['#ffffff', '#1d252d'];
 
 const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
 const dot = (row, c) => row.reduce((sum, factor, i) => sum + factor * c[i], 0);
 
-// Returns [L*, a*, b*] (D65) of an sRGB colour as seen with this sight.
+// Returns [L*, a*, b*] (D65) of an sRGB colour as perceived with this kind of sight.
 function labOf(rgb, sight) {
     const linear = rgb.map((v) => (v <= 10.31475 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
     const seen = SIGHTS[sight].map((row) => Math.max(0, Math.min(1, dot(row, linear))));
@@ -48,7 +48,7 @@ function distance([l1, a1, b1], [l2, a2, b2]) {
     return Math.sqrt(x * x + y * y + z * z + rt * y * z);
 }
 
-// Returns the colours of a map, with those for values below and above its range.
+// Returns the colours of a map, including those for values below and above its range.
 function coloursOf(name) {
     const lines = read(`shaders/maps/${name}`).split('\n'), list = (text) => text.split(',').map(Number);
     const ends = lines.filter((line) => /^# (below|above) /.test(line)).map((line) => list(line.split(' ')[2]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brightness of a wall: darker within its hours, also across midnight, and never while an alarm is shown.
+// Brightness of a wall: dimmed during its hours, even across midnight, but never while an alarm is shown.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { brightness } from '../../clients/web/core/wall.js';

@@ -190,7 +190,7 @@ test('a point is faced from its own side, level, a little from above', () => {
     assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0, 'on top: from where one is');
 });
 
-// Returns how much of the window's limiting side the points fill, and the window's edges on that side.
+// Returns how much of the window the points fill along its limiting axis, and the window's edges on that axis.
 function filled(view, points, [width, height], { left = -1, right = 1, bottom = -1, top = 1 }) {
     const project = projector(view, width, height), at = points.map((point) => project(point));
     const across = at.map(([x]) => (2 * x) / width - 1), up = at.map(([, y]) => 1 - (2 * y) / height);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The position of a card: inside the picture, never over its point, over as few other markers as possible, at most 280 pixels high.
+// The position of a card: inside the picture, never over its point, over as few other markers as possible, at most 280 pixels
+// high.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { cardPlace } from '../../clients/web/app/cards/card_position.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The checks of the source (tests/style, tests/layers, tests/maps) also read files that git does not track yet, but not those that it
+// The source checks (tests/style, tests/layers, tests/maps) also read files that git does not track yet, but not those that it
 // ignores.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';

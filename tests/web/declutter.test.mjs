@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which markers are drawn, by the rule of protocol/LABELS.md: the same test vectors as for the server, and general properties.
+// Which markers are drawn, by the rule of protocol/LABELS.md: with the server's test vectors, and general properties.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -54,7 +54,8 @@ test('from near by all are drawn', () => {
     assert.equal(thinOut(near).length, 900);
 });
 
-// A camera that turns by a quarter of a degree per picture around 2,000 sensors, and one that trembles by less than a tenth of a pixel.
+// A camera that turns by a quarter of a degree per picture around 2,000 sensors, and one that trembles by less than a tenth of
+// a pixel.
 const sensors = Array.from({ length: 2000 }, () => [random(-12, 12), random(-12, 12), random(0, 10)]);
 function drawnFrom(angle, before) {
     const camera = { eye: [40 * Math.cos(angle), 40 * Math.sin(angle), 20], target: [0, 0, 4], up: [0, 0, 1], fov: 45 };
@@ -85,7 +86,8 @@ test('while the camera turns markers stay, and do not come and go', () => {
     assert.ok(changes / shown < 0.02 && flickers < changes / 10);
 });
 
-// A marker at the edge of a crowd may appear with a picture, but then stays: for a shown marker 0.8 of the minimum distance is enough.
+// A marker at the edge of a crowd may appear with a picture, but then stays: once shown, it needs only 0.8 of the minimum
+// distance.
 test('while the camera trembles no marker comes and goes', () => {
     const changed = new Set();
     for (let angle = 1; angle <= 5; angle++) {

@@ -8,7 +8,7 @@ const whole = (seq) => ({ seq, key: true, x: 0, y: 0, width: 64, height: 36, ful
 const part = (seq) => ({ ...whole(seq), key: false, y: 18, height: 18 });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
-// A fake decoder that finishes a frame when the test says so.
+// A fake decoder that finishes a frame when the test tells it to.
 function bench() {
     const started = [], shown = [], failed = [], closed = [];
     let now = 0;

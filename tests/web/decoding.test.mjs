@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which decoder is used, how a decoder is tried before use, and which results are remembered.
+// Which decoder is used, how it is tried before use, and which results are remembered.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Decoding, PLAIN } from '../../clients/web/core/decoding.js';
@@ -61,7 +61,7 @@ function fakeStore() {
     return { kept, getItem: (name) => kept.get(name) ?? null, setItem: (name, value) => kept.set(name, value) };
 }
 
-// tryOut: returns what is wrong with a decoder, by the way of decoding.
+// tryOut: returns what is wrong with a decoder, for each way of decoding.
 function bench({ api = fakeApi(), store = fakeStore(), agent = 'browser 1', wrong = {} } = {}) {
     const told = [], tried = [];
     let now = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Calls the pure functions of core/ and app/ with non-finite numbers, sizes of 0x0 and empty lists. Each must return, and functions that
-// compute geometry must not return non-finite numbers. A wall once hung on a marker at NaN.
+// Calls the pure functions of core/ and app/ with non-finite numbers, sizes of 0x0 and empty lists. Each must return, and
+// functions that compute geometry must not return non-finite numbers. A wall display once hung because of a marker at NaN.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
@@ -10,7 +10,7 @@ import { seed } from './random.mjs';
 
 const PATIENCE_MS = 120000; // all cases take seconds: a longer run is an endless loop
 const MB = 512;
-// Modules without a function that takes numbers, and those whose bad input warp.test.mjs and headset.test.mjs have.
+// Modules without a function that takes numbers, and modules whose bad input warp.test.mjs and headset.test.mjs cover.
 const TEXTS = ['depth_grid', 'headset_views', 'warp_mesh', 'warp_raster', 'alarm_actions', 'alarm_call', 'alarm_table', 'alarms',
     'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'gpu', 'h264', 'handover', 'health', 'keys',
     'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals',

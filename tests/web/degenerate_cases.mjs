@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Valid arguments for the page's pure functions, which degenerate.mjs spoils. ends: the function only has to return, because it formats,
-// compares or computes values that its callers have checked; for all other functions every number in the result must be finite.
+// Valid arguments for the page's pure functions, which degenerate.mjs corrupts. ends: the function only has to return, because
+// it formats, compares or computes values that its callers have checked. For all other functions, every number in the result
+// must be finite.
 import * as address from '../../clients/web/core/address.js';
 import * as approach from '../../clients/web/core/approach.js';
 import * as callouts from '../../clients/web/core/callouts.js';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every name that a module of the page imports is exported. Lazily loaded modules would otherwise fail only when a user opens them.
+// Checks that every name that a module of the page imports is exported. Otherwise lazily loaded modules would fail only when a
+// user opens them.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { test } from 'node:test';

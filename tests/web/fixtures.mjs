@@ -20,7 +20,7 @@ class Clock {
 
     clearTimeout = (id) => this.timers.delete(id);
 
-    // Runs the timers that become due, in order, each at its own time.
+    // Runs the timers that become due, in order and each at its own time.
     advance(ms) {
         const end = this.time + ms;
         for (;;) {

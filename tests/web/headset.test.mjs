@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Geometry of headsets: matrices of the eyes, the wide picture that covers both, where rays meet surfaces, and where a user stands.
+// Geometry of headsets: matrices of the eyes, the wide picture that covers both, where rays hit surfaces, and where a user
+// stands.
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { Hands } from '../../clients/web/app/xr/hands.js';
@@ -12,12 +13,12 @@ import { moveBy } from '../../clients/web/core/warp_mesh.js';
 const UP = [0, 0, 1], DEGREE = Math.PI / 180;
 const isClose = (a, b, most = 1e-6) => assert.ok(length(subtract(a, b)) < most, `${a} is not ${b}`);
 
-// Returns the WebXR projection matrix of a frustum with these tangents, such as a Quest 3 has.
+// Returns the WebXR projection matrix of a frustum with these tangents, such as a Quest 3's.
 function projection(left, right, bottom, top, near = 0.1, far = 1000) {
     return [2 / (right - left), 0, 0, 0, 0, 2 / (top - bottom), 0, 0, (right + left) / (right - left), (top + bottom) / (top - bottom),
         -(far + near) / (far - near), -1, 0, 0, -2 * far * near / (far - near), 0];
 }
-// Returns the matrix of a pose in the room: turned by yaw about y, at a position.
+// Returns the matrix of a pose in the room: rotated by yaw about y, at a position.
 function matrix(yawDeg, [x, y, z]) {
     const c = Math.cos(yawDeg * DEGREE), s = Math.sin(yawDeg * DEGREE);
     return [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, x, y, z, 1];

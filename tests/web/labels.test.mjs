@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Labels by the rule of protocol/LABELS.md: the same test vectors as for the server, and properties that hold for every picture.
+// Labels by the rule of protocol/LABELS.md: with the server's test vectors, and properties that hold for every picture.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -57,8 +57,8 @@ test('none over another, none over a mark, all inside; important ones are not cr
     }
 });
 
-// Checks that leader lines connect a call-out with its rings up to 60 units away, or only with the nearest one if there are none or more
-// than four.
+// Checks the leader lines of a call-out: one to each of its rings up to 60 units away or, if there are none or more than four,
+// only one to the nearest.
 function checkLeaders(members, placed) {
     const far = ({ id, x, y }) => {
         const [x1, y1, x2, y2] = leaderLine({ x, y, ...placed.get(id) }, placed.get(id), 0);
@@ -70,7 +70,7 @@ function checkLeaders(members, placed) {
         assert.equal(placed.get(item.id).leads, far(item) <= most, `${far(item)} of at most ${most}`);
 }
 
-// Random pictures from a phone's size to a wall's, with few or many rings, and with a legend in the way.
+// Random pictures from the size of a phone to that of a wall, with few or many rings, and with a legend in the way.
 test('every ring is in a label or a call-out, within the picture and over no legend', () => {
     for (let round = 0; round < 300; round++) {
         const [right, bottom] = [random(170, 1300), random(110, 700)], legend = { left: right - 90, right, top: 0, bottom: bottom * 0.8 };
@@ -94,7 +94,7 @@ test('every ring is in a label or a call-out, within the picture and over no leg
         const list = [...boxes.values()];
         assert.ok(list.every((a) => a.left >= 0 && a.top >= 0 && a.right <= right && a.bottom <= bottom));
         if (bottom * 0.2 < 60 && right - 90 < 165)
-            continue; // skips pictures that have hardly room for one label next to the legend
+            continue; // skips pictures with hardly any room for a label next to the legend
         for (const [i, a] of list.entries())
             assert.ok([legend, ...list.slice(0, i)].every((b) => a.left >= b.right || b.left >= a.right || a.top >= b.bottom ||
                 b.top >= a.bottom));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Matches of tags to equipment, as the page reads, filters and decides them.
+// Matches of tags to equipment, as the page reads, filters and decides on them.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Matches, patternOf, readCsv, readMatches, sizeOf, timesOf } from '../../clients/web/core/matches.js';

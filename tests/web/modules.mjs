@@ -5,7 +5,7 @@ import { posix } from 'node:path';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 
-// Returns the paths of all files in a folder of the page and below.
+// Returns the paths of all files in a folder of the page, including subfolders.
 export const filesIn = (folder) => readdirSync(new URL(folder, WEB), { withFileTypes: true })
     .flatMap((entry) => (entry.isDirectory() ? filesIn(`${folder}/${entry.name}`) : `${folder}/${entry.name}`));
 

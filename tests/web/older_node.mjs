@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes tests run in the node of Debian 12 (18.20), too, which lacks the decompression format 'deflate-raw' and has an older mock.timers.
+// Lets tests run in Debian 12's node (18.20) too, which lacks the decompression format 'deflate-raw' and has an older
+// mock.timers.
 import { mock } from 'node:test';
 import { Duplex } from 'node:stream';
 import { createInflateRaw } from 'node:zlib';

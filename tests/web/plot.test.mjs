@@ -23,7 +23,7 @@ class Chart {
     destroy() {}
 }
 
-// Returns a plot, and show(tags, answered), which shows these tags, of which `answered` have a series.
+// Returns a plot, and show(tags, answered), which shows these tags; those in `answered` have a series.
 function plotOf(unit) {
     const colours = ['red', 'green', 'blue'];
     const view = { tags: [], look: {}, zone: 'UTC', unitOf: () => unit, colourOf: (tag) => colours[view.tags.indexOf(tag)] };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random numbers with a printed seed: the same in each run; PLANTCAST_SEED sets another one, and `make test-long` uses a new one each time.
+// Random numbers with a printed seed: the same in each run, except that PLANTCAST_SEED sets another one and `make test-long`
+// uses a new one each time.
 import { seed } from '../e2e/support/sweep.mjs';
 
 console.log(`# PLANTCAST_SEED=${seed}`);

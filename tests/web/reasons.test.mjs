@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reasons for failed tests in the last lines of a run (tests/support/reasons.py), extracted from the output of node and of the C tests.
+// The reasons for failed tests in the last lines of a run (tests/support/reasons.py), extracted from the output of node and of
+// the C tests.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -31,7 +32,7 @@ test('late', { timeout: 50 }, () => new Promise((done) => setTimeout(done, 300))
 test('of node: the error, and the places of helper and test', () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-reasons-')), file = join(folder, 'failing.mjs');
     writeFileSync(file, FAILING);
-    // Leaves out this variable; otherwise the inner run would report to the outer test runner.
+    // Without this variable: otherwise the inner run would report to the outer test runner.
     const { NODE_TEST_CONTEXT: _, ...env } = process.env;
     const { stdout } = spawnSync(process.execPath, ['--test', '--test-reporter=tap', file], { encoding: 'utf8', env });
     rmSync(folder, { recursive: true });

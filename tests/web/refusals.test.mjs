@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals: each code has a text in every language, the server provides the arguments of that text, and no language falls back to the
-// English text.
+// Refusals: each code has a text in every language, the server provides that text's arguments, and no language falls back to
+// the English text.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -14,7 +14,7 @@ const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (languag
 const codes = Object.keys(tables.en).filter((key) => !key.includes('.'));
 const blanks = (text) => (text.match(/\{\w+\}/g) ?? []).map((blank) => blank.slice(1, -1)).sort();
 
-// [code, names of arguments] for each place in the server that refuses something.
+// [code, names of arguments] for each place in the source where the server refuses something.
 const source = ['server', 'preprocess'].flatMap((folder) => readdirSync(new URL(folder, ROOT), { recursive: true })
     .filter((name) => name.endsWith('.c') && !name.endsWith('base/refusal.c')).map((name) => read(`${folder}/${name}`))).join('\n');
 const refused = [...source.matchAll(/\bREFUSAL_([A-Z]\w*)\b(?:,\s*"([^"]*)")?/g)].filter(([, code]) => !/^(?:NONE|TEXT_BYTES)$/.test(code))

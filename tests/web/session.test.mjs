@@ -531,7 +531,7 @@ test('a leader who has left keeps the name', () => {
 test('whoever leads no longer follows: the camera is that of what is shown then, until one is said', () => {
     const eyes = (x) => ({ camera: { eye: [x, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 }, waitUs: 0, fieldUs: 0, renderUs: 0,
         encodeUs: 0, sentTimeUs: 0 });
-    // Messages of the server in order; numbers stand for pictures. The last picture shows the view that is this session's own then.
+    // Messages of the server in order; numbers stand for pictures. The last picture shows the session's own view at that time.
     const ways = {
         'given the lead before any picture of the leader': [vector('server/following.json'), vector('server/following-nobody.json'), 5],
         'given the lead while the leader moves': [vector('server/following.json'), 3, vector('server/following-nobody.json'), 4, 5],

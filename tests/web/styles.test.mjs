@@ -14,7 +14,7 @@ const words = new Set(page.match(/[\w-]+/g));
 const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`); // class names such as p1, p2, ...
 const isTheChartsOwn = (name) => name.startsWith('u-');
 
-// Returns the selectors of a sheet without the declarations; rules inside of @media and the like count, too.
+// Returns the selectors of a style sheet without the declarations, including those of rules inside @media and the like.
 const selectors = (sheet) => [...sheet.replace(/\/\*.*?\*\//gs, '').matchAll(/([^{};]+)\{/g)].map(([, text]) => text.trim())
     .filter((text) => !text.startsWith('@'));
 

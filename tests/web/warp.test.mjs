@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth grids, and meshes that show a picture from another camera: a synthetic scene of a floor and a box in front of a background.
+// Depth grids, and meshes that show a picture from another camera: a synthetic scene of a floor and a box in front of a
+// background.
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';
@@ -17,7 +18,7 @@ const PERSPECTIVE = { eye: [6, -9, 5], target: [0, 0, 0.5], up: [0, 0, 1], fov: 
 const PARALLEL = { ...PERSPECTIVE, fov: 0, height_m: 8 };
 const BOX = { min: [-1, -1, 0], max: [1, 1, 2] }, FLOOR = 4; // FLOOR: half the side of the floor, metres
 
-// Returns the distance along the view to the first surface at a pixel, and the surface; null: background.
+// Returns the distance along the view direction to the first surface at a pixel, and that surface; null: background.
 function hit(camera, x, y) {
     const { origin, direction } = sight(camera, x, y, WIDTH, HEIGHT);
     let best = null;
@@ -37,7 +38,7 @@ function hit(camera, x, y) {
     return best;
 }
 
-// Returns where a mask differs from its prediction, bit by bit from its definition.
+// Returns where a mask differs from its prediction, computed bit by bit from the definition.
 function unexpected(cell, { columns, near, far, masks }) {
     const at = (x, y) => { // x, y: position of the bit, counted from the cell's top left corner
         const [dx, dy] = [x, y].map((v) => Math.floor(v / SIDE)), other = cell + dx + dy * columns;
@@ -52,7 +53,7 @@ function unexpected(cell, { columns, near, far, masks }) {
     });
 }
 
-// Encodes the scene as PROTOCOL.md says. A cell is divided where it shows the box and something else.
+// Encodes the scene as described in PROTOCOL.md. A cell is divided where it shows the box and something else.
 function encode(camera) {
     const parallel = camera.height_m !== undefined, columns = Math.ceil(WIDTH / CELL), rows = Math.ceil(HEIGHT / CELL);
     const depth = (at) => (parallel ? at.z : 1 / at.z), all = [];
@@ -173,12 +174,13 @@ for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PAR
     });
 }
 
-// Colour of what a pixel shows, as 32-bit numbers with red in the lowest byte: the background, the floor and each side of the box.
+// Colours of what pixels show, as 32-bit numbers with red in the lowest byte: the background, the floor and each side of the
+// box.
 const sumOf = (name) => [...name].reduce((sum, letter) => sum + letter.charCodeAt(), 0);
 const colourOf = (at) => (at === null ? 0xfff0f0f0 : 0xff000000 + 40 * sumOf(at.name)) | 0;
 const isGrey = (pixel) => (pixel & 255) === (pixel >> 8 & 255) && (pixel & 255) === (pixel >> 16 & 255);
 
-// Draws the scene's picture from another camera by the processor, before places that the picture does not show are filled.
+// Draws the scene's picture from another camera on the processor, before areas missing from the picture are filled.
 async function rasterized(camera, to, size = [WIDTH, HEIGHT], box = { left: 0, top: 0, width: size[0], height: size[1] }) {
     const { bytes, all } = encode(camera), grid = await decodeGrid(bytes), picture = Int32Array.from(all, colourOf);
     const raster = new Raster(...size), layers = new Layers(picture, WIDTH, [grid]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parses bytes of plantcast.v1 from the same test vectors as the C tests.
+// Parses bytes of plantcast.v1, using the test vectors of the C tests.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's texts: the same keys in every language, none missing, none unused, each in its file, and how a language is chosen.
+// The page's texts: every language has the same keys, none is missing or unused, each is in its file; and how a language is
+// chosen.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -73,7 +74,7 @@ test('plurals: each form that a language has, and no other', () => {
     }
 });
 
-// Returns keys that are not used. A key is used by its whole name, or by its beginning where the rest is a value: `kind.${kind}`,
+// Returns unused keys. A key counts as used by its whole name, or by its beginning if the rest is a value: `kind.${kind}`,
 // choices('side', 'top', ...).
 function unused(table, modules, markup) {
     const starts = [...modules.matchAll(/`([a-z]+\.)\$\{/g)].map(([, start]) => start);

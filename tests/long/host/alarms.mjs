@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Raises alarms in the simulated device without a pause, lets operators acknowledge each, and clears it. Compares the journals of both
-// cores with what was done.
+// Continuously raises alarms in the simulated device, has operators acknowledge each, and clears it. Compares the journals of
+// both cores with what was done.
 import { setTimeout as sleep } from 'node:timers/promises';
 import { until } from '../../e2e/support/until.mjs';
 
@@ -9,7 +9,8 @@ const PAUSE_MS = 4 * SHOWN_MS, AGAIN_MS = 5000, EARLIER_MS = 60000;
 const EVENTS = ['raise', 'acknowledge', 'clear'];
 
 export class AlarmCycles {
-    // plant: passes commands to the simulator; operators: acknowledge in turn; tags: each has its own alarms, all at the same time.
+    // plant: passes commands to the simulator; operators: acknowledge in turn; tags: all at the same time, each with its own
+    // alarms.
     constructor(plant, operators, tags) {
         Object.assign(this, { began: Date.now(), plant, operators, tags, failures: [], total: 0, notKept: 0, idle: new Set() });
         this.isPaused = this.isOver = false;
@@ -78,8 +79,9 @@ export class AlarmCycles {
         this.idle.clear();
     }
 
-    // While paused: compares the cycles since the last comparison with a core's journal, and waits until a standby has received its rows.
-    // Returns { lost, twice }: rows that the journal lacks, and that it has too often. off_s: the most that a core's clock was slow.
+    // While paused: compares the cycles since the last comparison with a core's journal, and waits until a standby has received
+    // its rows. Returns { lost, twice }: rows that the journal lacks, and rows that it has too often. off_s: maximum number of
+    // seconds by which a core's clock was slow.
     async compare(core, off_s = 0) {
         const since = this.newest.get(core.name) ?? 0, from = new Date(this.began - off_s * 1000 - EARLIER_MS).toISOString();
         for (const end = performance.now() + JOURNAL_MS; ; await sleep(500)) {
@@ -107,8 +109,8 @@ export class AlarmCycles {
     }
 }
 
-// Returns the rows since the time `from` with an id above `since`. The journal has the newest time first, so that rows of a slow clock
-// come after older ones.
+// Returns the rows since the time `from` with an id above `since`. The journal lists the newest time first, so rows of a slow
+// clock come after older ones.
 async function journal(core, from, since) {
     const rows = [];
     for (let before = ''; ;) {

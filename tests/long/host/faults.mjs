@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The faults of the soak of a whole host. Each returns when its cause is gone, but the plant may need more time to recover.
+// The faults of a whole host's soak test. Each returns when its cause is gone, but the plant may need more time to recover.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { sleep, until } from './site.mjs';
 
@@ -13,7 +13,7 @@ async function start(site, node) {
     return isCore(node) ? site.two.start(node.name) : site.startRenderer(node);
 }
 
-// Ends a process, or waits for its end, and starts it again after that time.
+// Ends a process, or waits until it ends, and starts it again after that time.
 async function endAndStart(site, node, signal, away_ms = RESTART_MS) {
     node.isAway = true;
     node.program.stopped = true;
@@ -72,7 +72,7 @@ export const FAULTS = [
         act: ({ leader, random }) => cut([leader.toDatabase], anyHow(random)) },
     { name: 'standby cut off database', alerts: ['PlantcastLeaseDatabaseDown'],
         act: ({ standby, random }) => cut([standby.toDatabase], anyHow(random)) },
-    // the old leader recorded alarms behind the cut, which the next leader finds for itself and records too
+    // the old leader recorded alarms that the next leader missed because of the cut, and so finds and records again itself
     { name: 'leader cut off both', alerts: [], isRepeated: true, act: async ({ site, leader, standby, random }) => {
         const links = [leader.toDatabase, standby.toOther];
         await Promise.all([endAndStart(site, leader, null, CUT_MS), cut(links, anyHow(random))]);
@@ -103,7 +103,8 @@ export const FAULTS = [
     } },
 ];
 
-// Fills the disk for FULL_MS after the first write that fails: until then, SQLite writes over space that its log already has.
+// Fills the disk for FULL_MS, counted from the first write that fails: until then SQLite writes into space that its log already
+// has.
 async function fullDisk(site, core) {
     site.fillDisk(core);
     const notGood = /^plantcast_(history|alarm_journal)_good(\{.*\})? 0$/m;
@@ -127,7 +128,7 @@ async function certificates({ site }) {
         await until('the new certificate', async () => await site.serial(renderer) !== before, 30);
     }
 }
-// Reloads one core after the other, as deploy/pages/STANDBY.md says, and the renderers, which have the same plant file.
+// Reloads one core after the other, as deploy/pages/STANDBY.md says, and the renderers, which use the same plant file.
 async function reload({ site, leader, standby }) {
     const text = readFileSync(site.two.file, 'utf8'), [was, is] = /description: warm/.test(text) ? ['warm', 'cold'] : ['cold', 'warm'];
     writeFileSync(site.two.file, text.replace(`description: ${was}`, `description: ${is}`));
@@ -137,7 +138,7 @@ async function reload({ site, leader, standby }) {
             throw new Error(`reload of ${node.name}: ${said}`);
     }
 }
-// Restarts the nodes in the order in which deploy/pages/STANDBY.md upgrades them. The programs stay the same version.
+// Restarts the nodes in the order in which deploy/pages/STANDBY.md upgrades them, with programs of the same version.
 async function upgrade({ site, leader, standby }) {
     const maintain = async (how, value) => {
         const { code, said } = await site.plantcast('standby', how, leader.disk);
@@ -161,7 +162,7 @@ async function drained(site, renderer) {
     await until('the balancer', async () => /^UP/.test((await site.proxy.servers())[renderer.name].status), 30);
 }
 
-// Starts nodes that ended unexpectedly, as a service manager does, until the site is over. ends: receives the names.
+// Restarts nodes that ended unexpectedly, as a service manager does, until the site ends. ends: receives their names.
 export function supervise(site, ends) {
     const revive = async (node) => {
         node.isAway = true;

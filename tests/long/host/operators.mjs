@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operators without a screen: they connect to the load balancer with the page's own connection code, and record when they were blind.
+// Operators without a screen: they connect to the load balancer with the page's own connection code, and record when they were
+// blind.
 import { Connection } from '../../../clients/web/core/connection.js';
 import { get, PlainClient } from '../../e2e/support/plain_client.mjs';
 
 const PICTURE_MS = 2000, ANSWER_MS = 15000, NOTICED_MS = 1000;
 const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
 
-// PlainClient with the interface of a browser's WebSocket, and the browser's cookie of the balancer.
+// PlainClient with the interface of a browser's WebSocket, and with the load balancer's cookie as a browser keeps it.
 class PageSocket {
     constructor(port, jar) {
         this.open(port, jar).catch(() => this.end({ code: 1006, reason: '' }));
@@ -88,7 +89,7 @@ export class Operator {
         }
     }
 
-    // An operator sees the plant while changed good readings and pictures arrive.
+    // An operator sees the plant while changed good readings and pictures keep arriving.
     look() {
         const now = performance.now();
         if (!this.live || this.bad.has(this.watched) || !this.changed || now - this.frameAt > PICTURE_MS)
@@ -100,8 +101,8 @@ export class Operator {
     }
     get sees() { return performance.now() - this.seenAt < PICTURE_MS; }
 
-    // Returns the longest time in milliseconds in which this operator saw no live plant, of the times that ended after `since` or have not
-    // ended yet.
+    // Returns the longest time in milliseconds in which this operator saw no live plant. Considers times that ended after
+    // `since` or have not ended yet.
     longestBlind(since) {
         const now = performance.now();
         return Math.max(0, ...[...this.gaps, [this.seenAt, now]].filter(([, to]) => to >= since)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One plant with all of its programs on this machine: two cores with PostgreSQL, two renderers with TLS, HAProxy, Prometheus, operators and
-// the load generator. Each core has a small disk and a clock of its own; each link between the programs can be cut.
+// One plant with all of its programs on this machine: two cores with PostgreSQL, two renderers with TLS, HAProxy, Prometheus,
+// operators and the load generator. Each core has its own small disk and clock; each link between the programs can be cut.
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import { appendFileSync, mkdirSync, readFileSync, renameSync, statfsSync, writeFileSync } from 'node:fs';
@@ -87,7 +87,7 @@ export class Site {
         this.load = this.generateLoad();
     }
 
-    // Gives readings and the device more time, because the machine is busy, and polls less often.
+    // Allows readings and the device more time, because the machine is busy, and polls less often.
     slacken() {
         const tags = join(this.folder, 'tags.csv');
         writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',3,90'));
@@ -112,7 +112,7 @@ export class Site {
         for (const name of ['r1', 'r2'])
             this.certify(name);
     }
-    // Replaces a renderer's certificate as an administrator does: the key first. Both files are replaced atomically.
+    // Replaces a renderer's certificate as an administrator does, the key first. Each file is replaced atomically.
     certify(name) {
         openssl(this.folder, `req ${NEW_KEY} -keyout new.key -out new.csr -subj /CN=plant.example ` +
             '-addext subjectAltName=DNS:plant.example,DNS:localhost,IP:127.0.0.1');
@@ -174,7 +174,7 @@ export class Site {
         }
     }
 
-    // Waits until all programs work and all operators see the plant; returns why not, or null.
+    // Waits until all programs work and all operators see the plant. Returns why they do not, or null.
     async recovered() {
         const leader = await this.two.leader(RECOVERY_S).catch((error) => error);
         if (leader instanceof Error)
@@ -208,7 +208,7 @@ export class Site {
 
     plantcast(...args) { return run(join(BIN, 'plantcast'), args, { signal: this.over.signal, timeout: PROGRAM_MS }); }
 
-    // Ends everything, also after a start that failed or is not complete. At the end, throws the first error.
+    // Ends everything, even after a start that failed or is incomplete. Throws the first error at the end.
     destroy() { return this.ending ??= this.endAll(); }
     async endAll() {
         this.over.abort();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A real Prometheus with the shipped rules and configuration, in which a minute is a second; and the memory and descriptors of processes.
+// A real Prometheus with the shipped rules and configuration, where a minute is shortened to a second; and the memory and
+// descriptors of processes.
 import { spawn } from 'node:child_process';
 import { copyFileSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -60,7 +61,7 @@ export class Alerts {
 
 const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 export class Footprint {
-    constructor(processes) { // processes: function that returns [{ name, pid }] of the processes that run now
+    constructor(processes) { // processes: function that returns [{ name, pid }] of the currently running processes
         Object.assign(this, { processes, samples: new Map(), began: new Map() });
         this.timer = setInterval(() => this.sample(), 5000);
     }
@@ -77,7 +78,7 @@ export class Footprint {
             } catch { /* the process has ended */ }
         }
     }
-    // Returns per process [first third, last third] of the medians, of samples after the start of a process.
+    // Returns per process the medians of the [first third, last third] of the samples since the process started.
     rows() {
         return [...this.samples].map(([name, all]) => {
             const settled = all.filter(({ age_s }) => age_s > 20), third = Math.ceil(settled.length / 3);
