@@ -39,8 +39,8 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Returns the field at a pixel's centre, interpolated from the corners of its triangle. The plate's squares are split along (0, 0) to
-   (1, 1). */
+/* Returns the field at a pixel's centre, interpolated from the corners of its triangle. The plate's squares are split along the
+   diagonal from (0, 0) to (1, 1). */
 static double value_at(const struct scalars *scalars, int x, int y)
 {
     double u = (x + 0.5) / SIDE_PX * CELLS, v = (1 - (y + 0.5) / SIDE_PX) * CELLS;
@@ -165,7 +165,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, stand_tear_down)
     assert_int_equal(count_wrong(&view), 0);
 }
 
-/* The number written on an isoline is the field's value there, in one step or in progressive rendering. */
+/* The number written on an isoline is the field's value there, whether rendered in one step or progressively. */
 TEST_WITH(test_labels_stand_on_their_lines, set_up, stand_tear_down)
 {
     struct view view;
@@ -251,7 +251,7 @@ TEST_WITH(test_no_data_is_grey_stripes, set_up, stand_tear_down)
     }
 }
 
-/* The position of a lost sensor shows no colour of the map; everything else stays. */
+/* The area around a lost sensor shows no colour of the map; everything else stays. */
 TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, stand_tear_down)
 {
     struct view view;
@@ -300,7 +300,7 @@ static double part_of_first(int x, int y)
     return first / sum;
 }
 
-/* The border of uncertainty runs between vertices, not along them: each triangle spans a twelfth of the plate. */
+/* The border of uncertainty runs between vertices, not along them, although each triangle spans a twelfth of the plate. */
 TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, stand_tear_down)
 {
     const double slack = 0.02;
@@ -436,7 +436,7 @@ TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, stand_tear_down)
     frame_unref(&unset);
 }
 
-/* Once one tag has passed its loop check, markers and legend show which tags have not; the rest of the frame stays. */
+/* Once one tag has passed its loop check, markers and legend show which tags have not; the rest of the frame stays the same. */
 TEST_WITH(test_unproven_tags_are_marked, set_up, stand_tear_down)
 {
     enum { WIDE_PX = 600 };
@@ -501,7 +501,7 @@ TEST_WITH(test_default_look_keeps_to_the_palette, set_up, stand_tear_down)
     }
 }
 
-/* A model without sensors whose strips have the map's own colours: in no view of a field do these colours appear. */
+/* A model without sensors whose strips have the map's own colours: these colours appear in no view of a field. */
 TEST_WITH(test_context_has_no_color, set_up, stand_tear_down)
 {
     enum { STRIPS = 16 };

@@ -49,7 +49,7 @@ static const uint8_t *pixel_at(const struct frame *frame, double x_m, double y_m
     return frame_pixel(frame, x, y);
 }
 
-/* Returns the index of the colour shown there, or -1 if it is not in the map. Refined frames average the samples of a pixel. */
+/* Returns the index of the colour shown there, or -1 if it is not in the map. Refined frames average a pixel's samples. */
 static int shown_at(const struct view *view, double x_m, double y_m)
 {
     struct frame *frame = stand_draw(&stand, view);

@@ -132,8 +132,8 @@ static void look_close(struct view *view)
     look_from(0.5, view);
 }
 
-/* Shading is not read as value either with the whole plant in view, or from twice as far, where its parts are a few pixels wide. There the
-   standard JPEG tables, made for photographs, lose more chroma than that, with and without shading. */
+/* Shading is not mistaken for a value even with the whole plant in view, or from twice as far, where its parts are a few pixels
+   wide. At that size the standard JPEG tables, made for photographs, lose more chroma than allowed, with and without shading. */
 TEST_WITH(test_far_away_it_is_not_either, set_up, stand_tear_down)
 {
     struct view view;
@@ -149,7 +149,7 @@ TEST_WITH(test_far_away_it_is_not_either, set_up, stand_tear_down)
     }
 }
 
-/* Maps that declare that they are readable under shading are read right; the others do not declare it. */
+/* Maps declared readable under shading are read correctly; the others do not declare it. */
 TEST_WITH(test_shading_is_not_read_as_value, set_up, stand_tear_down)
 {
     struct view view;
@@ -176,7 +176,7 @@ TEST_WITH(test_glossy_would_be_misread, set_up, stand_tear_down)
     assert_true(p95[0] > 3); /* a map that is misread would exceed the limits of the test above */
 }
 
-/* Lightness differences between the tiers: the change from preview to refined must not flash. */
+/* Lightness differs little between the tiers, so that the change from preview to refined does not flash. */
 TEST_WITH(test_tiers_agree, set_up, stand_tear_down)
 {
     struct view view;
@@ -200,7 +200,7 @@ TEST_WITH(test_tiers_agree, set_up, stand_tear_down)
     frame_unref(&moving);
 }
 
-/* Pixels that differ from the view of values, field or context, are grey while all readings are within their limits. */
+/* While all readings are within their limits, every pixel that differs from the view of values, field or context, is grey. */
 TEST_WITH(test_operator_sees_greys, set_up, stand_tear_down)
 {
     struct view values, limits;

@@ -95,7 +95,7 @@ TEST_WITH(test_bit_by_bit, set_up, stand_tear_down)
     assert_null(canvas);
 }
 
-/* Two split views in progress at once give the same frames as each alone. */
+/* Two split views in progress at once give the same frames as each drawn alone. */
 TEST_WITH(test_launched_together, set_up, stand_tear_down)
 {
     struct view views[2];

@@ -22,8 +22,7 @@ void prep_case_plant(struct prep_case *c, const char *yaml);
 void prep_case_tags(struct prep_case *c, const char *rows);
 
 /* prep_case_run() runs plantcast-prep with these arguments in a shell, where $PLANT is the plant file and $FOLDER its folder,
-   and returns the exit status. It skips the test if the program is not built. prep_case_expect() fails if the status differs.
-   */
+   and returns the exit status. It skips the test if the program is not built. prep_case_expect() fails if the status differs. */
 int prep_case_run(struct prep_case *c, const char *arguments);
 void prep_case_expect(struct prep_case *c, const char *arguments, int status);
 char *prep_case_program(void); /* returns the program's path; skips the test if it is not built */

@@ -270,8 +270,7 @@ static void score_drawn(const char *name, int row, const struct contact_case *dr
 }
 
 /* Seeds of boxes with gaps where a slit at the edge of both boxes once stayed open: along the edge; behind faces that no query
-   visited; and where the rim of a gap in the lower box fitted the upper box and was joined to it, so that no face was hidden.
-   */
+   visited; and where the rim of a gap in the lower box fitted the upper box and was joined to it, so that no face was hidden. */
 TEST(gaps_at_a_rim_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },

@@ -346,8 +346,7 @@ CASE(names_are_unique)
 }
 
 /* Noticed: a float that begins one register too early, 16-bit values that are parts of larger ones, and an address that states
-   the source's own unit and so means the same device (1!hr:51). Accepted: equal addresses, bits, other tables and other units.
-   */
+   the source's own unit and so means the same device (1!hr:51). Accepted: equal addresses, bits, other tables and other units. */
 CASE(values_that_share_some_registers_are_noticed)
 {
     plant_case_load(c, yaml, "Tag Name,Address,Data Type\nA,hr:10,Float\nB,hr:11,Float\nC,hr:20,Float\nD,hr:21,Int16\n"
