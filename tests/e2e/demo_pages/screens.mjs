@@ -184,6 +184,13 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     assert.deepEqual(await page.locator('#legend .ticks span').allTextContents(), ['LL', 'L', 'H', 'HH']);
     assert.equal(await page.locator('#legend-right').isVisible(), false);
     await shoot(page, 'operator');
+    const notes = await page.evaluate(() => {
+        const { legend, session } = globalThis.plantcast;
+        session.drawnError = 2;
+        legend.show(true);
+        return legend.element.textContent;
+    });
+    assert.doesNotMatch(notes, /error up to/, 'this view has no unit');
 }));
 
 test('a method of the right half that is not the left one\'s is shown on every screen', options, () => withPage(LARGE, async (page) => {

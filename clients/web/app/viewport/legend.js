@@ -141,8 +141,9 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // largest possible error of the field where the picture marks it as uncertain, in the unit of the legend's title
-            off && say('legend.drawn', { off }),
+            // largest possible error of the field where the picture marks it as uncertain, in the unit of the legend's title; the
+            // operator's view has no unit
+            off && !isOperator && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
             !isOperator && scale === 'log' && say('legend.log'),
