@@ -245,6 +245,16 @@ test('legends are read beside an open panel, which ends above the status bar', o
         await page.locator('#picture-panel.open').waitFor();
         const [legend, picture] = await Promise.all(['#legend', '#viewport'].map((one) => boxOf(page, one)));
         assert.ok(picture.x + picture.width - legend.x - legend.width <= 12, JSON.stringify([legend, picture]));
+
+        const temperatures = page.locator('#disagreeing .line', { hasText: '°C' });
+        await temperatures.first().waitFor();
+        await page.locator('#picture-toggle').click();
+        await set({ group: 'pressure' });
+        await becomes(() => temperatures.count(), 0, 'the closed panel keeps no rows of another quantity');
+        await page.locator('#theme').click();
+        await page.waitForFunction(() => document.documentElement.dataset.theme === 'dark');
+        const ground = () => page.locator('#viewport').evaluate((e) => getComputedStyle(e).backgroundColor.match(/\d+/g).map(Number));
+        await becomes(async () => Math.max(...await ground()) < 90, true, 'no bright strips at the sides of a picture');
     }));
 
 test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {

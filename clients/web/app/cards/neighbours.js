@@ -72,8 +72,14 @@ export class Disagreeing {
 
     update() {
         const { params } = this.session;
-        if (params)
-            this.neighbours.show(`group=${encodeURIComponent(params.group)}`);
+        if (!params)
+            return;
+        if (params.group !== this.group) { // rows of another quantity would mislead until the answer arrives
+            this.group = params.group;
+            this.fill([]);
+            this.drifting.hidden = true;
+        }
+        this.neighbours.show(`group=${encodeURIComponent(params.group)}`);
     }
 
     line(row, text) {
