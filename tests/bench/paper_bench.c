@@ -28,7 +28,7 @@ enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX 
 enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* frames with MANY_SENSORS should take as long as frames with FEW_SENSORS */
 enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* for the throughput measurement: frames submitted to the GPU ahead, and frames per run */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
-/* time between two changes of readings; longest duration of a row */
+/* interval between changes of readings; maximum duration of a row */
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S;
 /* milliseconds; slower brute-force frames are drawn only once */
 static const double LONGEST_BRUTE_MS = 20e3;
@@ -420,7 +420,7 @@ static void measure(struct paper_bench *bench, const struct paper_model *model, 
     mem_free(series);
 }
 
-struct goal { /* goals of one printed row; 0: no goal */
+struct goal { /* goals for one printed row; 0: no goal */
     int count;
     double cpu_ms[2], gpu_ms; /* goals in milliseconds: on two cores, for each model; on a GPU, ten times as fast as in the paper */
 };

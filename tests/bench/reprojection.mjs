@@ -17,7 +17,7 @@ const folder = process.argv[2], isByProcessor = process.argv[3] === 'processor';
 const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer_20'];
 const OFF = 16;          // a pixel counts as different if a channel differs by at least this much, of 255
 const NEAREST = 0.05;    // same value as in app/picture/warp.js
-const MOST_ERROR = 0.03; // largest error of a value, as a share of the range
+const MOST_ERROR = 0.03; // largest error of a value, as a fraction of the range
 const REDUCED = 4, LATTICE_PX = 14, MARK = 0.08 * 255; // as in app/picture/warp.js
 
 const load = (name) => ({

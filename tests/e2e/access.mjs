@@ -224,7 +224,7 @@ test('a session that is left alone is locked, but not that of a wall; and what i
     clearInterval(timer);
     assert.deepEqual([clients[1].closed, clients[2].closed], [null, null]);
     clients.forEach((client) => client.close());
-    const back = await open(); // an automatic reconnection is no sign of user activity
+    const back = await open(); // an automatic reconnection does not count as user activity
     back.say({ type: 'hello', token: desk, width: 320, height: 180, codecs: ['jpeg'], idle_ms: 60000 });
     assert.equal((await back.text('error')).code, 'locked');
     back.close();

@@ -135,7 +135,7 @@ test('one command on a bare host gives the same server', options, async () => {
     const second = new BareRoot(folder);
     cpSync(join(folder, 'backup'), second.path('root/backup'), { recursive: true });
     second.write('/root/key', readFileSync(first.path('root/key')), 0o600);
-    second.run('useradd --system other'); // gives plantcast another user number here than on the first machine
+    second.run('useradd --system other'); // gives the user plantcast another number here than on the first machine
     const { code, err, out } = second.run('plantcast restore /root/backup --identity /root/key');
     assert.equal(code, 0, err);
     assert.doesNotMatch(out, /missing/);

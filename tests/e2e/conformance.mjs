@@ -86,7 +86,7 @@ test('pictures are whole, in order, of the size asked for, and say when and when
     const still = await client.frameWhere('refined', (p) => p.camera_seq === 1 && p.flags & FLAG.still);
     assert.deepEqual([still.full_width, still.full_height], [320, 180]);
     let last = 0, isPart = false;
-    // parts of a picture are frames with one seq
+    // the parts of a picture are frames with the same seq
     for (const { seq, flags, x, y, width, height, full_width, full_height, payload } of client.frames) {
         assert.ok(seq > last || (isPart && seq === last), 'seq counts up');
         [last, isPart] = [seq, Boolean(flags & FLAG.more)];

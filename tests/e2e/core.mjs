@@ -50,7 +50,7 @@ test('values, qualities and source times are the core\'s; the device sees one po
 
 test('pictures of one view are equal to the byte', options, async () => {
     const picture = async (node) => Buffer.from(await (await node.fetch('/snapshot.png?width=240&height=160&fit=E-101')).arrayBuffer());
-    // a reading may be old at one node for a moment
+    // a reading may be older at one node for a moment
     await until('equal pictures', async () => {
         const [one, two, three] = await Promise.all([core, a, b].map(picture));
         assert.equal(one.subarray(1, 4).toString(), 'PNG');
@@ -193,7 +193,7 @@ test('another version, and another plant of the same tags, are named by both; th
         await renderer.ready();
         await renderer.program.line(new RegExp(`no readings: .*${ours}`));
         await until('its refusal', () => core.program.said.includes(`renderer ${name}: refused: ${theirs}`));
-        await sleep(2500); // wait until the peer has retried several times
+        await sleep(2500); // waits until the peer has retried several times
         assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'it is said once');
         assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
         assert.equal(await renderer.metric(`plantcast_core_up{core="${core.url}"}`), 0);

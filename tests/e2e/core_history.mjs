@@ -180,7 +180,7 @@ test('without its core a renderer says that it has no history, once in its log; 
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
     assert.deepEqual(await recorded(path), before_);
     assert.equal((await renderer.fetch(picture)).status, 200);
-    core.program.child.kill('SIGSTOP'); // the core accepts the question and does not answer
+    core.program.child.kill('SIGSTOP'); // the core accepts the request but does not answer
     const waits = renderer.fetch(path).catch(() => null);
     await sleep(300);
     assert.equal((await renderer.fetch('/healthz')).status, 200, 'nobody else waits');

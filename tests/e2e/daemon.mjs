@@ -422,7 +422,7 @@ test('a reading that changes is told and drawn; a PLC that dies is seen, and com
 
 test('plantcast tags and plantcast probe', { skip }, async (t) => {
     const url = `http://127.0.0.1:${plant.port}/`;
-    await until('a line of a good reading', () => { // answers of the device may be late for a moment
+    await until('a line of a good reading', () => { // the device's answers may be late for a moment
         const { code, out, err } = runProgram('plantcast', ['tags', url]);
         assert.equal(code, 0, err);
         return /TI-1 .*°C .*Good .*temperature .*E-101/.test(out);

@@ -196,7 +196,7 @@ test('two hundred plants take two hundredths of a core', { ...options, skip: opt
         await until('all answer', async () => (await fleet.state()).plants.every(({ answers }) => answers));
         await sleep(2000);
         const before = cpuMs(fleet.pid);
-        for (let s = 0; s < SECONDS; s += 5) { // ask every 5 s, as an open fleet page does
+        for (let s = 0; s < SECONDS; s += 5) { // polls every 5 s, like an open fleet page
             await fleet.state();
             await sleep(5000);
         }

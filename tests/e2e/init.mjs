@@ -206,7 +206,7 @@ for (const [how, end] of sweep(ENDINGS, [ENDINGS[1], ENDINGS[2]]))
         assert.ok(said.trim().split('\n').length < 20, said);
         assert.match(said.trim().split('\n').at(-1), new RegExp(`^plantcast: ready http://127.0.0.1:${port}/$`));
         assert.equal(statSync(join(OUT, 'codecs')).mtimeMs, stamp, 'the next make compiles everything again');
-        // a program that is starting another is there twice
+        // a program that is starting another appears twice
         await becomes(() => processesOf(own.file).sort(), ['plantcast-sim', 'plantcastd']);
         make.removeAllListeners('exit');
         end(make);

@@ -300,7 +300,7 @@ for (const last of ['import', 'undo'])
         good(run('plantcast', 'import', model, '-o', first));
         good(match(first));
         good(run('plantcast-prep', join(first, 'plant.yaml')));
-        draw('E-103', 'E-101', 'E-102'); // E-100 is gone, and so is its tag's equipment
+        draw('E-103', 'E-101', 'E-102'); // E-100 and the equipment of its tag are gone
         const args = last === 'undo' ? ['--undo', '-o'] : [model, '-o'];
         if (last === 'undo')
             good(run('plantcast', 'import', model, '-o', first));

@@ -49,7 +49,7 @@ test('under its bound, whatever somebody tries', options, async (t) => {
             [most, mostOf] = [now, await gauges()];
         assert.ok(now <= BOUND_MB, `after ${n} uses, the last of them ${name}: ${now} MB; ${told(mostOf)}`);
         const { bound, drawing, ...kept } = await gauges(), sum = Object.values(kept).reduce((a, b) => a + b);
-        assert.ok(sum <= bound * 1.1, // memory that the present picture needs may exceed the limit
+        assert.ok(sum <= bound * 1.1, // memory needed by the current picture may exceed the limit
             `${sum} MB of ${bound} are kept, beside ${drawing} to draw the next picture in: ${told(kept)}`);
         if (random() < LEAVES) {
             await one.leave();

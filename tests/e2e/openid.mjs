@@ -229,7 +229,7 @@ test('who loses rights loses the session, and a smaller role counts at once', { 
     await browser.signIn();
     const none = await browser.stream();
     await none.hello();
-    delete provider.claims.groups; // some providers omit the claim when there are no groups
+    delete provider.claims.groups; // some providers omit the claim if there are no groups
     assert.equal((await none.until('a close', (c) => c.closed)).code, 1008);
     provider.claims.groups = ['operators'];
     await browser.signIn();
@@ -356,7 +356,7 @@ test('a slow provider: codes wait in bounds, and the rights of 40 people end in 
     const people = async () => Number(/^plantcast_openid_people (\d+)/m.exec(await (await metrics()).text())[1]);
     t.after(() => { Object.assign(provider, { delay_ms: 0, sub: 's1', codesWait: null }); provider.claims.groups = ['operators']; });
     for (let i = 0; i < 40; i++) {
-        provider.sub = `s${i % 4}`; // a person may have 16 sessions at most
+        provider.sub = `s${i % 4}`; // a user may have at most 16 sessions
         assert.equal((await new Browser().signIn()).status, 303);
     }
     assert.ok(await people() >= 40);

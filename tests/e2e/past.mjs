@@ -206,7 +206,7 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
     assert.deepEqual([early.code, /no readings recorded/.test(early.err), existsSync(film)], [1, true, true]);
 });
 
-// The last test, because history begins earlier afterwards.
+// This test is the last, because history begins earlier afterwards.
 test('an imported gap, blanks and state words are no data, in pictures, readings, trends, exports and tables', { skip }, async () => {
     const file = join(plant.folder, 'gap.csv'), from = BEGIN_S - 7 * 86400, day = 86400;
     const rows = [[0, 10], [10, 10], [10, 11], [20, 'I/O Timeout'], [30, 'No Data'], [40, 12], [50, ''], [60, 12], [70, 12], [2 * day, 80],

@@ -25,7 +25,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Returns how often the loop's thread went to sleep per second.
+// Returns how often per second the event loop's thread went to sleep.
 async function sleeps(seconds) {
     const { pid } = plant.daemon.child;
     const count = () => Number(readFileSync(`/proc/${pid}/task/${pid}/status`, 'utf8').match(/^voluntary_ctxt_switches:\s*(\d+)/m)[1]);

@@ -267,7 +267,7 @@ test('metrics: build, process and certificate; no old name of one that was renam
     const left = number('plantcast_certificate_expiry_timestamp_seconds') - Date.now() / 1000;
     assert.ok(left > 2.9 * 86400 && left < 3.1 * 86400, String(left));
     const after_s = number('process_start_time_seconds') - began / 1000, took_s = (Date.now() - began) / 1000;
-    assert.ok(after_s > -2 && after_s < took_s, `${after_s} of ${took_s}`); // the kernel tells the time of its start in whole seconds
+    assert.ok(after_s > -2 && after_s < took_s, `${after_s} of ${took_s}`); // the kernel reports its start time in whole seconds
     assert.ok(number('process_cpu_seconds_total') > 0 && number('process_threads') > 3);
     assert.ok(number('process_max_fds') >= number('process_open_fds'));
     assert.ok(number('process_open_fds') > 5 && number('process_virtual_memory_bytes') > number('process_resident_memory_bytes'));

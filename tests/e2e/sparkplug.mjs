@@ -87,7 +87,7 @@ test('births and data, by name and by alias, of every kind of number', options, 
     await until('TI-1', { ...good, value: 21.25 });
     await until('XS-1', { ...good, value: 0 });
     await until('TI-2', { quality_name: 'Uncertain_NoCommunicationLastUsableValue', value: 3.5 });
-    await until('PI-1', { ...good, value: 5 }); // historical metrics do not change the present value
+    await until('PI-1', { ...good, value: 5 }); // historical metrics do not change the current value
     assert.equal(await metric('historical_total'), 1);
     node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 3, type: 'UInt16', value: null, isNull: true },
         { alias: 4, type: 'Boolean', value: true, properties: { Quality: { type: 'Int32', value: 0 } } }] });

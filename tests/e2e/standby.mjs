@@ -185,7 +185,7 @@ test('history is whole: what the database has is what the API has, and the gaps 
 });
 
 test('nobody was told of an alarm twice, and the journal has each change once, on both', options, async () => {
-    // messages by id, because a killed sender may repeat one
+    // messages by id, because a killed sender may send one twice
     const messages = [...new Map(hook.taken.map((one) => [one.id, one])).values()];
     const told = messages.flatMap(({ alarms }) => alarms.map(({ tag, state, raised }) => `${tag} ${state} ${raised}`));
     assert.deepEqual(told.filter((one, i) => told.indexOf(one) !== i), []);

@@ -43,7 +43,7 @@ test('an answer comes once the standby has what was done', { skip, timeout: 2400
 
 const acknowledge = (client) => client.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });
 
-// Raises the alarm of TI-1, after the former alarm has ended.
+// Raises the alarm of TI-1 after its previous alarm has ended.
 async function raise(...nodes) {
     await two.plant.tell('set TI-1 50');
     await until('the end of the alarm', async () => (await Promise.all(nodes.map((node) => node.alarm()))).every((one) => !one));

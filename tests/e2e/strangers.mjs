@@ -214,7 +214,7 @@ test('text that is not UTF-8 is closed with 1007, and what people write is no fo
     }
     const client = await PlainClient.open(plant.port);
     await client.hello();
-    client.write(encodeFrame(10, Buffer.from([0x80, 0xff, 0xc0, 1]))); // a pong is no text, although a text came before it
+    client.write(encodeFrame(10, Buffer.from([0x80, 0xff, 0xc0, 1]))); // a pong is not text, even if a text came before it
     const two = Buffer.from('{"type":"ping","t":7,"x":"\u20ac"}'), half = two.indexOf(0x82); // split the message within a character
     client.write(Buffer.concat([encodeFrame(1, two.subarray(0, half), { fin: false }), encodeFrame(0, two.subarray(half))]));
     assert.equal((await client.text('pong')).t, 7);

@@ -14,7 +14,7 @@
 
 #define EXPORTED __attribute__((visibility("default")))
 
-static const volatile int64_t *in_file; /* offset in a shared file; NULL: the offset is CLOCK_OFF_S */
+static const volatile int64_t *in_file; /* offset in a shared file; NULL: CLOCK_OFF_S applies */
 
 __attribute__((constructor)) static void map_file(void)
 {

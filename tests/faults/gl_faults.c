@@ -26,7 +26,7 @@ enum gl_object_kind { BUFFER, TEXTURE };
 struct faults {
     /* --- below: written by the test */
     uint32_t losses;      /* number of contexts to lose in total */
-    uint32_t loss_calls;  /* number of GL calls between a requested loss and the loss */
+    uint32_t loss_calls;  /* number of GL calls from the request for a loss until the loss */
     uint32_t refusals;    /* number of context creations that will fail; counts down */
     uint32_t hardware;    /* report the renderer as a GPU; set before the first context is created */
     uint64_t room_bytes;  /* limit on the bytes of all buffers and textures; 0: unlimited */

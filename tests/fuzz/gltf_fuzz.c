@@ -44,7 +44,7 @@ static void check_primitive(const struct gltf_model *model, const struct gltf_pr
     require(sum <= 255ull * p->vertex_count, "colours are there");
 }
 
-/* Returns the number of corners that all nodes draw together. */
+/* Returns the number of corners that all nodes together draw. */
 static uint64_t check_nodes(const struct gltf_model *model)
 {
     uint64_t corners = 0;

@@ -248,7 +248,7 @@ static void expect_truth(const char *name, const struct drawn_error_tally *tally
     assert_true(tally->worst_beyond <= 0.1 * STEP);
 }
 
-/* By straight-line distance nothing is interpolated, so nothing is marked. */
+/* With straight-line distances nothing is interpolated, so nothing is marked. */
 static void expect_exact(const char *name, const struct drawn_error_tally *tally)
 {
     expect_truth(name, tally);

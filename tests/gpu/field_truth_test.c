@@ -87,7 +87,7 @@ TEST_WITH(test_the_hottest_goes_bad, set_up, stand_tear_down)
         assert_true(is_hatched(&view, 2, 2, 0.7));
         assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the other sensors remain, and the lost sensor's 95 has no effect on them */
         view.field.fill = FILL_NEIGHBOURS;
-        assert_false(is_hatched(&view, 2, 2, 0.7)); /* neighbours fill the gap as requested, and it is stippled */
+        assert_false(is_hatched(&view, 2, 2, 0.7)); /* neighbours fill the gap as requested, and the area is stippled */
         struct frame *frame = stand_draw(&stand, &view);
         int dots = 0;
         for (double y = 1.5; y < 2.5; y += 0.021)
@@ -132,7 +132,7 @@ TEST_WITH(test_one_sensor_is_everywhere_it_reaches, set_up, stand_tear_down)
         toy_set(stand.snapshot, HOTTEST, 60, QUALITY_GOOD);
         assert_int_equal(shown_at(&view, 2, 2), 153);
         assert_int_equal(shown_at(&view, 2.5, 2.4), 153);
-        assert_true(is_hatched(&view, 0.2, 0.2, 0.2)); /* the position of a lost sensor is hatched */
+        assert_true(is_hatched(&view, 0.2, 0.2, 0.2)); /* the area around a lost sensor is hatched */
     }
 }
 

@@ -15,7 +15,7 @@
 
 #define ENCODES "plantcast_encodes_total{codec=\"jpeg\"}"
 enum { REFINER = 1, MOVER = 2, PICKER = 3, VIEWERS = 100 };
-static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* age from which a frame is not shared any more */
+static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* age from which a frame is no longer shared */
 static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far longer than any frame takes, also under sanitizers */
 
 static struct toy *toy;
@@ -181,7 +181,7 @@ TEST(test_a_snapshot_goes_before_a_later_refinement)
         sum += encoded->client;
         encoded_frame_destroy(&encoded);
     }
-    assert_int_equal(sum, REFINER + MOVER + PICKER); /* the large frame continues although nobody requests anything more */
+    assert_int_equal(sum, REFINER + MOVER + PICKER); /* the large frame continues although nobody requests anything further */
     for (int i = 0; i < 3; i++)
         render_service_forget(service, clients[i]);
 }
@@ -923,7 +923,7 @@ TEST(test_pictures_fly)
             encoded_frame_destroy(&encoded);
         }
         if (clock_mono_ns() - begin_ns > RECENT_NS / 2)
-            most += CLIENTS / 4; /* tolerates that frames became too old to be shared */
+            most += CLIENTS / 4; /* tolerates frames that have become too old to be shared */
     }
     assert_in_range(count_of("plantcast_renders_total") - renders, ROUNDS * CLIENTS / 2, most);
     assert_int_equal(count_of("plantcast_gl_losses_total"), losses + 1);

@@ -203,7 +203,7 @@ TEST_WITH(every_way_to_say_it_looks_the_same, prep_case_set_up, prep_case_tear_d
     assert_int_equal(d[NAMED_BY_TRANSFORM].most, 0);
     assert_true(d[TRANSFORMED].most <= 1);
     assert_true(d[MIRRORED_IMAGES].mean < 0.1 && d[MIRRORED_IMAGES].beyond < 0.001); /* rounding decides at the borders of texels */
-    /* the comparison means something only if the textures are visible */
+    /* the comparison is meaningful only if the textures are visible */
     assert_true(d[BASE_ONLY].mean > 3);
     for (int way = 0; way < WAYS; way++)
         frame_unref(&frames[way]);

@@ -380,7 +380,7 @@ TEST(test_ghosts)
     }
 }
 
-/* The other looks: light has as fine steps as colours. */
+/* The other looks: light has steps as fine as the colours'. */
 TEST(test_gloss_and_materials)
 {
     for (int i = 0; i < 8; i++) {

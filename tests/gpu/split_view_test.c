@@ -127,7 +127,7 @@ TEST_WITH(test_launched_together, set_up, stand_tear_down)
     renderer_use_gl(stand.renderer, false);
 }
 
-/* A split view may become too narrow to be split. */
+/* A split view may become too narrow to split. */
 TEST_WITH(test_narrow, set_up, stand_tear_down)
 {
     struct view view;

@@ -103,7 +103,7 @@ static bool prepare(struct sensor_crowd *crowd, struct log *log, struct workers 
 
 /* --- positions of the sensors ------------------------------------------------------------------------------------------------- */
 
-/* Puts each sensor at the vertex farthest from the previous ones. */
+/* Puts each sensor at the vertex farthest from the earlier ones. */
 static void spread(struct places *places, const struct asset_view *view)
 {
     uint32_t vertices = view->header->vertex_count, next = 0;

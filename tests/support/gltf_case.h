@@ -6,7 +6,7 @@
 
 struct gltf_case {
     char *folder;
-    struct gltf_model model; /* the model that was read; valid if `good` */
+    struct gltf_model model; /* the last model read; valid if `good` */
     char why[MODEL_WHY_BYTES];
     bool good;
 };

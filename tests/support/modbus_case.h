@@ -17,7 +17,7 @@ struct modbus_case {
 
 int modbus_case_set_up(void **state); /* set-up for cmocka: *state is a struct modbus_case, whose store has room for 300 tags */
 int modbus_case_tear_down(void **state);
-void modbus_case_be_impatient(struct modbus_case *c);              /* shortens timeouts, for devices that let the source wait */
+void modbus_case_be_impatient(struct modbus_case *c);              /* shortens timeouts, for devices that make the source wait */
 void modbus_case_add_registers(struct modbus_case *c, int count);  /* adds holding registers 0, 1, ... as INT16 tags */
 void modbus_case_start(struct modbus_case *c); /* starts the source */
 void modbus_case_serve(struct modbus_case *c); /* starts the device, then the source */

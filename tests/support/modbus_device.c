@@ -124,7 +124,7 @@ static int catch_foreign(struct device_thread *t, const uint8_t *request, int by
     return count;
 }
 
-/* Sends the answer with a part of it spoilt. */
+/* Sends the answer with a part of it corrupted. */
 static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request, int bytes, int manner)
 {
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];

@@ -16,7 +16,7 @@ enum device_manner {
     DEVICE_BEHIND,      /* precedes each answer by one with the previous request's transaction number and wrong values */
     DEVICE_RESETTING,   /* accepts a request, then resets the connection */
     DEVICE_SHORT,       /* sends the answer without its last byte */
-    DEVICE_LONG,        /* sends an answer whose count of values exceeds the request */
+    DEVICE_LONG,        /* sends an answer with more values than requested */
     DEVICE_GARBAGE,     /* sends random bytes */
     DEVICE_FOREIGN,     /* sends another unit's answer, with that unit's values */
     DEVICE_MEASURED,    /* sends wrong values in an answer whose header gives the length said_length */
@@ -43,7 +43,7 @@ struct modbus_device { /* members may be set before the start or while the devic
     _Atomic int silent_unit;             /* unit that never answers; 0: none */
     _Atomic int requests, refused, connections;
     _Atomic int functions;               /* bit f: function code f was requested */
-    _Atomic int most;                    /* largest number of registers or bits in one request */
+    _Atomic int most;                    /* largest number of registers or bits in one request so far */
     /* last_ns: time of the last answer; least_gap_ns: shortest pause between an answer and the next request, 0: unknown */
     _Atomic int64_t last_ns, least_gap_ns;
     enum device_wire wire;               /* set before the start; RTU knows unit 1 only */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A made-up plant of point clouds with sensors. */
+/* A synthetic plant of point clouds with sensors. */
 #include "tests/support/synthetic.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ static float along_axes(const float a[3], const float b[3])
 static void build_file(struct synthetic *synthetic, const struct synthetic_params *params)
 {
     static const float box_m[3] = { 10, 6, 4 };
-    static const uint32_t indices[3] = { 0, 0, 0 }; /* a triangle without area: only vertices are used */
+    static const uint32_t indices[3] = { 0, 0, 0 }; /* a degenerate triangle, because only vertices are used */
     static const struct asset_primitive primitive = { .index_count = 3 };
     static const struct asset_material material = {
         .roughness = 1,

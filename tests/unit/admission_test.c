@@ -191,7 +191,7 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     /* refused: with four moving sessions, each would get fewer frames per second than the limit least-fps allows */
     assert_true(admission_refuses(&admission, &shares[1], 1000));
     struct address_share third = { 0 };
-    assert_int_equal(0, admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses are 10 each */
+    assert_int_equal(0, admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses: 10 for each */
     quotas_parse(&quotas, "least-fps=11");
     assert_true(admission_refuses(&admission, &third, 1000));
 }

@@ -104,7 +104,7 @@ TEST(every_state_has_its_word)
     assert_int_equal(alarm_kind_find("XX"), ALARM_NONE);
 }
 
-/* Checks what must hold for every reachable state under any rule. */
+/* Checks what must hold in every reachable state under any rule. */
 static void check_invariants(const struct alarm_state *state, const struct alarm_rule *rule)
 {
     enum alarm_status word = alarm_state_status(state, rule);

@@ -16,7 +16,7 @@ struct stage { /* fixture. Limits: TT: LL 0, L 10, H 80, HH 90; PT: H 5 with a d
     struct alarms *alarms;
     struct snapshot *snapshot;
     char log[4000]; /* lines about all alarm events so far */
-    int told[8];    /* for each tag, the gravest alarm that on_tag() was told last */
+    int told[8];    /* for each tag, the most severe alarm that on_tag() last received */
 };
 
 static void on_change(void *arg, const struct alarm_change *change)
@@ -285,7 +285,7 @@ TEST(what_was_kept_is_taken_up)
     assert_string_equal(word(&next, 0, ALARM_H), "shelved");
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
     hear(&next, 6, 0, 95, QUALITY_GOOD);
-    assert_told(&next, "");                /* the alarm is still active and not raised again */
+    assert_told(&next, "");                /* the alarm is still active and is not raised again */
     next.snapshot->taken_mono_ns = 27 * S; /* 22 s of the shelved time were left */
     next.snapshot->taken_utc_ns = UTC + 62 * S;
     alarms_tick(next.alarms, next.snapshot);

@@ -571,12 +571,12 @@ TEST(damaged_packed_distances_are_refused)
     const size_t block = packed.offsets[1];
     /* refused: the offset table says that block 0 of the distances begins inside the table itself */
     packed_refused(&packed, 0, 8);
-    packed_refused(&packed, sizeof(uint64_t) + 7, 0x80);   /* refused: block 1 of the distances begins beyond the section's end */
+    packed_refused(&packed, sizeof(uint64_t) + 7, 0x80);   /* refused: block 1 of the distances begins beyond the end of the section */
     packed_refused(&packed, BLOCKS * sizeof(uint64_t), 0); /* refused: the last block of the distances ends before its section does */
     /* refused: the distances of sensor 5 are predicted from sensor 5 itself */
     packed_refused(&packed, block + 4 * 5, 5);
     packed_refused(&packed, block + 4 * 5 + 2, 17);        /* 17 bits */
-    packed_refused(&packed, block + 4 * 5 + 3, 16);        /* refused: the distances take more bits than the block has */
+    packed_refused(&packed, block + 4 * 5 + 3, 16);        /* refused: the distances take more bits than their block has */
     struct asset_bytes f = build_packed(&packed);
     f.header->sections[ASSET_GEODESIC].bytes -= 16;
     refused_sealed(&f, "section geodesic: ");

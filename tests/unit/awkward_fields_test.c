@@ -15,7 +15,7 @@
 #define POINTS 20000      /* number of random points that are checked per distance method */
 #define FEW 4             /* number of points whose error may exceed one colour step */
 #define FEW_AT_RIMS 1000  /* where reaches end, */
-#define MOST_STEPS 4.0    /* largest allowed error of any point, in colour steps */
+#define MOST_STEPS 4.0    /* largest allowed error at any point, in colour steps */
 #define ROUNDING 1.1      /* allowance in steps, because distances are floats */
 /* the report's error is measured at sample points; between them the error may be this many times as large */
 #define NAMED 2.0

@@ -66,7 +66,7 @@ TEST(files_are_read_whole_and_replaced_at_once)
     assert_memory_equal(text,
                         "12\0"
                         "456",
-                        7); /* the buffer has one 0 byte after the file's content */
+                        7); /* the buffer has one zero byte after the file's content */
     mem_free(text);
     assert_null(text_read_file(path, 5, &bytes));
     assert_int_equal(errno, EFBIG);

@@ -18,7 +18,7 @@ TEST(what_keeps_it_right_is_believed)
     assert_int_equal(clock_state_of(&timex, TIME_INS).leap_s, 1);
     timex.status = STA_PLL | STA_DEL;
     assert_int_equal(clock_state_of(&timex, TIME_DEL).leap_s, -1);
-    timex.status = STA_PLL | STA_INS; /* during the leap second itself, and in the second after it */
+    timex.status = STA_PLL | STA_INS; /* during the leap second itself and the second after it */
     assert_true(clock_state_of(&timex, TIME_OOP).set);
     assert_true(clock_state_of(&timex, TIME_WAIT).set);
 }

@@ -139,7 +139,7 @@ TEST(test_serpentine)
         p[2] = (float)(turn * gap_m + fmax(rest_m - leg_m, 0));
     }
     make(&made, (const double[3]){ 0, 0, 0 });
-    expect_errors(&made, "serpentine", truth, 0.04, 0.08); /* at the ribbon's 200 bends the point cloud cuts the corner */
+    expect_errors(&made, "serpentine", truth, 0.04, 0.08); /* at the ribbon's 200 bends the point cloud cuts corners */
     mem_free(truth);
     finish(&made);
 }

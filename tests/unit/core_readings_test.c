@@ -123,7 +123,7 @@ TEST(late_readings_are_older)
         int64_t late_ns = i == 1 ? 5 * S : 0;
         assert_late(&way, (50 + i) * S, (1000 + i) * S + late_ns, late_ns);
     }
-    for (int i = 0; i < 100; i++) { /* 40 hours in which our clock is fast by 50 ppm */
+    for (int i = 0; i < 100; i++) { /* for 40 hours, our clock runs fast by 50 ppm */
         int64_t passed_ns = (3 + 1440 * (int64_t)i) * S;
         assert_late(&way, 50 * S + passed_ns, 1000 * S + passed_ns + passed_ns / 20000, 0);
     }

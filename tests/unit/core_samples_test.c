@@ -66,7 +66,7 @@ TEST(nonsense_is_refused)
     text.at[8] = TAGS; /* changes the first sample's tag */
     assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample");
     text.at[8] = 1;
-    text.at[8 + 4 + 3] = (char)0x80; /* makes the sample Bad although it has a value */
+    text.at[8 + 4 + 3] = (char)0x80; /* marks the sample Bad although it has a value */
     assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample");
     text.at[8 + 4 + 3] = 0;
     assert_null(read_text(&text, &got, &count));

@@ -45,7 +45,7 @@ static void open_text(struct csv_fixture *f, const char *text)
     open_bytes(f, text, strlen(text));
 }
 
-/* Asserts the next row; `joined` has its cells separated by |. */
+/* Asserts the next row; `joined`: its cells, separated by |. */
 static void assert_row(struct csv_fixture *f, const char *joined)
 {
     char got[1000] = "";

@@ -268,11 +268,11 @@ TEST(an_open_circuit_s_value_is_no_reading)
     number.scale.sentinels[0].number = -9999;
     number.scale.sentinel_count = 1;
     assert_int_equal(decode(&number, (uint16_t[]){ 0x3C00, 0xC61C }).quality, QUALITY_BAD_SENSOR_FAILURE);
-    number.scale.sentinels[0].number = -999.9; /* no float of 32 bits; the nearest is C479F99A */
+    number.scale.sentinels[0].number = -999.9; /* not representable as a 32-bit float; the nearest one is C479F99A */
     assert_int_equal(decode(&number, (uint16_t[]){ 0xF99A, 0xC479 }).quality, QUALITY_BAD_SENSOR_FAILURE);
     assert_int_equal(decode(&number, (uint16_t[]){ 0xF99B, 0xC479 }).quality, QUALITY_GOOD);
     struct sample sample;
-    decode_number(&number, (double)-999.9F, &sample); /* OPC UA and Sparkplug have floats of 32 bits too */
+    decode_number(&number, (double)-999.9F, &sample); /* OPC UA and Sparkplug also have 32-bit floats */
     assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);
     decode_number(&number, -999.9, &sample); /* JSON */
     assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);

@@ -60,7 +60,7 @@ static void write_model(struct prep_case *c, bool is_new)
     boxes_add(&maker, "CHANGED", (const double[3]){ 40, 0, 0 }, (const double[3]){ 41, 1, is_new ? 1.05 : 1 });
     boxes_add(&maker, is_new ? "VESSEL" : "GONE", (const double[3]){ 50, 0, 0 }, (const double[3]){ 51, 1, 1 });
     boxes_add(&maker, is_new ? "ADDED" : "DROPPED", (const double[3]){ 60, 0, 0 }, (const double[3]){ 61, 1, 1 });
-    if (is_new) /* the new model has a name that resembles the lost GONE */
+    if (is_new) /* the new model has a name that resembles the missing GONE */
         boxes_add(&maker, "GONE1", (const double[3]){ 70, 0, 0 }, (const double[3]){ 71, 1, 1 });
     maker_node(&maker, "TT-1", -1, json_pack("{s:[fff]}", "translation", 11.0, is_new ? 2.5 : 0.5, 0.5));
     if (!is_new)
@@ -140,7 +140,7 @@ static void check_tags(const json_t *root)
     const json_t *changed = named(root, "sensors", "tag", "T-CHANGED"), *below = named(root, "sensors", "tag", "T-BELOW");
     assert_float_equal(prep_case_number(same, "surface_moved_m"), 0, 1e-6);
     assert_true(json_is_false(json_object_get(same, "moved")));
-    /* six faces are equally near, so any is right */
+    /* six faces are equally near, so any of them is right */
     assert_true(json_is_false(json_object_get(named(root, "sensors", "tag", "T-MIDDLE"), "moved")));
     assert_float_equal(prep_case_number(carried, "surface_moved_m"), 2, 1e-5); /* the sensor's node moved with the asset, and the sensor
                                                                                   is still on the surface */
@@ -190,7 +190,7 @@ CASE(nothing_lost_is_no_error)
     root = compare(c, "$FOLDER/old.yaml $FOLDER/old.yaml", 0);
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
-    /* no difference is reported: subdivided triangles are the same surface */
+    /* no difference is reported: subdivision leaves the surface the same */
     root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 0);
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
 }

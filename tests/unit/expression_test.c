@@ -128,7 +128,7 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     const struct plant *plant = c->plant;
     assert_true(plant->tags[0].source == -1 && plant->derived_count == 2 && plant->derived[0] == 3 && plant->derived[1] == 0);
     assert_true(plant->tags[3].validity.stale_s == 60 &&
-                plant->tags[0].validity.stale_s == 60); /* a derived tag's stale time is that of its inputs */
+                plant->tags[0].validity.stale_s == 60); /* a derived tag has the stale time of its inputs */
     struct store *store = test_store(plant);
     struct snapshot *snapshot = test_snapshot(plant->tag_count);
     struct derived_state *derived = derived_create(plant);
@@ -186,7 +186,7 @@ TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down
         { 1, 19, 22, 2, QUALITY_GOOD, 8 }, /* older than the newest input */
         { 1, 23, 30, 0, QUALITY_BAD_SENSOR_FAILURE, NAN },
         { 1, 24, 31, 2, QUALITY_GOOD, 8 },
-        { 1, 25, 32, 1, QUALITY_GOOD, 9 }, /* sampled before the time at which the result became Good again */
+        { 1, 25, 32, 1, QUALITY_GOOD, 9 }, /* sampled before the result became Good again */
     };
     for (size_t i = 0; i < sizeof(steps) / sizeof(*steps); i++) {
         write_one(store, steps[i].tag, steps[i].value, steps[i].quality, steps[i].sampled_s * S);

@@ -239,7 +239,7 @@ static void randomize(struct field_rig *rig, uint64_t *random)
     p->power = synthetic_random(random) % 3 ? between(random, 0.5, 6) : 2;
     p->radius_m = synthetic_random(random) % 2 ? 0 : between(random, 2, 20);
     p->reach_m = synthetic_random(random) % 3 ? (double)INFINITY : between(random, 1, 8);
-    size_t mood = synthetic_random(random) % 4; /* how many sensors are Bad: none, some, many, all but few */
+    size_t mood = synthetic_random(random) % 4; /* how many sensors are Bad: none, some, many, or all but a few */
     for (size_t i = 0; i < rig->plant->scene.assets[0].sensor_count; i++) {
         double dice = synthetic_random_unit(random);
         rig->plant->plant.tags[i].strength = dice < 0.5 ? 1 : between(random, 0, 2);
@@ -650,9 +650,9 @@ TEST(test_reach_ends_the_field)
     const struct scalars *scalars = show(&rig);
     for (size_t k = 0; k < 4; k++) {
         assert_int_equal(scalars->at[20 + k].no_data, k < 2 ? 0 : 255);
-        assert_true(scalars->at[20 + k].value == 30); /* values continue beyond the border of the data, for interpolation */
+        assert_true(scalars->at[20 + k].value == 30); /* for interpolation, values continue beyond the edge of the data */
     }
-    assert_int_equal(scalars->at[21].lacking, 127); /* the rim lies 2 m away wherever the vertices are */
+    assert_int_equal(scalars->at[21].lacking, 127); /* the rim lies 2 m away, wherever the vertices are */
     assert_int_equal(scalars->at[22].lacking, 128);
     assert_true(scalars->at[20].lacking < 127 && scalars->at[23].lacking > 128);
     rig_finish(&rig);
@@ -675,7 +675,7 @@ TEST(test_a_sensor_fades_towards_its_reach)
         }
         synthetic_set_distance(rig.plant, 0, 20, 4);
         synthetic_set_distance(rig.plant, 1, 20, 4);      /* exactly at the reach of both sensors: the value mixes both readings */
-        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* a vertex reached by one sensor alone shows no fading */
+        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* fading does not show at a vertex reached by only one sensor */
         synthetic_set_distance(rig.plant, 1, 21, 4.001f);
         const struct scalar *at = show(&rig)->at + 20;
         /* at 3 m the second sensor has half of the weight that remains beside the nearest one */
@@ -1130,7 +1130,7 @@ static void check_many_at_once(size_t sensors)
             const struct scalars *want = field_scalars_of(alone, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
             const struct scalars *got = field_scalars_of(rig.field, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
             assert_int_equal(got->asset, assets[i]);
-            for (size_t v = 0; v < counts[i]; v++) { /* sums that were dropped and computed again are rounded differently */
+            for (size_t v = 0; v < counts[i]; v++) { /* sums dropped and computed again are rounded differently */
                 assert_true(fabsf(got->at[v].value - want->at[v].value) < 1e-4f);
                 assert_true(got->at[v].no_data == want->at[v].no_data && got->at[v].uncertain == want->at[v].uncertain &&
                             got->at[v].lacking == want->at[v].lacking && got->at[v].no_limits == want->at[v].no_limits);
@@ -1437,7 +1437,7 @@ TEST(test_difference_needs_both)
     /* no difference: sensor 1 was Bad in the baseline, and sensor 3 is Bad now */
     assert_true(scalars->at[1].no_data && scalars->at[3].no_data);
     assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* sensor 2 was Uncertain then */
-    assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that came back does not count as a change */
+    assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that is back does not count as a change */
     /* sessions share baselines: the new readings also replace the baseline that this session shows */
     baselines_set(baselines, "then", rig.plant->snapshot);
     scalars = show(&rig);

@@ -68,7 +68,7 @@ TEST(test_readings_and_those_behind_the_eye)
     snapshot_destroy(&snapshot);
 }
 
-/* A distance is told in metres, whatever unit the reading has. */
+/* A distance is stated in metres, whatever the unit of the reading. */
 TEST(test_distances_stay_what_they_are)
 {
     static const double now[TAGS] = { 25, 28, 41, 50 };

@@ -86,7 +86,7 @@ static void in_folder(const struct prep_case *c, const char *command)
     assert_int_equal(system(whole), 0);
 }
 
-/* Makes the plant of a test; nothing is prepared yet. */
+/* Makes the plant of a test, without preparing anything. */
 static int set_up(void **state)
 {
     *state = made.c;
@@ -210,7 +210,7 @@ CASE(a_changed_sensor_costs_its_own_distances)
     }
 }
 
-/* Returns the path of the folder's only file with this ending. */
+/* Returns the path of the only file in the folder with this suffix. */
 static char *kept_file(const struct prep_case *c, const char *ending)
 {
     char path[400] = "", *command = mem_printf("ls '%s'/kept/*%s", c->folder, ending);

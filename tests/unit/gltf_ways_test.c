@@ -712,7 +712,7 @@ CASE(assets_are_cut_from_a_tree)
     try_model(l, &maker);
     assert_good(l);
 
-    struct geometry g = cut(l, "far", 1, AXIS_Z); /* an asset 6,000 km away: the sheet's coordinates lose no digit */
+    struct geometry g = cut(l, "far", 1, AXIS_Z); /* an asset 6,000 km away: the sheet's coordinates lose no digits */
     assert_float_equal(g.origin_m[0], 500001, 1e-9);
     assert_float_equal(g.origin_m[1], 6000000.5, 1e-9);
     double step = 1;

@@ -277,7 +277,7 @@ static void write_old(struct historian_setup *s, double value, int64_t utc_ns)
     store_write(s->store, &(struct sample){ 0, value, QUALITY_GOOD }, 1, clock_mono_ns() - age_ns, utc_ns);
 }
 
-/* Readings never become stale, as those of OPC UA. */
+/* Makes readings never stale, like those of OPC UA. */
 static void never_stale(struct historian_setup *s)
 {
     for (int i = 0; i < TAGS; i++)

@@ -179,7 +179,7 @@ CASE(long_answers_come_in_pieces)
     struct history_answer *answer = wait_for(s, ++pieces);
     assert_true(answer->first && !answer->last && answer->length > 256 * 1024);
     sleep_ns(50 * NS_PER_MS);
-    assert_null(history_queries_collect(s->queries)); /* no further part before the client asks for it */
+    assert_null(history_queries_collect(s->queries)); /* no further part until the client asks for it */
     for (;;) {
         bool last = answer->last;
         text_add_bytes(&all, answer->text, answer->length);

@@ -466,7 +466,7 @@ CASE(every_point_comes_back_bit_by_bit)
         if (rand() % 200 == 0)
             assert_int_equal(month_file_tidy(file), 0);
         if (rand() % 300 == 0) {
-            month_file_close(&file); /* closes the file without tidying it, as a killed daemon does */
+            month_file_close(&file); /* closes the file without cleaning it up, as a killed daemon does */
             file = open_file(s, NOVEMBER);
         }
         if (second % 700 == 699)
@@ -1083,7 +1083,7 @@ CASE(a_month_that_is_too_large_loses_its_beginning)
         apply_for_some_minutes(s, LIMIT, from_us);
     }
     int64_t large = size_of_month(s, NOVEMBER);
-    record_a_lot(s, from_us); /* new points reuse the space that deletion freed in the file */
+    record_a_lot(s, from_us); /* new points reuse the space freed by the deletion */
     assert_true(size_of_month(s, NOVEMBER) < large + LIMIT);
     apply_for_some_minutes(s, LIMIT, from_us);
     check_what_is_left(s, from_us + (LOT - 1) * US_PER_S);
@@ -1169,7 +1169,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     retention_apply(s->log, s->folder, &limits, march_us, &unsent);
     assert_int_equal(unsent, 0);
     mem_free(month_list(s->folder, &count));
-    assert_int_equal(count, 2); /* the month whose points were all sent was deleted */
+    assert_int_equal(count, 2); /* the month whose points had all been sent was deleted */
     /* an oversized month file loses its oldest points; unsent ones among them are counted */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
     assert_int_equal(waiting, 20000);

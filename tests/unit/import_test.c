@@ -226,7 +226,7 @@ CASE(a_gap_is_no_data)
     assert_true(read_at(s, "h", 0, -1 * DAY_US + 5 * US_PER_S).value == 100);
 }
 
-/* The only spacing between two samples may itself be a gap. */
+/* The only interval between two samples may itself be a gap. */
 CASE(two_samples_alone_are_no_line)
 {
     assert_true(import(s, "alone", "Time,FT-1\n0,1\n172800,2\n", OCTOBER_25 - 2 * DAY_US, US_PER_S));

@@ -247,7 +247,7 @@ CASE(test_picks_of_fin_tell_their_error)
     assert_true(look(&u, place_of(1) + 0.3)->uncertain == 0);
     assert_true(u.scalars->drawn_error == 0);
     finish(&u);
-    /* d = 0.075 m: the field errs in most triangles */
+    /* d = 0.075 m: the field is inexact in most triangles */
     begin(&u, c, ", thickness_m: 0.001", ", interpolation: fin, ambient: 20, disc_m: 0.1", SENSORS);
     look(&u, 0);
     assert_true(u.scalars->drawn_error > 1);
@@ -337,7 +337,7 @@ CASE(test_distances_by_heat)
             assert_true(pass || fabs((double)ours[i] - fabs(x_m - place_of(1))) < 0.12);
         }
         u.params.distance = DISTANCE_HEAT;
-        bool differs = false; /* some distances must differ, which shows that another method ran */
+        bool differs = false; /* some distances must differ, which shows that the other method ran */
         for (int i = 0; i < 64; i++)
             differs = differs || look(&u, STRIP_M * i / 63)->value != ours[i];
         assert_true(differs);
@@ -652,7 +652,7 @@ CASE(test_suggestions_gain_less_and_less)
         before = list[i].after;
     }
     assert_true(list[0].at_m[0] > place_of(1) + seen_m && list[0].at_m[0] < STRIP_M - seen_m / 2);
-    for (double x = 0; x < STRIP_M; x += 0.05) { /* compares with positions tried one by one along a line */
+    for (double x = 0; x < STRIP_M; x += 0.05) { /* compares with a brute-force search of positions along a line */
         double gain = 0;
         for (double at = 0.005; at < STRIP_M; at += 0.01) {
             double near = fmin(fabs(at - place_of(0)), fabs(at - place_of(1))), now = fmin(near, fabs(at - x));

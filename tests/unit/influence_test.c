@@ -359,7 +359,7 @@ TEST(test_many_sensors_are_solved_in_blocks)
     finish(&s);
 }
 
-/* Sensors whose whole body has lost all sensors get no value. */
+/* Sensors on a body that has lost all of its sensors get no value. */
 TEST(test_all_lost)
 {
     const double precision[4] = { 1, -1, -1, 1 };

@@ -148,7 +148,7 @@ TEST(no_value_changes_faster_than_is_said)
         for (size_t i = 0; i < trial.count; i++) {
             if (trial.distance_m[i] < radius_m)
                 trial.distance_m[i] = fminf(fmaxf(trial.distance_m[i], step_m), 0.95f * radius_m);
-            /* around the reach the weight changes slowly at first, then faster */
+            /* within a fifth of the reach, the weight changes slowly at first and then faster */
             if (fabsf(trial.distance_m[i] - reach_m) < 0.2f * reach_m)
                 trial.distance_m[i] = i % 2 ? 0.8f * reach_m : 1.2f * reach_m;
         }

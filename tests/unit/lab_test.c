@@ -43,7 +43,7 @@ TEST(test_no_shading_leaves_the_color)
         uint8_t out[3];
         lab_shade(colors[i], 0, out);
         assert_memory_equal(out, colors[i], 3);
-        lab_shade(colors[i], 7, out); /* at the limit of sRGB: as far as the gamut allows */
+        lab_shade(colors[i], 7, out); /* at the limit of sRGB: as far as the gamut permits */
         assert_true(i != 1 || memcmp(out, colors[i], 3) == 0);
     }
 }

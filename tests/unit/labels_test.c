@@ -149,7 +149,7 @@ TEST(many_labels_do_not_overlap)
     assert_true(shown > 3);
 }
 
-/* Also with all markers in one place, and with none. */
+/* Even with all markers in one place, and with none. */
 TEST(draws_the_first_of_thousands)
 {
     enum { COUNT = 4096 };

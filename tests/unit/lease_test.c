@@ -211,7 +211,7 @@ static void ask_database(struct lease_world *world, struct lease_node *node, int
     struct flight *flight = send(world, what, i, NODES);
     node->waits = true;
     node->waits_since_ns = world->now_ns;
-    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* the time of sending differs between incarnations of a node */
+    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* the time of sending differs between restarts of a node */
     if (!flight)
         return;
     flight->row = node->lease.row;
@@ -428,7 +428,7 @@ TEST(a_follower_waits_for_what_binds_it)
     struct lease c = follower("c", &led, 10 * S);
     assert_false(lease_may_bid(&c, 1000 * S)); /* b may have promised */
     struct lease a = follower("a", &led, 10 * S);
-    assert_true(lease_may_bid(&a, 13 * S)); /* node a started again may bid for its own lease */
+    assert_true(lease_may_bid(&a, 13 * S)); /* node a, restarted, may bid for its own lease */
 }
 
 TEST(a_leader_counts_the_standby_that_the_row_names)

@@ -459,7 +459,7 @@ CASE(reconnects_with_a_thousand_files_open)
         files[i] = dup(2);
     assert_true(files[FILES - 1] >= 1024);
     device_start(&s->device);
-    for (int i = 0; i < LOW; i++) /* the test device's libmodbus needs a descriptor below 1024 too */
+    for (int i = 0; i < LOW; i++) /* the test device's libmodbus also needs a descriptor below 1024 */
         close(files[i]);
     modbus_case_expect(s, 0, QUALITY_GOOD, 8);
     for (int i = LOW; i < FILES; i++)

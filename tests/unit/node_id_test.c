@@ -29,7 +29,7 @@ TEST(it_is_kept_and_never_shared)
     node_id_release(&node);
 }
 
-/* The same text in another file, as `cp -a` leaves it. */
+/* The same text in another file, as made by `cp -a`. */
 TEST(a_copy_is_another)
 {
     struct node_id node = { 0 };

@@ -262,7 +262,7 @@ TEST(test_log_ins)
     for (int i = 0; i < 3 * SIGN_INS; i++)
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     assert_true(sign_ins_take(table, first.state, first.binding, 3 * NS_PER_S, &taken));
-    for (int i = 0; i < 2 * SIGN_INS; i++) { /* many addresses together do not exceed the table's size either */
+    for (int i = 0; i < 2 * SIGN_INS; i++) { /* nor do many addresses together exceed the table's size */
         memcpy(there, &i, sizeof(i));
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     }

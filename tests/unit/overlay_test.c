@@ -318,7 +318,7 @@ TEST(halves_say_what_they_differ_in)
     frame_unref(&plain);
 }
 
-/* Returns a checksum of one part of a frame. */
+/* Returns a checksum of a part of a frame. */
 static unsigned sum_of(const struct frame *frame, const struct label_box *box)
 {
     unsigned sum = 0;

@@ -342,7 +342,7 @@ TEST(who_see_the_same_take_one_step)
     assert_int_equal(common, 1); /* 10 of 100 clients are on slower quality steps; they must not pull down the step that all share */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
                      QUALITY_LADDER_STEPS - 1);
-    seen.unit_bytes = 90e3; /* bytes per frame: too many for 500 clients, not for 100 */
+    seen.unit_bytes = 90e3; /* bytes per frame: too many for 500 clients but not for 100 */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 100 }), 0);
     int crowd = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 500 });
     assert_true(crowd > 0 && quality_ladder_rung(&seen, crowd).scale == 1);

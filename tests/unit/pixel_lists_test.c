@@ -188,7 +188,7 @@ static void tally_fields(int count, bool paper, bool odd, int rounds)
                       paper ? "paper" : "shepard", odd ? ", odd" : "", count, sizes[s], tally.pixels, tally.worst,
                       (double)tally.sensors / (double)tally.lists, (double)tally.built_ns / (double)tally.lists, tally.flags_off);
         assert_true(tally.worst <= 0.8);
-        assert_true(tally.flags_off <= tally.pixels / 100); /* flags may differ where two sensors are about equally near */
+        assert_true(tally.flags_off <= tally.pixels / 100); /* flags may differ where two sensors are nearly equally near */
     }
 }
 

@@ -364,7 +364,7 @@ CASE(a_field_that_is_constant_needs_no_triangles)
             assert_int_equal(json_is_null(json_object_get(surface, n ? "heat_disagreement" : "time_m2")), more == 0);
     }
     assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */
-    /* paper's field peaks at the sensor, so triangles are subdivided */
+    /* paper's field peaks at the sensor, so triangles are subdivided there */
     assert_true(triangles[1] > triangles[0] + 8);
     assert_true(triangles[2] == triangles[1]);
 }

@@ -110,7 +110,7 @@ CASE(every_sample_comes_at_its_time)
         assert_true(llabs(got[i].utc_ns - got[0].utc_ns - (int64_t)(at_s[i] * 1e7)) < NS_PER_MS);
     }
     assert_int_equal(of_tag(s, 1, got, 20), 4); /* blank cells are no samples */
-    wait_for_link(s, false);                    /* after the end of the replay no value looks live */
+    wait_for_link(s, false);                    /* after the replay has ended no value appears live */
 }
 
 CASE(values_beyond_the_range_are_uncertain)

@@ -86,7 +86,7 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         { "assets.1.surface.longest_bridge_m", 0, 0 },
         { "assets.1.surface.unreachable_vertices", 24, 24 }, /* unreachable vertices: the other box, three per corner */
         { "assets.1.sensors.0.surface_distance_m", 0.5 - 1e-6, 0.5 + 1e-6 },
-        { "assets.1.sensors.0.limit_m", 0.122, 0.123 }, /* 5 % of the diagonal, which is hypot(2, 1, 1) m */
+        { "assets.1.sensors.0.limit_m", 0.122, 0.123 }, /* 5 % of the diagonal, hypot(2, 1, 1) m */
         { "assets.2.surface.components_before", 2, 2 },
         { "assets.2.surface.hidden_vertices", 24, 24 },
         { "assets.2.sensors.0.surface_distance_m", 0.02 - 1e-6, 0.02 + 1e-6 },

@@ -15,7 +15,7 @@ static const struct history_point *at(const struct history_point *points, int co
     return &points[i];
 }
 
-/* Computes a bucket by adding up each microsecond by itself. */
+/* Computes a bucket by adding up microsecond by microsecond. */
 static void slow_truth(const struct history_point *points, int count, bool step, int64_t begin_us, struct history_bucket *out)
 {
     double sum = 0;
@@ -66,7 +66,7 @@ static int make_points(struct history_point *points, unsigned seed)
     for (int i = 0; i < POINTS; i++) {
         bool bad = rand() % 7 == 0;
         t += 1000 + rand() % (rand() % 5 ? 3000 : 40000);
-        if (seed % 3 == 0 && i % 2) /* some points lie exactly at the border of two buckets */
+        if (seed % 3 == 0 && i % 2) /* some points lie exactly on the boundary of two buckets */
             t += LENGTH - t % LENGTH;
         points[i] = (struct history_point){ t, bad ? NAN : rand() % 100, bad ? 0x80050000u : rand() % 9 ? 0 : 0x40900000u };
     }

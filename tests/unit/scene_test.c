@@ -322,7 +322,7 @@ CASE(home_is_the_view_of_the_plant)
         assert_true(least >= scene->bounds_min_m[i] - 1e-4 && most <= scene->bounds_max_m[i] + 1e-4);
         assert_true(least <= scene->bounds_min_m[i] + slack && most >= scene->bounds_max_m[i] - slack);
     }
-    for (int i = 0; i < 3; i++) /* the camera is west, south and above of the plant */
+    for (int i = 0; i < 3; i++) /* the camera is to the west of, south of and above the plant */
         assert_true(i < 2 ? camera.eye_m[i] < scene->bounds_min_m[i] : camera.eye_m[i] > scene->bounds_max_m[i]);
     scene_destroy(&scene);
     plant_destroy(&f->plant);

@@ -873,7 +873,7 @@ CASE(tags_come_whole_then_by_change_then_nothing)
     assert_int_equal(json_array_size(values), 1);
     assert_int_equal(json_integer_value(json_array_get(row, 0)), 1);
     assert_true(json_number_value(json_array_get(row, 1)) == 3.25);
-    assert_int_equal(json_array_size(row), 2); /* a good reading without an alarm has two members only */
+    assert_int_equal(json_array_size(row), 2); /* a good reading without an alarm has only two members */
     assert_int_equal(json_integer_value(json_object_get(tags, "age_ms")), 40);
     f->now_ns += 3600 * NS_PER_S;
     expect(f, "");

@@ -94,7 +94,7 @@ CASE(goes_stale)
     assert_quality(look(s, 0, 15 * S - 1)->quality, QUALITY_GOOD);
     uint32_t before = look(s, 0, 15 * S - 1)->changes;
     assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
-    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* `changes` counts turning stale once, however often snapshots are taken */
+    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* however often snapshots are taken, turning stale counts as one change */
     write_one(s, 0, 7, QUALITY_GOOD, 20 * S);
     const struct reading *r = look(s, 0, 20 * S);
     assert_quality(r->quality, QUALITY_GOOD);

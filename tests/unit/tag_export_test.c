@@ -364,7 +364,7 @@ TEST(test_header_kinds)
     print_message("# %zu of %zu kinds of headers\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Names that look alike give a warning, and both tags stay. */
+/* Names that look alike cause a warning, and both tags stay. */
 TEST(test_alike)
 {
     static const char *const others[] = { "PI–101", "PI‑101", "PI−101", "PI－101", "ＰＩ-101", "PI-101\u00a0", "\u200bPI-101",

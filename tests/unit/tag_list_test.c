@@ -252,7 +252,7 @@ CASE(addresses_and_types_are_checked)
           { "tags.csv", 10, 3, "float64 needs 4 registers" });
     plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Address'" });
-    plant_case_load(c, yaml_no_source, "Tag Name\nA\n"); /* a plant without sources shows values that arrive by other means */
+    plant_case_load(c, yaml_no_source, "Tag Name\nA\n"); /* without sources in the plant file, values arrive by other means */
     plant_case_assert_loaded(c, 0);
     assert_int_equal(c->plant->tags[0].source, -1);
 }

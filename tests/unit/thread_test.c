@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A ticking thread: evenly spaced ticks, and immediate stop. */
+/* A ticking thread: evenly spaced ticks, and an immediate stop. */
 #include "tests/support/test.h"
 #include <stdatomic.h>
 

@@ -95,7 +95,7 @@ CASE(a_token_may_be_for_one_display)
     assert_int_equal(read.display, 12);
     assert_true(read.unattended);
     assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_VIEWER);
-    read.display = 1; /* as if the file had since given the token another display */
+    read.display = 1; /* as if the file had meanwhile given the token another display */
     assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_NOBODY);
     tokens_destroy(&tokens);
     static const char *const bad[] = { "room", "room:", "room:0", "room:17", "room:1x", "room:-1", "room:111111111111", ":1", "a b:1", "" };

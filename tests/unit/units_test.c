@@ -198,7 +198,7 @@ CASE(what_cannot_be_converted_is_an_error_at_its_cell)
     FOUND(c, { "tags.csv", 2, 25, "H of the group is 90, but HH is 87.7777778, in °C; expected LL < L < H < HH" });
 }
 
-/* After a reload, a reading in another unit is not kept. */
+/* After a reload, a reading in another unit is not taken over. */
 TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state, other = { .folder = c->folder, .path = c->path };

@@ -76,7 +76,7 @@ CASE(places_are_those_of_the_plant_file)
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "side", 1 }));
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "none", 1 }));
     assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
-    f->display.pane_count = 0; /* after a reload the plant's display has no panes */
+    f->display.pane_count = 0; /* after a reload the plant file has no panes for the display */
     assert_list(wall_remote_text(f->remote), 0, "walls");
     f->display.pane_count = 2;
     assert_list(wall_remote_text(f->remote), 1, "group=t");

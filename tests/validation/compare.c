@@ -252,7 +252,7 @@ static bool draw(struct offline_renderer *offline, char *plant, const struct sol
     int count = 2 + split(line, words + 2);
     const char *paint = words[2];
     words[2] = "-o";
-    optind = 0; /* makes getopt start from the first word again */
+    optind = 0; /* makes getopt start again at the first word */
     bool first = !offline->gl, good = count > 3 && snapshot_parse(count, words, false, &options) < 0;
     if (!good)
         return false;

@@ -154,7 +154,7 @@ async function lookAtTools(look) {
     await page.locator('#token[open]').waitFor();
     await look('token');
     await page.keyboard.press('Escape');
-    await page.evaluate(() => document.body.classList.remove('denied')); // takes the class `denied` away, as the message `welcome` does
+    await page.evaluate(() => document.body.classList.remove('denied')); // removes the class `denied`, as the message `welcome` does
 }
 
 const WALL = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }) };

@@ -316,7 +316,7 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
             await becomes(() => collisions(page), [], 'as it opens');
             assert.notEqual(await inkOf(page), await inkOf(page, '--ink-2'));
-            await page.emulateMedia({ contrast: 'more' }); // all texts and lines get the colour of the main text
+            await page.emulateMedia({ contrast: 'more' }); // all texts and lines get the main text's colour
             await page.waitForFunction(() => getComputedStyle(document.documentElement).getPropertyValue('--line') ===
                 getComputedStyle(document.documentElement).getPropertyValue('--ink'));
             assert.equal(await inkOf(page), await inkOf(page, '--ink-2'));

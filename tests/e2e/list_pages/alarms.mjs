@@ -286,7 +286,7 @@ test('in forced colours active and returned alarms still look different', option
     assert.deepEqual(looks, [1, 2, 3, 4].flatMap(() => [`${ink},${ground},none,none,none`, `${ground},${ink},dashed,none,none`]));
 });
 
-// The rows of the list that are whole within its panel.
+// The list's rows that lie completely within its panel.
 const wholeRows = () => page.evaluate(() => {
     const { bottom } = document.getElementById('alarms-now').getBoundingClientRect();
     const rows = [...document.querySelectorAll('#alarms-list tr')].map((row) => row.getBoundingClientRect());
@@ -344,7 +344,7 @@ test('the edge of the list is dragged, moved by keys, kept over a reload, and re
         assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `${usual} to ${dragged}`);
         await edge.press('ArrowLeft');
         assert.equal(await width(), dragged + 40);
-        for (const screen of [740, 1280]) { // a narrow window does not change the width that is kept
+        for (const screen of [740, 1280]) { // a narrow window does not change the stored width
             await on.setViewportSize({ width: screen, height: 800 });
             await on.reload();
             await opened();

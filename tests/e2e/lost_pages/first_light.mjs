@@ -15,7 +15,7 @@ const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const GROUP = 'temperature';
 const SCREEN = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1024, height: 640 }) };
-const QUIET_MS = 1500; // longer than any picture takes that is being drawn
+const QUIET_MS = 1500; // longer than any picture takes to draw
 let plant, browser, page;
 
 before(async () => {

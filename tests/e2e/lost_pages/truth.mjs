@@ -106,7 +106,7 @@ test('a tablet that slept knows that its picture is old, until the server speaks
         await settle(page);
         await page.evaluate(() => {
             const { session } = globalThis.plantcast, real = Date.now;
-            session.connection.socket.onmessage = null; // the page receives nothing, like over a dead line
+            session.connection.socket.onmessage = null; // the page receives nothing, as on a dead line
             Date.now = () => real() + 7 * 3600e3;
         });
         await page.waitForFunction(() => { // this notice is visible only until the page has reached the server again

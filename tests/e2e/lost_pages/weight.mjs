@@ -203,7 +203,7 @@ test('a drag that began before what steers was there is followed, however long t
     const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
     await page.mouse.move(left, top);
     await page.mouse.down();
-    await page.waitForTimeout(2500); // wait longer than the page delays a click
+    await page.waitForTimeout(2500); // waits longer than the page delays a click
     await page.mouse.move(left + 90, top, { steps: 3 });
     assert.equal(await isCameraControllerThere(page), false);
     assert.deepEqual(await eye(page), ELSEWHERE.eye);
@@ -214,7 +214,7 @@ test('a drag that began before what steers was there is followed, however long t
 
 test('what a hand points at is said, though it moved no more since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
-    await land(page); // waits until the marker that is pointed at stands still
+    await land(page); // waits until the marker under the pointer stands still
     const marker = await page.evaluate(() => {
         const { x, y } = globalThis.plantcast.overlay.markers.find(({ occluded }) => !occluded);
         return [x, y];

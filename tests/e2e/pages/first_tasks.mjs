@@ -10,7 +10,7 @@ import { notBuilt, runProgram, startTiny } from '../support/tiny_plant.mjs';
 
 const why = notBuilt();
 const options = { skip: why, timeout: 200000 };
-const MOST = 3; // largest number of clicks that a task may take
+const MOST = 3; // maximum number of clicks per task
 let plant, browser, page, clicks = 0;
 
 // Records nine hours: a new trend shows the last eight hours only if that much history exists.

@@ -183,7 +183,7 @@ test('a viewer keeps a saved view after a reload of the page and a restart of th
     await viewer.waitForFunction(() => /named=strong/.test(location.hash) && /look=flat/.test(location.hash));
     await viewer.reload();
     await isStrong();
-    const resume = await viewer.evaluate(() => globalThis.plantcast.session.resume); // each start of the daemon gives another resume secret
+    const resume = await viewer.evaluate(() => globalThis.plantcast.session.resume); // each start of the daemon issues a new resume secret
     await plant.daemon.stop();
     await plant.startDaemon(...flags, '--port', String(plant.port));
     await viewer.waitForFunction((old) => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.resume !== old, resume);

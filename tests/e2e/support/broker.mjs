@@ -56,7 +56,7 @@ export class Broker {
     // Returns the source's line for the plant file; keys: further keys.
     source(keys) { return `{ id: broker, type: mqtt, host: 127.0.0.1, port: ${this.port}, ${keys} }`; }
 
-    // Makes the broker stop answering without closing its connections.
+    // Makes the broker stop answering without closing connections.
     freeze() { this.child.kill('SIGSTOP'); }
     thaw() { this.child.kill('SIGCONT'); }
 

@@ -243,7 +243,7 @@ export const view = (page) => page.evaluate(() => {
     return { camera, params };
 });
 
-// Moves the page to an instant; null: to the present.
+// Moves the page to an instant; null: back to the present.
 export const travel = (page, us) => page.evaluate(async (to) => {
     const requests = await import('/core/requests.js');
     requests.travel(globalThis.plantcast.session, to);

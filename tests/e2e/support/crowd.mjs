@@ -55,7 +55,7 @@ export class Mover {
         }
     }
 
-    // Returns how many pictures arrive per second during `ms` milliseconds.
+    // Returns how many pictures arrive per second, measured for `ms` milliseconds.
     async rate(ms) {
         const before = this.frames, start = performance.now();
         await sleep(ms);
