@@ -177,7 +177,7 @@ test('a note is changed by its author, and ended by the author or an engineer; t
         client.close();
 });
 
-test('a plant that is brought in: each file and each order, by whom, and what became of it', { skip, timeout: 120000 }, async () => {
+test('an import: each file and each command is recorded, with its user and its outcome', { skip, timeout: 120000 }, async () => {
     await start('--import');
     // opens a connection per request, because the server may close one whose upload it refuses while the next request is being
     // sent on it

@@ -36,7 +36,7 @@ const exported = (file, tag) => {
     return result.out.trim().split('\n');
 };
 
-test('what was recorded comes back elsewhere, point by point', { skip }, async () => {
+test('a restore in another folder returns the recorded history, point by point', { skip }, async () => {
     const imported = exported(plant.file, 'TI-1').length;
     await until('present values in the history', () => exported(plant.file, 'TI-1').length > imported + 1, 60);
     const engineer = await PlainClient.open(plant.port);
@@ -91,7 +91,7 @@ test('the daemon never notices', { skip }, async () => {
     assert.match(text, /^plantcast_history_lost_total 0$/m);
 });
 
-test('what is damaged, missing or in the way is refused by name', { skip }, () => {
+test('damaged, missing and conflicting files are refused by name', { skip }, () => {
     const damaged = readdirSync(folder('one')).find((name) => name.startsWith('history-'));
     appendFileSync(join(folder('one'), damaged), 'x');
     const target = join(folder('elsewhere'), 'third.yaml');

@@ -326,7 +326,7 @@ const LISTS = {
     'same.json': () => `{"tags":[${'{"name":"a","tagType":"Folder","tags":[]},'.repeat(500000)}{}]}`,
 };
 
-test('a tag list that swells is one line or is read, and changes nothing else', { skip }, async () => {
+test('a tag list that expands hugely is read or refused in one line, and changes nothing else', { skip }, async () => {
     const plant = await TinyPlant.create(), table = {};
     try {
         for (const [name, make] of Object.entries(LISTS).filter((_, i) => takes(0, i, 2))) {

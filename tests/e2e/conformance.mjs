@@ -120,7 +120,7 @@ test('parameters, sizes and projections are echoed by the pictures that show the
     client.close();
 });
 
-test('a key frame is sent when it is asked for', { skip }, async () => {
+test('a key frame is sent on request', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     await client.hello();
     await client.frameWhere('refined', (p) => p.flags & FLAG.still);

@@ -86,7 +86,7 @@ test('who was let in is so while the core is away, and is told that there are no
     assert.match(await digitsOf(renderer, 2, `pc_${'6'.repeat(64)}`), /^\d{6}$/);
 });
 
-test('revoked at one renderer it is out within 3 s', options, async (t) => {
+test('a display that is revoked at one renderer is disconnected within 3 s', options, async (t) => {
     const client = await until('the display', () => asDevice(renderer));
     const revoking = performance.now(), { kept } = await act({ type: 'unpair', seq: 3, id: 'room.1.1' });
     assert.equal(kept, true);

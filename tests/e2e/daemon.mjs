@@ -91,7 +91,7 @@ test('--check reads the files of options, and names the one that cannot be used'
     assert.match(runProgram('plantcastd', ['--check', plant.file, '--tls-cert', wrong]).err, /give both --tls-cert and --tls-key/);
 });
 
-test('HTTP: what is there, what is not, and how it is said', { skip }, async () => {
+test('HTTP: valid and invalid paths, and the form of the answers', { skip }, async () => {
     const { port } = plant;
     const there = {
         '/': 'text/html', '/app/main.js': 'text/javascript', '/healthz': 'text/plain', '/readyz': 'text/plain', '/metrics': 'text/plain',
@@ -489,7 +489,7 @@ test('a daemon that falls over is no test\'s secret', { skip }, async () => {
     await assert.rejects(other.destroy(), /plantcastd ended by itself: SIGKILL.*/);
 });
 
-test('no GL at all is said, and ends with 1', { skip }, () => {
+test('without any GL the program says so and exits with 1', { skip }, () => {
     const { status, stderr } = spawnSync(join(BIN, 'plantcastd'), [plant.file, '--port', '0', '--gl', 'egl-device'], {
         encoding: 'utf8', timeout: 120000, env: { ...process.env, __EGL_VENDOR_LIBRARY_DIRS: '/nonexistent' },
     });
@@ -497,7 +497,7 @@ test('no GL at all is said, and ends with 1', { skip }, () => {
     assert.match(stderr, /egl-device/);
 });
 
-test('a GPU that is not there is said once, and ends with 1', { skip }, () => {
+test('a missing GPU is reported once, with exit code 1', { skip }, () => {
     for (const [device, reason] of [['99', /device 99 was requested/g], ['ffff:ff:1f.7', /at PCI address ffff:ff:1f\.7/g]]) {
         const { code, err } = runProgram('plantcastd', [plant.file, '--port', '0', '--gl-device', device]);
         assert.equal(code, 1, err);

@@ -46,7 +46,7 @@ after(async () => {
 const rights = (path) => (lstatSync(path).mode & 0o7777).toString(8);
 const backUp = (name) => runProgram('plantcast', ['backup', plant.file, '-o', join(root, name)]);
 
-test('a backup is for its maker alone, and has the tag list from where it lies', { skip }, () => {
+test('only its maker can read a backup, which includes a tag list stored elsewhere', { skip }, () => {
     const made = backUp('one');
     assert.equal(made.code, 0, made.err);
     assert.equal(rights(join(root, 'one')), '700');
@@ -79,7 +79,7 @@ test('what leads out of the folder is not copied, by whatever name', { skip }, (
     assert.equal(backUp('two').code, 0);
 });
 
-test('restored files belong to whom their folder belongs to, and nothing is written through a link', { skip }, () => {
+test('restored files belong to the owner of their folder, and nothing is written through a link', { skip }, () => {
     renameSync(state, `${state}.was`);
     renameSync(plant.file, `${plant.file}.was`);
     mkdirSync(state);

@@ -116,7 +116,7 @@ const drawCallouts = (page, selector) => page.evaluate(async (which) => {
     }
 }, selector);
 
-test('a display with a trend and alarms, and a desk with hardly any height, go on', options, async () => {
+test('a display with a trend and alarms, and a desk of hardly any height, do not hang', options, async () => {
     for (const [tag, value] of [['TI-1', 95], ['TI-2', 96], ['PI-1', 95]])
         await plant.ask(`set ${tag} ${value}`);
     const wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: WIDTH, height: HEIGHT } });

@@ -104,7 +104,7 @@ policy=p\nx509_extensions=x\n[p]\ncommonName=supplied\n[x]\nsubjectAltName=DNS:l
     assert.equal(made.status, 0, made.stderr);
 }
 
-test('a certificate that ends while it is served: said when it ends; the next one is taken', {
+test('a certificate that expires while in use is reported, and a new one is loaded', {
     skip: skip || (missingClocks() ?? false), timeout: 120000,
 }, async () => {
     const plant = await TinyPlant.create(), clock = new SetClock(at('clock')), ENDS_S = 3600;

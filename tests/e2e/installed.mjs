@@ -75,7 +75,7 @@ test('with another version nothing of the one before stays', options, async () =
     assert.ok(files.includes('/app/main.js') && !files.includes('/app/views/views.js'), 'what was used of it, and no more');
 });
 
-test('a display of a wall, too: without a network it says which one it is, and since when', options, async () => {
+test('a wall display without a network shows its name and since when it is offline', options, async () => {
     const display = await page.context().newPage();
     await display.goto(new URL('wall.html?wall=room&display=2&lang=en', page.url()).href);
     await display.waitForFunction(() => globalThis.wall);

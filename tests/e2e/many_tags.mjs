@@ -61,7 +61,7 @@ test('pages hold every tag once, in order, with what its register holds', option
         assert.equal((await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?${query}`)).status, 400, query);
 });
 
-test('who looks meanwhile gets pictures, and all tags', options, async () => {
+test('other clients meanwhile get pictures, and all tags', options, async () => {
     const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({});
     assert.equal(welcome.tags.length, MANY + 3);

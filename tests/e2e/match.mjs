@@ -100,7 +100,7 @@ test('2,000 assets and 5,000 tags take no more than 2 minutes', { skip: notBuilt
     promise(t, 'matching', ms, 120000);
 }));
 
-test('a list in a bad way: repeated rows, Korean, slashes, blanks, control characters', { skip: notBuilt }, () => inFolder((folder) => {
+test('a malformed list: repeated rows, Korean, slashes, blanks, control characters', { skip: notBuilt }, () => inFolder((folder) => {
     boxPlant(folder, ['열교환기-101', 'P-102 A/B', 'V 201']);
     const rows = [['열교환기-101/TT-01', '열교환기 입구 온도'], ['P-102 A/B_PT01', ''], [' V 201 . LT\u0001 01 ', 'level'],
         ['', 'nothing'], ['X\u0007', '']];

@@ -175,7 +175,7 @@ notify:
     }
 });
 
-test('a hook that leads elsewhere was not told, and is asked again', options, async () => {
+test('a webhook that redirects counts as failed and is retried', options, async () => {
     const hook = Object.assign(new HookServer(), { status: 302 });
     await hook.listen();
     const plant = await createPlant(`alarms: local

@@ -145,7 +145,7 @@ test('a person whom the provider calls as somebody else is called is told apart'
     provider.claims.preferred_username = 'kim';
 });
 
-test('answers that are not to be believed: each is refused by name, and nobody is in', { skip }, async () => {
+test('untrustworthy answers: each is refused with its reason, and nobody is signed in', { skip }, async () => {
     const now = () => Math.floor(Date.now() / 1000);
     const cases = [
         ['alg none', /not signed/, (claims, header) => { header.alg = 'none'; }, () => ''],

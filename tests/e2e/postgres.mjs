@@ -293,7 +293,7 @@ test('a disk of the server that is full', options, async (t) => {
     server.database = 'postgres';
 });
 
-test('too many points that wait: the oldest are dropped, and it says so; the files here have them', options, async () => {
+test('too many waiting points: the oldest are dropped and reported; the local files have them', options, async () => {
     configure({ more: ', spool_points: 1000' });
     const from = Math.floor(Date.now() / 1000) - 20000, rows = ['Tag,Time,Value'];
     for (let i = 0; i < 3000; i++)
@@ -347,7 +347,7 @@ test('two that write for one plant: the second is refused; and takes over when t
     assert.ok(from > 0);
 });
 
-test('a machine that is replaced gets the past of its plant, and goes on with it', options, async () => {
+test('a replacement machine gets the plant\'s history and continues it', options, async () => {
     configure();
     const from = begin();
     await plant.startDaemon();
@@ -387,7 +387,7 @@ test('a database with TimescaleDB: the points are a hypertable of weeks', option
     assert.deepEqual(server.ask('SELECT text FROM asked'), [['sample t 7 days']]);
 });
 
-test('a password in the plant file, and a schema that is no name, are refused', options, () => {
+test('a password in the plant file, and a schema that is not a name, are refused', options, () => {
     configure();
     const text = readFileSync(plant.file, 'utf8'), check = () => runProgram('plantcastd', ['--check', plant.file]);
     writeFileSync(plant.file, text.replace('postgresql://', 'postgresql://me:secret@'));

@@ -68,7 +68,7 @@ test('values with their time, quality and unit; each tag has a topic of one leve
     await until('Good', () => tag('PI-1').quality === 0);
 });
 
-test('alarms: all that stand, and none once they have ended', options, async () => {
+test('alarms: all active ones are published, and none once they have ended', options, async () => {
     const alarms = () => JSON.parse(heard[`${PREFIX}/alarms`] ?? '{}').alarms;
     await until('no alarm', () => alarms()?.length === 0);
     await plant.tell('set TI-1 95.5');
@@ -79,7 +79,7 @@ test('alarms: all that stand, and none once they have ended', options, async () 
     await until('none', () => alarms()?.length === 0);
 });
 
-test('the newest wins: not more than the rate that is asked for', options, async () => {
+test('the newest value wins: publishing does not exceed the requested rate', options, async () => {
     publications = 0;
     const began = performance.now();
     for (let i = 0; i < 40; i++) {

@@ -51,7 +51,7 @@ test('after errors the previous plant stays active, and each error is named with
     assert.deepEqual((await (await fetch(url('/api/v1/plant'))).json()).plant.configuration, before.plant.configuration);
 });
 
-test('what changed is said; sessions, alarms and readings go on', options, async () => {
+test('changes are reported; sessions, alarms and readings continue', options, async () => {
     const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({});
     client.say({ type: 'params', seq: 1, group: 'temperature', ramp_interval: 10 });

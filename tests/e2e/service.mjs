@@ -188,7 +188,7 @@ test('whoever asks while the daemon stops is answered, by it or by the next one'
     await service.stop();
 });
 
-test('a port that is taken ends it, before it is ready', { skip }, async () => {
+test('a port in use ends the daemon before it is ready', { skip }, async () => {
     const other = createServer().listen(0, '127.0.0.1');
     await new Promise((done) => other.once('listening', done));
     const service = serve(['--port', String(other.address().port)]);

@@ -278,7 +278,7 @@ test('sessions of one view get one signed frame, drawn and encoded once', { skip
     clients.forEach((client) => client.close());
 });
 
-test('a session says what it wants signed, and is told why something is not', { skip }, async () => {
+test('a session requests signed frames, and is told why one is not signed', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     const hello = { type: 'hello', width: 320, height: 200, codecs: ['jpeg', 'png'] }, still = ({ flags }) => flags & FLAG.still;
     client.say({ ...hello, codecs: ['jpeg'], signed: 'all' });
@@ -464,7 +464,7 @@ test('a tour is filmed signed, with its texts beside it; its views are printed',
     assert.match(strict.err, /frame 3: the view differs/);
 });
 
-test('frames of a tile are not signed, whenever it is asked', { skip }, async () => {
+test('frames of a tile are never signed, whenever that is requested', { skip }, async () => {
     const asks = async (hello, after) => {
         const client = await PlainClient.open(plant.port);
         client.say({ type: 'hello', width: 320, height: 200, codecs: ['png'], tile: { wall: 'tiled', display: 1 }, ...hello });

@@ -245,7 +245,7 @@ test('a leader that is ended in good order gives the lease to the other', option
     await two.restart(core);
 });
 
-test('two of one name, and a core without a database, are refused by name', options, async () => {
+test('two cores with one name, and a core without a database, are refused by name', options, async () => {
     const alone = runProgram('plantcastd', [two.plant.file, '--role', 'core', '--core', 'ws://127.0.0.1:1', '--port', '0']);
     assert.equal(alone.code, 1);
     assert.match(alone.err, /two cores require `postgres`/);

@@ -91,7 +91,7 @@ test('a leader that was reloaded goes on by the promise of a standby that was no
     await two.goesOn(t, core, 1);
 });
 
-test('a leader reloads while the database says nothing, and its standby asks all the time', options, async (t) => {
+test('a leader reloads while the database does not answer and its standby keeps asking', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     await core.toDatabase.freeze();

@@ -305,7 +305,7 @@ test(ENDING, { skip, timeout: 200000 }, async () => {
     assert.match(await speak('GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Plant: 1\r\n\r\n'), /^HTTP\/1\.1 200/, 'an unknown name');
 });
 
-test('over TLS, too; a connection that has asked for nothing yet stays open', { skip, timeout: 200000 }, async () => {
+test('over TLS too; a connection without a request yet stays open', { skip, timeout: 200000 }, async () => {
     await serve(...tls, '--limit', 'patience=60');
     // twice the 2 s after which the server ends an incomplete request head
     const head = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n', idleMs = 4000;

@@ -94,7 +94,7 @@ test('views follow each other without a flight', options, async () => {
     }, null, { polling: 100 });
 });
 
-test('an alarm comes to the pane that is for it, and leaves once it is acknowledged', options, async () => {
+test('an alarm appears in the pane meant for it, and disappears once acknowledged', options, async () => {
     await page.evaluate(() => {
         globalThis.mixed = 0;
         const look = () => {

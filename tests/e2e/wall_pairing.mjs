@@ -171,7 +171,7 @@ async function reload(from, to) {
 const PATHS = ['tags', 'plant', 'views', 'notes', 'alarms', 'alarms/journal', 'proofs', 'pick?x=1&y=1', 'history?tags=TI-1&from=-1h',
     'devices', 'import'];
 
-test('its secret reads nothing but its display, before it has said a word', options, async () => {
+test('a display\'s secret reads only that display, even before its first message', options, async () => {
     const first = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
     const second = `pc_${'1'.repeat(64)}`; // the secret whose digits were approved
     const tiles = await displayClient(2, second, true), pictures = await displayClient(1, first, false);

@@ -87,7 +87,7 @@ test('notes outlive the daemon', options, async () => {
     await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor();
 });
 
-test('a view is sent to a pane, and who sent it is said there', options, async () => {
+test('a view is sent to a pane, which names the sender', options, async () => {
     await desk.page.fill('#remote-desk', 'Desk 2');
     await desk.page.locator('#remote-said', { hasText: 'connected' }).waitFor();
     await desk.page.locator('.named-open', { hasText: 'From above' }).click();
@@ -116,7 +116,7 @@ test('a place is pointed at in the pane', options, async () => {
     await inPane().locator('.note-pin.pointer').waitFor({ state: 'detached' });
 });
 
-test('a click while pointing is answered', options, async () => {
+test('a click while pointing gets an answer', options, async () => {
     await desk.page.check('#remote-points');
     await desk.page.mouse.move(500, 500);
     await desk.page.mouse.move(520, 480);

@@ -87,7 +87,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-test('forty displays come back one after another, and all are live', options, async (t) => {
+test('forty displays reconnect one after another, and all are live', options, async (t) => {
     displays = Array.from({ length: DISPLAYS }, () => new Display());
     await all('live', ({ liveAt, session }) => liveAt > 0 && session.isCurrent);
     displays.forEach((display) => { display.tries = []; display.waits = []; });

@@ -43,7 +43,7 @@ test('a search finds assets by all that is said of them, and tags, which open wh
     assert.equal(search(' '), null);
 });
 
-test('rows of unequal height: which are in sight, and where to scroll', () => {
+test('rows of unequal height: which are visible, and where to scroll', () => {
     const tops = stack([10, 20, 30, 40]);
     assert.deepEqual([...tops], [0, 10, 30, 60, 100]);
     assert.deepEqual([0, 9, 10, 29.5, 60, 99, 1000, -5].map((y) => rowAt(tops, y)), [0, 0, 1, 1, 3, 3, 3, 0]);

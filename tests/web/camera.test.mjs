@@ -284,7 +284,7 @@ test('the other projection shows as much at the target', () => {
     assert.ok(Math.abs(projector(parallel, 1600, 900)(above)[1] - projector(camera, 1600, 900)(above)[1]) < 2);
 });
 
-test('a flight to the other projection ends there, and all on the way can be asked for', () => {
+test('a flight to the other projection ends there, and every camera on the way can be requested', () => {
     const to = fit(toParallel(camera), { min: [-3, -1, 0], max: [3, 1, 2] }, 1.6);
     for (const [a, b] of [[camera, to], [to, camera], [to, toParallel(camera)]]) {
         const path = flight(a, b);

@@ -231,7 +231,7 @@ test('who is not let in tries no more, until there is something new to say', () 
     assert.equal(sockets.length, 2);
 });
 
-test('nothing is sent while it is not open, and stop is final', () => {
+test('nothing is sent while the connection is not open, and stop is final', () => {
     const { connection, sockets, clock } = makeConnection();
     connection.start();
     assert.equal(connection.send({ type: 'ping' }), false);

@@ -43,7 +43,7 @@ test('a second picture of the same has the same', () => {
     assert.deepEqual(ids(thinOut(again)), drawn);
 });
 
-test('what is behind something displaces nothing that is in sight', () => {
+test('hidden markers displace no visible ones', () => {
     const items = crowd(600), drawn = ids(thinOut(items)).filter((id) => !items[id].occluded);
     assert.deepEqual(ids(thinOut(items.filter(({ occluded, kept }) => !occluded || kept))).filter((id) => !items[id].occluded), drawn);
 });

@@ -202,7 +202,7 @@ test('a lost place asks for a key frame once, and nothing is shown before it', a
     await decoding.decode(DELTA);
 });
 
-test('what fails again and again gives way: hardware to software, that to JPEG, and so it stays', async () => {
+test('a decoder that keeps failing is replaced: hardware by software, then by JPEG, for good', async () => {
     const { decoding, told, store } = bench({ api: fakeApi({ breaks: () => true }) });
     await decoding.probe();
     await assert.rejects(decoding.decode(KEY));

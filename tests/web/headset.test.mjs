@@ -132,7 +132,7 @@ test('a user begins on the floor in front of the plant, or below a camera within
     isClose(inY.at, [0, 0, 4.5]);
 });
 
-test('a ray meets the surface that the picture shows, from wherever it begins', () => {
+test('a ray hits the surface that the picture shows, wherever it starts', () => {
     const grid = gridOf(CAMERA, 1000, 1000, 8);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([0, 1, 0])).point, [0.2, 3, 1.2], 0.03);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([1, 2, 0.1])).point, [2.55, 5, 1.435], 0.05);

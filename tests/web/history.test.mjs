@@ -196,7 +196,7 @@ test('limits of several tags: each once, by its axis, with whose it is unless it
     assert.deepEqual(limitLines([], () => ''), []);
 });
 
-test('from alarm to alarm, and marks that stand in one place as one', () => {
+test('jumps from alarm to alarm, and marks in one place shown as one', () => {
     const marks = [[10, 3], [20, 1], [21, 2], [50, 4]].map(([us, priority]) => ({ us, priority }));
     assert.deepEqual([nextTo(marks, 20, true).us, nextTo(marks, 20, false).us], [10, 21], 'never the one where it stands');
     assert.deepEqual([nextTo(marks, 10, true), nextTo(marks, 50, false)], [null, null]);

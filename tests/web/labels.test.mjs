@@ -117,7 +117,7 @@ function labelsFrom(angle, places) {
     return placeLabels(items, { area, rings: placeRings, measure: () => ({ width: 130, height: 36 }) });
 }
 
-test('while the camera turns labels stay, and do not come and go', () => {
+test('labels stay while the camera turns, and do not flicker', () => {
     let places = labelsFrom(0, new Map()), changes = 0, flickers = 0, shown = 0;
     const since = new Map();
     for (let n = 1; n <= 720; n++) {

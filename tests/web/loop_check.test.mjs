@@ -23,7 +23,7 @@ test('nothing has moved while all do as they did before', () => {
     }
 });
 
-test('the forced one is found though another moves farther by itself', () => {
+test('the forced tag is found even if another moves farther by itself', () => {
     const loopCheck = watched();
     const [a, , c] = noisy(31);
     loopCheck.observe([a, 23, c, null]);

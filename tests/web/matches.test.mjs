@@ -69,7 +69,7 @@ test('all of a pattern: as one of it was decided, where the others may be that t
     assert.deepEqual(matches.alike(second).map(([{ tag }, asset]) => [tag, asset]), [['T-2', 'A']]);
 });
 
-test('decisions that were saved go, but not those made since', () => {
+test('saved decisions are removed, but not those made since', () => {
     const matches = read(), [, first, second, third] = matches.all;
     matches.decide(first, 'P-201');
     matches.decide(second, 'P-201');

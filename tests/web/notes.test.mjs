@@ -24,7 +24,7 @@ test('a note is at a place, a tag or an asset; or at nothing that is there', () 
     assert.deepEqual([{ text: 'x' }, { position: [0, 0, 0] }, { tag: 'T' }, { asset: 'A' }].map(isOfPlant), [true, false, false, false]);
 });
 
-test('one whose time is over does not count, whatever the server said last', () => {
+test('an expired note does not count, whatever the server said last', () => {
     const notes = [{ id: 'a', until_us: 0 }, { id: 'b', until_us: 50 }];
     assert.deepEqual(inForce(notes, 49).map(({ id }) => id), ['a', 'b']);
     assert.deepEqual(inForce(notes, 50).map(({ id }) => id), ['a']);

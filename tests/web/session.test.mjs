@@ -192,7 +192,7 @@ test('what the plant begins with need not be said; other sets are, empty ones to
     assert.deepEqual(named.sockets[0].sent[0].params.hidden, []);
 });
 
-test('what of our view is not in this plant is left out and said; the rest is asked for again', () => {
+test('parts of our view that this plant lacks are left out and reported; the rest is requested again', () => {
     const params = { group: 'pressure', selected: 'E-9', ghost: ['P-9'] };
     const { connection, sockets, events } = makeSession({ camera: WANTED.camera, params });
     connection.start();
@@ -441,7 +441,7 @@ test('health: each state has its own kind and words', () => {
     assert.equal(now().detail, 'The server shut down. This picture is 6.3 s old. Trying again in 1 s.');
 });
 
-test('health: after a reconnect it is not live before the picture is one of the new connection', () => {
+test('health: after a reconnect the page is live only with a picture of the new connection', () => {
     const { connection, session, clock, sockets } = makeSession(), kinds = [];
     const now = () => health(session, clock.now());
     const status = { type: 'status', time_us: 1, live: true, links: [] };
@@ -520,7 +520,7 @@ test('following another: its parameters and camera are shown, until a hand moves
     assert.deepEqual([session.following, session.params.group], [null, 'pressure']);
 });
 
-test('a leader who has left keeps the name', () => {
+test('a leader who has left is still named', () => {
     const { session, socket } = greeted();
     session.follow(12);
     socket.say(vector('server/following.json'));
@@ -528,7 +528,7 @@ test('a leader who has left keeps the name', () => {
     assert.deepEqual([session.following.who, session.following.gone], ['kim', true]);
 });
 
-test('whoever leads no longer follows: the camera is that of what is shown then, until one is said', () => {
+test('a user who begins to lead no longer follows: the shown picture\'s camera stays until another is sent', () => {
     const eyes = (x) => ({ camera: { eye: [x, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 }, waitUs: 0, fieldUs: 0, renderUs: 0,
         encodeUs: 0, sentTimeUs: 0 });
     // Messages of the server in order; numbers stand for pictures. The last picture shows the session's own view at that time.
@@ -562,7 +562,7 @@ test('whoever leads no longer follows: the camera is that of what is shown then,
     }
 });
 
-test('who moves while another is followed goes on from there, whatever was on its way', () => {
+test('a user who moves while following continues from there, whatever was in flight', () => {
     const { session, socket } = greeted();
     session.follow(12);
     socket.say(vector('server/following.json'));

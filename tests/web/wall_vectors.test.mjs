@@ -43,7 +43,7 @@ test('how large letters are, and how bright a display', () => {
         assert.equal(brightness(dim, minute, calls), light, JSON.stringify({ ...dim, minute }));
 });
 
-test('by how much what is shown is moved', () => {
+test('how far the shown picture is shifted', () => {
     for (const { us, shift } of cases('shifts'))
         assert.deepEqual(burnShift(us), shift, `${us}`);
 });

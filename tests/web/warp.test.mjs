@@ -228,7 +228,7 @@ test('the processor draws reduced pictures, and halves of split views only in th
     assert.ok(lost.raster.pixels.every((pixel) => pixel === lost.raster.pixels[0] && isGrey(pixel)));
 });
 
-test('a grid that is not one is refused, whatever it says', async () => {
+test('an invalid grid is refused, whatever its content', async () => {
     const { bytes } = encode(PERSPECTIVE), changed = (f) => {
         const copy = bytes.slice();
         f(copy, new DataView(copy.buffer));

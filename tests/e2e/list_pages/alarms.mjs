@@ -134,7 +134,7 @@ test('a row under the hand stays while others come, and can be pressed', options
     await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
 });
 
-test('a shelf needs a reason, and keeps the alarm from being seen', options, async () => {
+test('shelving needs a reason and hides the alarm', options, async () => {
     const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
         kind === 'HH').id, HOT);
     await page.locator(`tr[data-alarm="${id}"] button[data-action="shelve"]`).click();
@@ -214,7 +214,7 @@ test('one row and one count for a tag; what has returned is not active, and draw
     await waitForWords('^No active alarms$');
 });
 
-test('several are acknowledged at once, only those that are seen; a filter', options, async () => {
+test('several alarms are acknowledged at once, only visible ones; a filter', options, async () => {
     const three = tags.filter(({ group, limits }) => group === 'temperature' && limits.H !== null).slice(0, 3).map(({ name }) => name);
     for (const name of three)
         await plant.ask(`set ${name} ${limitOf(name).H + 0.1}`);

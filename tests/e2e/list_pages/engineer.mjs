@@ -136,7 +136,7 @@ test('the list is saved: what changes is shown, then the list is active', option
     });
 });
 
-test('walk: who moved is pointed out, swapped ones too; a value that fits proves the tag', options, async () => {
+test('walk: the tag that moved is shown, even if two are swapped; a matching value confirms the tag', options, async () => {
     await page.locator('#engineer label', { hasText: 'Loop check' }).click();
     await says('#engineer .count', '^0 of 4 passed');
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
@@ -234,7 +234,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     await tablet.close();
 });
 
-test('where the folder of the list may not be written, that is said, and nothing changes', options, async () => {
+test('a read-only folder of the tag list is reported, and nothing changes', options, async () => {
     const before = readFileSync(tagsFile, 'utf8');
     await page.locator('#engineer-toggle').click();
     await page.locator('#engineer .tags button', { hasText: 'TI-9' }).click();

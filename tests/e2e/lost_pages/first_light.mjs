@@ -161,7 +161,7 @@ test('the daemon dies: said in words, the picture stays; it returns: the same vi
     await shoot(page, 'reconnected');
 });
 
-test('the address carries the view over a reload', options, async () => {
+test('the address keeps the view across a reload', options, async () => {
     const asked = await view(page);
     await page.waitForFunction(async () => { // the address follows the view after a moment
         const [{ addressOf }, { session, selection }] = [await import('/core/address.js'), globalThis.plantcast];
@@ -188,7 +188,7 @@ test('the PLC falls silent: no live data, in words; it answers again: live', opt
     await waitForHealth(page, 'live');
 });
 
-test('nothing went wrong in the page, and nothing was asked from elsewhere', options, async () => {
+test('the page had no errors and requested nothing from other origins', options, async () => {
     await waitForHealth(page, 'live');
     assert.deepEqual(browser.errors, []);
 });

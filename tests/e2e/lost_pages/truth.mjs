@@ -119,7 +119,7 @@ test('a tablet that slept knows that its picture is old, until the server speaks
         await page.locator('#banner').waitFor({ state: 'hidden' });
     }));
 
-test('a tablet whose date is wrong tells ages and the plant\'s time all the same', options, () =>
+test('a tablet with a wrong date still shows correct ages and the plant\'s time', options, () =>
     withPage(url, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         const far = () => page.evaluate(() => Date.now() - globalThis.plantcast.session.clockUs() / 1000);
@@ -235,7 +235,7 @@ test('legend and markers are of the picture that is seen, however late the one c
     relay.close();
 });
 
-test('a page that was kept from another version reloads itself, once', options, async () => {
+test('a cached page of another version reloads itself, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {
         await page.goto('about:blank'); // leaves the page, so that it requests no more parts
@@ -256,7 +256,7 @@ test('a page that was kept from another version reloads itself, once', options, 
     });
 });
 
-test('it can be installed: a manifest with icons, all there; no service worker on plain http', options, () =>
+test('the page can be installed: a manifest with all its icons; no service worker on plain http', options, () =>
     withPage(url, TABLET, async (page) => {
         const manifest = await (await fetch(new URL(await page.locator('link[rel=manifest]').getAttribute('href'), url))).json();
         assert.deepEqual([manifest.display, manifest.start_url], ['standalone', './']);
@@ -284,7 +284,7 @@ function certify(folder) {
     return { daemon: ['--tls-cert', cert, '--tls-key', key], browser: [`--ignore-certificate-errors-spki-list=${hash}`] };
 }
 
-test('by https it is installed: it opens without its server, says so, and is live again with it', options, async (context) => {
+test('installed over https, the page opens without its server, says so, and is live again with it', options, async (context) => {
     const secure = await TinyPlant.create(), by = certify(secure.folder);
     context.after(() => secure.destroy());
     await secure.start(...by.daemon);

@@ -126,7 +126,7 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
         }, (page) => all === words && away(page, all[0][1])); // blocks the file before the page opens, because an alarm ring loads it
 });
 
-test('no part says anything before the words of parts are there', options, () => {
+test('no part shows text before the texts of parts are loaded', options, () => {
     const warnings = [];
     return withPage(async (page) => {
         page.on('console', (message) => warnings.push(message.text()));
@@ -150,7 +150,7 @@ test('who has given up is not surprised by what comes late', options, () => with
     await page.locator('#views.open').waitFor();
 }));
 
-test('the server goes away, a part is asked for; it returns, and the part comes by itself', options, () => withPage(async (page) => {
+test('a part requested while the server is away loads by itself when the server returns', options, () => withPage(async (page) => {
     await plant.daemon.stop('SIGKILL');
     await waitForHealth(page, 'lost');
     await page.locator('#alarm-strip').click();
@@ -212,7 +212,7 @@ test('a drag that began before what steers was there is followed, however long t
     await page.mouse.up();
 }, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));
 
-test('what a hand points at is said, though it moved no more since', options, () => withPage(async (page) => {
+test('the page names what the pointer is on, even if it has not moved since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
     await land(page); // waits until the marker under the pointer stands still
     const marker = await page.evaluate(() => {

@@ -100,7 +100,7 @@ test('a notification that is lost is noticed, and all nodes are read', options, 
     assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
 });
 
-test('a deadband is the server\'s to apply; a node that cannot have one is read without', options, async () => {
+test('the server applies deadbands; a node that cannot have one is read without', options, async () => {
     await server.reset();
     await plant.run(`${server.security()}, deadband_percent: 10`, [...ROWS, `B,${NODE}Bounded,,,,,,,,,,,,,`]);
     await until('B', { ...good, value: 50 });

@@ -100,7 +100,7 @@ async function until(what, good) {
     }
 }
 
-test('arrows go round the tank as the wind does, from where sensors are to where none is', options, async () => {
+test('arrows go around the tank like the wind, near sensors and where there are none', options, async () => {
     // Up to two arrows may be unknown: at the top of the tank, the four sensors' directions cancel out.
     const known = ({ rows }) => rows.length > 15 && rows.filter(isUnknown).length < 3 && rows.every((row) => row[5] === 0);
     const { rows, width, height } = await until('directions known', known);
@@ -258,7 +258,7 @@ test('on a phone no choice of Display is cut; legends have units, and nothing th
     }
 });
 
-test('more sensors are proposed where the present ones see least: at one pole, then at the other', options, () => {
+test('new sensors are suggested where the existing ones see least: at one pole, then at the other', options, () => {
     const suggest = (...more) => runProgram('plantcast', ['sensors', 'suggest', plant.file, ...more]);
     const { code, out, err } = suggest('--add', '3', '--csv');
     assert.equal(code, 0, err);

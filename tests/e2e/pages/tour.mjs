@@ -55,7 +55,7 @@ async function keep(name) {
     await page.screenshot({ path: join(SCREENSHOTS, `tour-${name}.jpg`), type: 'jpeg', quality: 62 });
 }
 
-test('overview: the whole plant, live', options, async () => {
+test('overview: the whole plant is shown live', options, async () => {
     await settle(page);
     assert.match(await page.locator('#health .words').textContent(), /Live|Simulated/);
     assert.ok(await page.evaluate(() => globalThis.plantcast.overlay.markers.filter(({ occluded }) => !occluded).length) > 5);

@@ -327,7 +327,7 @@ test('in the dark theme the chart is dark, and its lines and limits are read', o
     await page.waitForFunction(() => globalThis.plantcast.trends.shownTheme === 'light');
 });
 
-test('the slider goes to an instant, and nobody can take it for now', options, async () => {
+test('the slider goes to an instant, which nobody can mistake for the present', options, async () => {
     await page.locator('#time-toggle').click();
     assert.equal(await page.locator('#time-live').isDisabled(), true);
     const slider = page.locator('#time-slider');
@@ -497,7 +497,7 @@ test('two times are compared side by side, with one camera', options, async () =
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
 });
 
-test('while the daemon did not run nothing looks recorded: hatched, without data, without rings of before', options, async () => {
+test('times without a running daemon do not look recorded: hatched, without data, without earlier rings', options, async () => {
     assert.ok(await page.evaluate(() => globalThis.plantcast.session.model.alarms.list().length > 0), 'there is one that could linger');
     const stopping = Date.now() * 1e3;
     await plant.daemon.stop();
