@@ -166,8 +166,8 @@ static void put(struct triplets *triplets, uint32_t row, uint32_t column, double
     ((double *)triplets->list->x)[triplets->count++] = value;
 }
 
-/* Adds the block of two points to the matrix: weight times the rotation from b's tangent plane to a's. Swaps a and b if a has
- * the lower row. */
+/* Adds the matrix block for the points a and b: weight times the rotation from b's tangent plane to a's. Swaps a and b if a's row
+ * number is the smaller one. */
 static void put_pair(const struct vector_heat *transport, struct triplets *triplets, uint32_t a, uint32_t b, double weight)
 {
     const uint32_t *row_of = transport->laplacian.row_of;

@@ -17,7 +17,7 @@
 /* share of the distance to the nearest sensor; longer edges are split in the middle, so that the split points of neighbouring
  * edges line up */
 #define WIDE 0.3
-#define GRAIN 256  /* minimum number of edges, triangles or positions per unit of work of a thread, which takes half a millisecond */
+#define GRAIN 256  /* minimum number of edges, triangles or positions handed to a thread at once: half a millisecond of work */
 #define POINTS 16  /* maximum number of points at which the error of an edge is measured */
 #define CORNERS 61 /* number of triangle corners whose samples are cached */
 #define STEPS 2    /* number of refinement steps in the search for an edge's best split point */

@@ -77,7 +77,7 @@ bool lease_promise(struct lease *lease, int64_t now_ns);
    the renewal changed the row. */
 void lease_renew(struct lease *lease, const char *standby);
 void lease_renewed(struct lease *lease, const char *standby, int64_t sent_ns);
-/* Extends the lease because the standby answered a question sent at sent_ns with a promise not to bid. */
+/* Extends the lease: in reply to a request sent at sent_ns, the standby has promised not to bid. */
 void lease_promised(struct lease *lease, const char *standby, int64_t sent_ns);
 /* Ends this node's leadership for good. Call it before writing the row that gives the lease to another core. */
 void lease_give(struct lease *lease);

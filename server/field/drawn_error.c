@@ -381,7 +381,7 @@ static void raise_vertices(const struct asset_view *file, const struct asset_lev
 }
 
 /* Merges the errors of a level's triangles into those of its vertices. errors: interpolation errors, by triangle. at_vertices:
-   errors due to errors of distances, by vertex, which are added; NULL: none. */
+   by vertex: error caused by inaccurate distances, which is added to the vertex's error; NULL: none. */
 static void spread(struct weights *weights, float *errors, const float *at_vertices, const struct asset_level *level)
 {
     const struct asset_view *file = &weights->layout->file->view;

@@ -76,8 +76,8 @@ struct recorder *recorder_create(const struct plant *plant, int64_t begin_us)
         recorder->lanes[i].sampling_us = (int64_t)plant_tag_scan_ms(plant, &plant->tags[i]) * 1000;
         recorder->lanes[i].silence_us = begin_us == INT64_MIN ? INT64_MAX : silence_of(plant, &plant->tags[i]);
         recorder->lanes[i].params = (struct swinging_door_params){
-            /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2
-               deadband + deviation, which is 2 within/4 + within/2 here */
+            /* the recorded line may differ from the samples by at most `within`. swinging_door.h guarantees at most
+               2 * deadband + deviation, which is 2 * within/4 + within/2 = within here */
             .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),

@@ -70,7 +70,7 @@ void plant_import_set_phase(struct plant_import *import, enum import_phase phase
 /* Appends an import program's output to the messages that engineers can read on the page. */
 void plant_import_say(struct plant_import *import, const char *text);
 bool plant_import_cancelled(struct plant_import *import);
-/* Ends the import order. in_force: true if the daemon now uses the resulting plant. why: one line that says why the order
+/* Finishes the import job. in_force: true if the daemon now uses the resulting plant. why: one line that says why the job
    failed; NULL: it succeeded. */
 void plant_import_end(struct plant_import *import, bool in_force, const char *why);
 

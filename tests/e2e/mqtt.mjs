@@ -148,7 +148,7 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     await until('F1', { quality_name: 'Bad_TooManyMatches', value: null });
     await tell(['G.A1', 51]);
     await until('F1', { ...good, value: 51 });
-    await plant.daemon.line(/is named G\.A2, which is not the tag's name; select it by name/);
+    await plant.daemon.line(/is named G\.A2, not the tag's name; select it by name/);
     await plant.daemon.line(/gateway: no message has had a value of tag /);
     const { out } = runProgram('plantcast', ['tags', `http://127.0.0.1:${plant.plant.port}/`]);
     assert.match(out, /F9.*NoMatch/i);

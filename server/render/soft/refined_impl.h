@@ -67,8 +67,8 @@ struct shaded_items { /* results of shading, by index of the refined_item (surfa
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
-/* Adds the triangle of an item (surface to shade) to the band's list of triangles. Writes the triangle's index in that list, and the
-   point's corner weights w1 and w2, to element `at` of `out`. */
+/* Adds the triangle of an item (a surface point to shade) to the band's list of triangles. Writes the triangle's index in that list,
+   and the barycentric coordinates w1 and w2 of the item's point, to element `at` of `out`. */
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
 

@@ -206,7 +206,7 @@ struct soft { /* shared by all frames */
     struct soft_parts **parts;                      /* parts (groups of triangles) by model, then by level; made when first needed */
     /* by tier (preview or refined): visibility buffers of views whose camera stands still */
     struct visibility_store kept[TIER_REFINED + 1];
-    /* hashes (content_hash_shape()) of the last previews drawn; if a hash is repeated, the camera stands still */
+    /* hashes (content_hash_shape()) of the last previews drawn; a repeated hash means that the camera has stopped moving */
     uint64_t shapes[SOFT_SHAPES];
     size_t shape_count;
     struct raster preview;

@@ -12,7 +12,7 @@ char *reply_params_text(const struct session_context *context, const struct view
 /* Lists the followers of a session, at most REPLY_FOLLOWERS. open: true: for clients without a token; omits names of users. */
 enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const struct session *const *followers, size_t count, bool open);
-/* Returns whose view the session shows, and whether that leader has gone. */
+/* Returns the leader, that is, the user whose view this session follows, and whether the leader has left. */
 char *reply_following_text(const struct session *session);
 /* Lists all readings or, if `all` is false, only those that the client does not have yet (reading.changes differs from `sent`,
    an array by tag). Updates `sent`. */

@@ -144,7 +144,7 @@ static enum mqtt_found refuse_selection(const struct json_selected *found, const
     snprintf(number, sizeof(number), "%.15g", json_number_value(found->foreign));
     const char *name = json_is_string(found->foreign) ? json_string_value(found->foreign) : number;
     snprintf(why, 200,
-             "%.35s: the list item at %.35s is named %.35s, which is not the tag's name; select it by name, such as [?@.id=='...']",
+             "%.35s: the list item at %.35s is named %.35s, not the tag's name; select it by name, such as [?@.id=='...']",
              tag, path, name);
     return refuse(out, QUALITY_BAD_NO_MATCH);
 }

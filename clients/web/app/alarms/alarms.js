@@ -229,7 +229,7 @@ export class AlarmList {
         setText(head.querySelector('th'), say('alarms.aside', { count }));
     }
 
-    // Returns the text of an alarm that the filter searches.
+    // Returns the searchable text of an alarm, for the text filter.
     textOf({ tag, kind }) {
         const asset = this.session.model.asset(tag.asset);
         return [tag.name, tag.description, kind, say(`kind.${kind}`), tag.asset, asset?.tag, asset?.description].filter(Boolean).join(' ');

@@ -14,7 +14,7 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 
 const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, week: 168 };
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
-const RING = 13, MARK = 6; // radius of an alarm ring with its rims, and of other markers, in CSS pixels (larger on a wall)
+const RING = 13, MARK = 6; // radii in CSS pixels of an alarm ring including its outlines, and of other markers; larger on a video wall
 
 // Makes a pin's stem, the line from the pin to its point, below everything else over the picture: labels and other pins cover
 // it.
