@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Geodesic distances of an asset file: codes of 16 bits (distance_code.h) in blocks of vertices, so that data used together is contiguous.
-   Layout: [block][sensor][ASSET_DISTANCE_BLOCK]. Thread: any. */
+/* Geodesic distances of an asset file: codes of 16 bits (distance_code.h) in blocks of vertices, so that data used together is
+   contiguous. Layout: [block][sensor][ASSET_DISTANCE_BLOCK]. Call from any thread. */
 #ifndef PROTOCOL_ASSET_DISTANCE_H
 #define PROTOCOL_ASSET_DISTANCE_H
 #include "protocol/asset_format.h"

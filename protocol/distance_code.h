@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Codes of 16 bits for geodesic distances in asset files. A code has 5 bits of exponent and 11 bits of fraction, like a half-precision
-   float without sign, but for larger numbers: the relative error is at most 2^-12 from 61 um to 131 km; below 61 um the error is at
-   most 15 nm. Thread: any. */
+/* Codes of 16 bits for geodesic distances in asset files. A code has 5 bits of exponent and 11 bits of fraction, like a
+   half-precision float without sign, but for larger numbers: the relative error is at most 2^-12 from 61 um to 131 km; below 61
+   um the error is at most 15 nm. Call from any thread. */
 #ifndef PROTOCOL_DISTANCE_CODE_H
 #define PROTOCOL_DISTANCE_CODE_H
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lossless packing of geodesic distances in asset files of many sensors (ASSET.md). It reduces the codes to 40 % of their size.
-   One call packs one block of ASSET_DISTANCE_BLOCK vertices with the codes of all sensors (distance_code.h). Thread: any. */
+   One call packs one block of ASSET_DISTANCE_BLOCK vertices with the codes of all sensors (distance_code.h). Call from any
+   thread. */
 #ifndef PROTOCOL_DISTANCE_PACK_H
 #define PROTOCOL_DISTANCE_PACK_H
 #include <stdbool.h>

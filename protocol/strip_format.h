@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The legend strip: rows of coloured cells along a picture's lower edge. Programs read from them which value a colour means,
-   even after JPEG compression or from a screenshot. Layout and code: HTTP.md, *Legend strip*. Pure. Thread: any. */
+   even after JPEG compression or from a screenshot. Layout and code: HTTP.md, *Legend strip*. Pure. Call from any thread. */
 #ifndef PROTOCOL_STRIP_FORMAT_H
 #define PROTOCOL_STRIP_FORMAT_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes and decodes the headers of the binary messages of plantcast.v1 (PROTOCOL.md). Pure. Thread: any. */
+/* Encodes and decodes the headers of the binary messages of plantcast.v1 (PROTOCOL.md). Pure. Call from any thread. */
 #ifndef PROTOCOL_WIRE_H
 #define PROTOCOL_WIRE_H
 #include <stdbool.h>

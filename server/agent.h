@@ -18,7 +18,7 @@ struct agent;
    (logged). */
 struct agent *agent_start(struct log *log, const char *address, int port);
 void agent_stop(struct agent **agent); /* ends the thread, frees the agent and sets *agent to NULL; accepts a pointer to NULL */
-/* Sets the state that the agent reports from now on. Thread: any. */
+/* Sets the state that the agent reports from now on. Call from any thread. */
 void agent_tell(struct agent *agent, const struct agent_state *state);
 
 #endif

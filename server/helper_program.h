@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs another program from this program's folder at a lower priority, in a cgroup of its own where possible (base/system/cgroup.h).
-   Thread: any, one at a time; blocks until the program ends. */
+/* Runs another program from this program's folder at a lower priority, in a cgroup of its own where possible
+   (base/system/cgroup.h). Call from any thread, one at a time; blocks until the program ends. */
 #ifndef HELPER_PROGRAM_H
 #define HELPER_PROGRAM_H
 #include <stdbool.h>

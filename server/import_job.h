@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs an import: reads exports, matches tags and prepares models, each with a program of its own. Thread: the reload thread. */
+/* Runs an import: reads exports, matches tags and prepares models, each with a program of its own. Call only in the reload thread. */
 #ifndef IMPORT_JOB_H
 #define IMPORT_JOB_H
 #include "access/quota.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant runtime: a loaded plant and all parts of the daemon that depend on it. A reload creates another one. Thread: one at a time. */
+/* The plant runtime: a loaded plant and all parts of the daemon that depend on it. A reload creates another one. Call from one
+   thread at a time. */
 #ifndef PLANT_RUNTIME_H
 #define PLANT_RUNTIME_H
 #include "alarm/alarm_service.h"

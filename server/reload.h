@@ -13,22 +13,23 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
                              struct supervision *supervision, struct plant_import *import);
 /* Ends the threads; the event loop must have ended. Accepts a pointer to NULL; sets *reload to NULL. */
 void reload_destroy(struct reload **reload);
-/* Requests a reload without waiting for it; if one is running, another follows. who: the requesting user, copied. Thread: any. */
+/* Requests a reload without waiting for it; if one is running, another follows. who: the requesting user, copied. Call from any thread. */
 void reload_ask(struct reload *reload, const char *who);
 /* On a renderer or a standby core, requests a reload because its core loads the plant. The new plant is activated once the core
    has ended the connection `session` (core_link_session()), which it does to switch to its own new plant; if the core does not
    switch, the new plant is dropped. session 0: the core has switched already. configuration: hash of the core's configuration;
-   a plant with another hash is dropped; NULL: not known. Does not wait. Thread: any. */
+   a plant with another hash is dropped; NULL: not known. Does not wait. Call from any thread. */
 void reload_follow(struct reload *reload, uint64_t session, const char *configuration);
-/* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Thread: any. */
+/* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Call
+   from any thread. */
 void reload_lead(struct reload *reload);
 /* Ends permanently everything that only the leader of two cores may do (plant_runtime_end_leading()), and then calls
-   net_on_lead_ended(); does not wait. Thread: any. */
+   net_on_lead_ended(); does not wait. Call from any thread. */
 void reload_end_leading(struct reload *reload);
 /* Saves another tag list: replaces the file, runs plantcast-prep, and reloads the plant. If any of these steps fails, restores
-   the old list. Takes ownership of `save`; one save at a time. Thread: any. */
+   the old list. Takes ownership of `save`; one save at a time. Call from any thread. */
 void reload_save(struct reload *reload, struct tag_save *save);
-/* Carries out the import order accepted by plant_import_order(), on behalf of user `who`, without waiting for it. Thread: any. */
+/* Carries out the import order accepted by plant_import_order(), on behalf of user `who`, without waiting for it. Call from any thread. */
 void reload_import(struct reload *reload, const char *who);
 /* Sets the metric that shows the hash of the configuration in use. in_force: true: the daemon uses this configuration. */
 void reload_count(struct counters *counters, const char *hash, bool in_force);

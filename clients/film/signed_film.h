@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signed films contain the server's signed statement about each picture. The pictures are encoded losslessly, so that their
-   pixels are exactly those that the server signed (SIGNED.md). Thread: one. */
+   pixels are exactly those that the server signed (SIGNED.md). Call from one thread only. */
 #ifndef FILM_SIGNED_FILM_H
 #define FILM_SIGNED_FILM_H
 #include "clients/cli/picture/redraw.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tours in films: which views (stops) are shown, how long, and with which texts. Thread: one. */
+/* Tours in films: which views (stops) are shown, how long, and with which texts. Call from one thread only. */
 #ifndef FILM_TOUR_H
 #define FILM_TOUR_H
 #include <jansson.h>

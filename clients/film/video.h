@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a video file: H.264 by libavcodec, in the container that libavformat chooses by the file extension. Thread: one. */
+/* Writes a video file: H.264 by libavcodec, in the container that libavformat chooses by the file extension. Call from one thread only. */
 #ifndef FILM_VIDEO_H
 #define FILM_VIDEO_H
 #include <stdbool.h>

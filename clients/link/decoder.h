@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes the frames that a daemon sends to a session. Thread: one at a time. */
+/* Decodes the frames that a daemon sends to a session. Call from one thread at a time. */
 #ifndef LINK_DECODER_H
 #define LINK_DECODER_H
 #include <stdbool.h>

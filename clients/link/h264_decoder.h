@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes H.264 into YUV planes with libavcodec. The command-line programs load this module only when they need it (h264_decoder_lazy.c).
-   Thread: one at a time per decoder. */
+/* Decodes H.264 into YUV planes with libavcodec. The command-line programs load this module only when they need it
+   (h264_decoder_lazy.c). Call from one thread at a time per decoder. */
 #ifndef LINK_H264_DECODER_H
 #define LINK_H264_DECODER_H
 #include <stdbool.h>

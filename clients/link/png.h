@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes PNG files in memory. Thread: any. */
+/* Decodes PNG files in memory. Call from any thread. */
 #ifndef LINK_PNG_H
 #define LINK_PNG_H
 #include <stddef.h>

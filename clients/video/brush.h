@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws white text into a frame with Pango, which finds a font for each script. Thread: one. */
+/* Draws white text into a frame with Pango, which finds a font for each script. Call from one thread only. */
 #ifndef VIDEO_BRUSH_H
 #define VIDEO_BRUSH_H
 #include <cairo.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws one frame of the video: a picture of the plant, and below it a strip with title, clock and the age of the values.
-   Without a recent picture, a text card with the reason takes its place. Thread: one. */
+   Without a recent picture, a text card with the reason takes its place. Call from one thread only. */
 #ifndef VIDEO_CANVAS_H
 #define VIDEO_CANVAS_H
 #include <cairo.h>

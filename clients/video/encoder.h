@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes the H.264 stream that all outputs carry. Thread: one; encoded data arrives on the encoder's own thread. */
+/* Encodes the H.264 stream that all outputs carry. Call from one thread only; encoded data arrives on the encoder's own thread. */
 #ifndef VIDEO_ENCODER_H
 #define VIDEO_ENCODER_H
 #include "options.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serves counters as /metrics to programs on this machine. Thread: that of the default main context. */
+/* Serves counters as /metrics to programs on this machine. Call only in the thread of GLib's default main context. */
 #ifndef VIDEO_METRICS_H
 #define VIDEO_METRICS_H
 #include <glib.h>

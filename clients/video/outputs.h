@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Passes encoded frames to the pipelines of all outputs. Outputs do not block each other: if an output cannot take a frame, it
-   misses all frames up to the next key frame. Thread: any. */
+   misses all frames up to the next key frame. Call from any thread. */
 #ifndef VIDEO_OUTPUTS_H
 #define VIDEO_OUTPUTS_H
 #include <gst/app/gstappsrc.h>

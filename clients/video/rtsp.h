@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serves the stream by RTSP. All clients share one GStreamer media pipeline. Thread: that of the default main context. */
+/* Serves the stream by RTSP. All clients share one GStreamer media pipeline. Call only in the thread of GLib's default main context. */
 #ifndef VIDEO_RTSP_H
 #define VIDEO_RTSP_H
 #include "options.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests pictures of one view from a daemon forever, and decides what to show: a picture younger than 3 s, or a text card. Thread:
-   that of the default main context. */
+/* Requests pictures of one view from a daemon forever, and decides what to show: a picture younger than 3 s, or a text card.
+   Call only in the thread of GLib's default main context. */
 #ifndef VIDEO_SOURCE_H
 #define VIDEO_SOURCE_H
 #include "canvas.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts of the text card and the strip in English, Korean and German (clients/web/words/video.*.js). Thread: any. */
+/* Texts of the text card and the strip in English, Korean and German (clients/web/words/video.*.js). Call from any thread. */
 #ifndef VIDEO_WORDS_H
 #define VIDEO_WORDS_H
 #include <glib.h>

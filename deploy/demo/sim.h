@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The simulated Modbus devices of a plant, one for each port in its sources, and its MQTT publisher. Thread: one. */
+/* The simulated Modbus devices of a plant, one for each port in its sources, and its MQTT publisher. Call from one thread only. */
 #ifndef DEMO_SIM_H
 #define DEMO_SIM_H
 #include "sim_modbus.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes values in engineering units as registers, as a device does. Shares no code with server/value/decode.c, which it tests. Thread:
-   any. */
+/* Encodes values in engineering units as registers, as a device does. Shares no code with server/value/decode.c, which it
+   tests. Call from any thread. */
 #ifndef DEMO_SIM_ENCODE_H
 #define DEMO_SIM_ENCODE_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The registers of one simulated device, in each of its units. Only registers used by a tag exist. Thread: one. */
+/* The registers of one simulated device, in each of its units. Only registers used by a tag exist. Call from one thread only. */
 #ifndef DEMO_SIM_IMAGE_H
 #define DEMO_SIM_IMAGE_H
 #include <modbus.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Maps recorded series to tags, by `--map` arguments and map files. Thread: one. */
+/* Maps recorded series to tags, by `--map` arguments and map files. Call from one thread only. */
 #ifndef DEMO_SIM_MAP_H
 #define DEMO_SIM_MAP_H
 #include <stdbool.h>

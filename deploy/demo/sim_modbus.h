@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers Modbus TCP requests from the registers of a simulated device. Write requests are refused and counted. Thread: one. */
+/* Answers Modbus TCP requests from the registers of a simulated device. Write requests are refused and counted. Call from one
+   thread only. */
 #ifndef DEMO_SIM_MODBUS_H
 #define DEMO_SIM_MODBUS_H
 #include "sim_image.h"

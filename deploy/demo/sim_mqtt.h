@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Publishes the values of tags of MQTT sources, as numbers or JSON, to one broker. Thread: one; the library has a thread of its own. */
+/* Publishes the values of tags of MQTT sources, as numbers or JSON, to one broker. Call from one thread only; the library has a
+   thread of its own. */
 #ifndef DEMO_SIM_MQTT_H
 #define DEMO_SIM_MQTT_H
 #include "plant/plant.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A listening TCP port and its clients. Collects the bytes of each client until they are a complete message. Thread: one. */
+/* A listening TCP port and its clients. Collects the bytes of each client until they are a complete message. Call from one thread only. */
 #ifndef DEMO_SIM_PORT_H
 #define DEMO_SIM_PORT_H
 #include <stddef.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A simulated process: each tag follows its loop with a dead time and a lag, drifts slowly and has a little noise; every few minutes an
-   upset develops slowly and is corrected. No I/O, no clock; the same seed gives the same run. Thread: one. */
+/* A simulated process: each tag follows its loop with a dead time and a lag, drifts slowly and has a little noise; every few
+   minutes an upset develops slowly and is corrected. No I/O, no clock; the same seed gives the same run. Call from one thread
+   only. */
 #ifndef DEMO_SIM_PROCESS_H
 #define DEMO_SIM_PROCESS_H
 #include <stddef.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The current value of every tag: forced through the control port, replayed from a series, or from the simulated process. Thread: one. */
+/* The current value of every tag: forced through the control port, replayed from a series, or from the simulated process. Call from
+   one thread only. */
 #ifndef DEMO_SIM_VALUES_H
 #define DEMO_SIM_VALUES_H
 #include "base/text/diag.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The build cache: files that one run of plantcast-prep leaves for the next in the folder of prepared files. An entry is a file of one kind
- * for one key: key, length and checksum, followed by its compressed bytes (cache_file.h). Entries are replaced as a whole and are never
- * required: a missing, truncated or damaged entry, or one of another version or key, counts as absent; damage is logged. Thread: any, one
- * writer per entry. */
+/* The build cache: files that one run of plantcast-prep leaves for the next in the folder of prepared files. An entry is a file
+ * of one kind for one key: key, length and checksum, followed by its compressed bytes (cache_file.h). Entries are replaced as a
+ * whole and are never required: a missing, truncated or damaged entry, or one of another version or key, counts as absent;
+ * damage is logged. Call from any thread, one writer per entry. */
 #ifndef PREPROCESS_CACHE_BUILD_CACHE_H
 #define PREPROCESS_CACHE_BUILD_CACHE_H
 #include <stdbool.h>

@@ -41,7 +41,7 @@ void distance_cache_open(struct distance_cache *cache, struct log *log, const ch
 /* Closes the cache file, logs how many sensors' distances in it were damaged, and frees the cache's arrays. A zeroed cache is allowed. */
 void distance_cache_close(struct distance_cache *cache);
 /* Returns callbacks for surface_field_init() that load the distances of cached sensors and store those newly computed. Valid
- * until distance_cache_close(). Thread: the callbacks may run on any thread, concurrently only for different sources (sensors).
+ * until distance_cache_close(). The callbacks may run on any thread, but at the same time only for different sources (sensors).
  * */
 struct surface_columns distance_cache_for_surface(struct distance_cache *cache);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes whole byte ranges at given file offsets, repeating partial system calls. Thread: any; concurrent calls are safe for
- * ranges that do not overlap. */
+/* Reads and writes whole byte ranges at given file offsets, repeating partial system calls. Call from any thread; concurrent
+ * calls are safe for ranges that do not overlap. */
 #ifndef PREPROCESS_CACHE_FILE_IO_H
 #define PREPROCESS_CACHE_FILE_IO_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The folder of prepared files: KEY.asset and manifest.json (protocol/ASSET.md), KEY.report.json, and the build cache's files. Thread: one,
-   unless a function says otherwise. */
+/* The folder of prepared files: KEY.asset and manifest.json (protocol/ASSET.md), KEY.report.json, and the build cache's files.
+   Call from one thread only, unless a function says otherwise. */
 #ifndef PREPROCESS_CACHE_FOLDER_H
 #define PREPROCESS_CACHE_FOLDER_H
 #include <jansson.h>
@@ -57,7 +57,8 @@ void folder_draft_send(const struct folder_draft *draft);
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);
 /* Unmaps and closes the draft. The kernel deletes the file unless folder_put() has named it. A zeroed draft is allowed. */
 void folder_draft_close(struct folder_draft *draft);
-/* Returns the contents of KEY.report.json, which the caller frees (json_decref). Returns NULL if the file is missing or damaged, logged. */
+/* Returns the contents of KEY.report.json, which the caller frees (json_decref). Logs and returns NULL if the file is missing or
+   damaged. */
 json_t *folder_report(struct log *log, const char *folder, uint64_t key);
 
 /* An asset's entry in the manifest. */

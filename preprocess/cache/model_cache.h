@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Caches what plantcast-prep reads from model files: the geometry hash of each asset cut out of a model, and the positions of
  * nodes that sensors are attached to. With this cache, an unchanged model need not be parsed again. The cache is the file
- * FOLDER/cuts, which can be deleted at any time. Thread: one. */
+ * FOLDER/cuts, which can be deleted at any time. Call from one thread only. */
 #ifndef PREPROCESS_CACHE_MODEL_CACHE_H
 #define PREPROCESS_CACHE_MODEL_CACHE_H
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs a program, or a function of this program, on untrusted files: confined (confine.h), with time and memory limits, in its
- * own process group, which is killed when the child ends. Thread: one call at a time per process, because it waits for signals.
- * */
+ * own process group, which is killed when the child ends. One call at a time per process, because it
+ * waits for signals. */
 #ifndef PREPROCESS_CHILD_CHILD_H
 #define PREPROCESS_CHILD_CHILD_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A list of the paths that a confined child may use. Thread: any; one at a time per list. */
+/* A list of the paths that a confined child may use. Call from any thread, but for each list from one thread at a time. */
 #ifndef PREPROCESS_CHILD_CHILD_PATHS_H
 #define PREPROCESS_CHILD_CHILD_PATHS_H
 #include "base/system/confine.h"

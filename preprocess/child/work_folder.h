@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A temporary folder for output files. On success, the files are moved to their target; on failure, nothing remains. Thread: any. */
+/* A temporary folder for output files. On success, the files are moved to their target; on failure, nothing remains. Call from any
+   thread. */
 #ifndef PREPROCESS_CHILD_WORK_FOLDER_H
 #define PREPROCESS_CHILD_WORK_FOLDER_H
 #include <signal.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Generates models, before they are prepared, by running the commands that the plant file gives for them (`convert`). Thread: one. */
+/* Generates models, before they are prepared, by running the commands that the plant file gives for them (`convert`). Call from one
+   thread only. */
 #ifndef PREPROCESS_CONVERT_CONVERT_H
 #define PREPROCESS_CONVERT_CONVERT_H
 #include "base/text/diag.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes a GLB file, for any 3D viewer, that shows how distances were computed on an asset: surface, distances, sensors, and
- * bridges (connections over gaps). REPORT.md explains the nodes of the file. Thread: any, one per call. */
+ * bridges (connections over gaps). REPORT.md explains the nodes of the file. Call from any thread; each call from one thread at
+ * a time. */
 #ifndef PREPROCESS_DEBUG_VIEW_H
 #define PREPROCESS_DEBUG_VIEW_H
 #include "surface/surface.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes debug views of a plant's assets, one GLB file each (`plantcast-prep --debug-view`). Thread: one. */
+/* Writes debug views of a plant's assets, one GLB file each (`plantcast-prep --debug-view`). Call from one thread only. */
 #ifndef PREPROCESS_DEBUG_VIEWS_H
 #define PREPROCESS_DEBUG_VIEWS_H
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes GLB files (glTF 2.0) of coloured, unlit (KHR_materials_unlit) triangles, lines and points. Thread: one per writer. */
+/* Writes GLB files (glTF 2.0) of coloured, unlit (KHR_materials_unlit) triangles, lines and points. Use each writer in one thread only. */
 #ifndef PREPROCESS_DEBUG_GLB_WRITER_H
 #define PREPROCESS_DEBUG_GLB_WRITER_H
 #include <stdint.h>

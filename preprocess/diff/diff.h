@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two revisions of a plant (`plantcast-prep --diff`): which assets changed, how far the surface moved under each sensor, and which
- * tags lost their position. Thread: one. */
+/* Compares two revisions of a plant (`plantcast-prep --diff`): which assets changed, how far the surface moved under each
+ * sensor, and which tags lost their position. Call from one thread only. */
 #ifndef PREPROCESS_DIFF_H
 #define PREPROCESS_DIFF_H
 #include <stdatomic.h>

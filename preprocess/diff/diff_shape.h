@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two triangle meshes: largest distance, rigid motion, nearest points. Thread: any. */
+/* Compares two triangle meshes: largest distance, rigid motion, nearest points. Call from any thread. */
 #ifndef PREPROCESS_DIFF_SHAPE_H
 #define PREPROCESS_DIFF_SHAPE_H
 #include "preprocess/diff/diff_side.h"

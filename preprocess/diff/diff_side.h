@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One of the two plants in a comparison: a plant file with its models, or a folder of prepared files. Thread: one. */
+/* One of the two plants in a comparison: a plant file with its models, or a folder of prepared files. Call from one thread only. */
 #ifndef PREPROCESS_DIFF_SIDE_H
 #define PREPROCESS_DIFF_SIDE_H
 #include "base/text/diag.h"

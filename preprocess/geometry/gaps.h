@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Closes hair gaps in the drawn mesh: gaps of a fraction of a millimetre that CAD exports leave between faces and through which
- * the background would be visible. Thread: any. */
+ * the background would be visible. Call from any thread. */
 #ifndef PREPROCESS_GEOMETRY_GAPS_H
 #define PREPROCESS_GEOMETRY_GAPS_H
 #include <stdbool.h>

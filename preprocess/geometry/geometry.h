@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mesh of one asset, cut out of a model: the subtrees of the nodes that the patterns select, in the asset frame (metres, Z
- * up), ready to draw. Thread: any; only one thread may change a geometry at a time. */
+ * up), ready to draw. Call from any thread; only one thread may change a geometry at a time. */
 #ifndef PREPROCESS_GEOMETRY_H
 #define PREPROCESS_GEOMETRY_H
 #include "base/text/text.h"

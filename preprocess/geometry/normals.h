@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes vertex normals for triangles without normals. Thread: any. */
+/* Computes vertex normals for triangles without normals. Call from any thread. */
 #ifndef PREPROCESS_GEOMETRY_NORMALS_H
 #define PREPROCESS_GEOMETRY_NORMALS_H
 #include <stdbool.h>

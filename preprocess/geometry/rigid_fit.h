@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the rigid motion (rotation and translation) that maps one point set to another. Thread: any. */
+/* Finds the rigid motion (rotation and translation) that maps one point set to another. Call from any thread. */
 #ifndef PREPROCESS_RIGID_FIT_H
 #define PREPROCESS_RIGID_FIT_H
 #include <stddef.h>

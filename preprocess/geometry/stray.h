@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reports pieces of an asset that lie far from its main part, often by mistake in the CAD model. Thread: any. */
+/* Reports pieces of an asset that lie far from its main part, often by mistake in the CAD model. Call from any thread. */
 #ifndef PREPROCESS_GEOMETRY_STRAY_H
 #define PREPROCESS_GEOMETRY_STRAY_H
 #include "preprocess/geometry/geometry.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds and reverses triangles whose winding contradicts that of their neighbours: from outside, they would look like holes.
- * Thread: any. */
+ * Call from any thread. */
 #ifndef PREPROCESS_GEOMETRY_WINDING_H
 #define PREPROCESS_GEOMETRY_WINDING_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the attribute file of an RVM model (CADC_Attributes_File: .att or .txt, "NEW name ... END" with "key:= value") and adds
- * each element's attributes to the model node of the same name. Thread: any. */
+ * each element's attributes to the model node of the same name. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_CAD_ATTRIBUTES_H
 #define PREPROCESS_IMPORT_CAD_ATTRIBUTES_H
 #include "base/text/charset.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts one model of any supported format to a GLB file. Thread: one conversion at a time per process, because child.h waits for signals
- * of the whole process. */
+/* Converts one model of any supported format to a GLB file. One conversion at a time per process, because
+ * child.h waits for signals of the whole process. */
 #ifndef PREPROCESS_IMPORT_CONVERSION_H
 #define PREPROCESS_IMPORT_CONVERSION_H
 #include <stdbool.h>

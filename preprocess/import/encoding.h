@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text encoding of the names in a model: given by the user, given in the file, or detected. Thread: any. */
+/* Text encoding of the names in a model: given by the user, given in the file, or detected. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_ENCODING_H
 #define PREPROCESS_IMPORT_ENCODING_H
 #include "base/text/charset.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits and builds file names. The caller frees all results with mem_free. Thread: any. */
+/* Splits and builds file names. The caller frees all results with mem_free. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_FILE_NAME_H
 #define PREPROCESS_IMPORT_FILE_NAME_H
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts a reader's output about a model into JSON for programs and lines for people. Thread: one per object. A reader prints
- * plain lines and tab-separated records: "lost ID NAME CLASS GUID REASON" for an element that has a shape but no triangles;
- * "flat #NUMBER NAME CLASS GUID REASON" for a node whose triangles have no area; "error COUNT TEXT" for an error that a library
- * logged; "unit UNIT LENGTH" if the file gives no unit and the reader assumed UNIT (LENGTH: longest side of the model in units
- * of the file). */
+/* Converts a reader's output about a model into JSON for programs and lines for people. Call from one thread per object. A
+ * reader prints plain lines and tab-separated records: "lost ID NAME CLASS GUID REASON" for an element that has a shape but no
+ * triangles; "flat #NUMBER NAME CLASS GUID REASON" for a node whose triangles have no area; "error COUNT TEXT" for an error
+ * that a library logged; "unit UNIT LENGTH" if the file gives no unit and the reader assumed UNIT (LENGTH: longest side of the
+ * model in units of the file). */
 #ifndef PREPROCESS_IMPORT_FINDINGS_H
 #define PREPROCESS_IMPORT_FINDINGS_H
 #include <jansson.h>

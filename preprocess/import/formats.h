@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file formats that can be imported, looked up by file ending, and the reader of each. Thread: any. */
+/* The file formats that can be imported, looked up by file ending, and the reader of each. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_FORMATS_H
 #define PREPROCESS_IMPORT_FORMATS_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs a glTF model, its buffers and its images into one GLB file. Thread: any. */
+/* Packs a glTF model, its buffers and its images into one GLB file. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_GLTF_PACK_H
 #define PREPROCESS_IMPORT_GLTF_PACK_H
 #include "plant/models/model_refusal.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A GLB file as a tree of named nodes with triangle counts, boxes and properties, read from its JSON without loading vertices. Thread:
- * any. */
+/* A GLB file as a tree of named nodes with triangle counts, boxes and properties, read from its JSON without loading vertices.
+ * Call from any thread. */
 #ifndef PREPROCESS_IMPORT_MODEL_OUTLINE_H
 #define PREPROCESS_IMPORT_MODEL_OUTLINE_H
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of a model as a table, a tree or JSON, for `plantcast nodes`. Thread: any. */
+/* The nodes of a model as a table, a tree or JSON, for `plantcast nodes`. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_NODE_LIST_H
 #define PREPROCESS_IMPORT_NODE_LIST_H
 #include <regex.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads RVM files as exported by AVEVA PDMS, E3D and Marine: binary, big-endian, a sequence of chunks (HEAD, MODL, COLR, CNTB
- * with primitives and CNTE, END:). There is no published specification; the layout was taken from open-source readers. Thread:
- * any. */
+ * with primitives and CNTE, END:). There is no published specification; the layout was taken from open-source readers. Call
+ * from any thread. */
 #ifndef PREPROCESS_IMPORT_RVM_H
 #define PREPROCESS_IMPORT_RVM_H
 #include "base/text/charset.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Records the primitives of an RVM file that are missing from the model, and reports them by group. Thread: one per object. */
+/* Records the primitives of an RVM file that are missing from the model, and reports them by group. Call from one thread per object. */
 #ifndef PREPROCESS_IMPORT_RVM_LOSSES_H
 #define PREPROCESS_IMPORT_RVM_LOSSES_H
 #include "base/text/text.h"

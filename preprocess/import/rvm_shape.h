@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tessellates the primitives of RVM files (AVEVA PDMS, E3D, Marine). The number of corners of a round section depends only on
  * its radius and the chord error. The direction of its first corner depends only on the section's plane. Therefore two
- * primitives that meet with equal sections have the same corners there. Thread: any. */
+ * primitives that meet with equal sections have the same corners there. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_RVM_SHAPE_H
 #define PREPROCESS_IMPORT_RVM_SHAPE_H
 #include "preprocess/import/cad_model.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast import --serve`: starts the daemon on a plant that engineers then build up on the web page. Thread: one. */
+/* `plantcast import --serve`: starts the daemon on a plant that engineers then build up on the web page. Call from one thread only. */
 #ifndef PREPROCESS_IMPORT_SERVE_H
 #define PREPROCESS_IMPORT_SERVE_H
 

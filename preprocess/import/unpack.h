@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Unpacks models that are compressed in a ZIP or gzip file. Thread: any. */
+/* Unpacks models that are compressed in a ZIP or gzip file. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_UNPACK_H
 #define PREPROCESS_IMPORT_UNPACK_H
 #include <stdbool.h>

@@ -28,8 +28,9 @@ size_t cloud_heat_count(const struct cloud_heat *cloud);
 int cloud_heat_k(const struct cloud_heat *cloud);
 double cloud_heat_spacing_m(const struct cloud_heat *cloud);
 
-/* Writes the distance of each of `count` positions (metres, in the surface's frame) from a position on the surface; INFINITY for positions
- * not connected by a chain of neighbours. Returns false after logging if out of memory. Thread: any number of concurrent calls. */
+/* Writes the distance of each of `count` positions (metres, in the surface's frame) from a position on the surface; INFINITY
+ * for positions not connected by a chain of neighbours. Returns false after logging if out of memory. Any number of threads may
+ * call at the same time. */
 bool cloud_heat_distances(const struct cloud_heat *cloud, const double source_m[3], const float (*positions_m)[3], size_t count,
                           float *out);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The connected bodies of a surface; each has an independent Gaussian process and mean. Thread: any. */
+/* The connected bodies of a surface; each has an independent Gaussian process and mean. Call from any thread. */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_BODIES_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_BODIES_H
 #include "preprocess/influence/influence_mesh.h"

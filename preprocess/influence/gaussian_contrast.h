@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dense algebra between sensors for generalised least squares, with a covariance matrix and one unknown mean per body. Thread: any. */
+/* Dense algebra between sensors for generalised least squares, with a covariance matrix and one unknown mean per body. Call from
+   any thread. */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_CONTRAST_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_CONTRAST_H
 #include <stdbool.h>

@@ -4,7 +4,7 @@
  * each takes two sparse factorisations, but no solve per sensor. A = k^2 C + G, with k = sqrt(8) / range, C the diagonal matrix
  * of areas, and G the stiffness matrix; D: one column of weights per sensor. The covariance D' A^-1 C A^-1 D is the derivative
  * of -D' A^-1 D with respect to k^2. D' A^-1 D is a Schur complement: the last rows of the factor of A bordered by D contain
- * it. Thread: one, which uses the workers. */
+ * it. Call from one thread only, which uses the workers. */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_COVARIANCE_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_COVARIANCE_H
 #include <cholmod.h>

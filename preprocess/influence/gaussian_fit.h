@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits range, noise and deviation of a Gaussian process to readings. Uses maximum restricted likelihood (Patterson & Thompson,
- * 1971), because the mean of each body at each instant is unknown. Treats instants as independent. Thread: one. */
+ * 1971), because the mean of each body at each instant is unknown. Treats instants as independent. Call from one thread only.
+ * */
 #ifndef PREPROCESS_INFLUENCE_GAUSSIAN_FIT_H
 #define PREPROCESS_INFLUENCE_GAUSSIAN_FIT_H
 #include "preprocess/influence/gaussian.h"

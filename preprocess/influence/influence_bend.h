@@ -50,14 +50,14 @@ struct influence_bend {
 
 /* Finds the places of the drawn triangles: the points at which the bend is measured. The mesh, `drawn` and its arrays must
  * outlive *bend. surface: the surface that the mesh was made from. Returns false if there are more than `most` places, or if
- * out of memory. In either case, call influence_bend_finish(). Thread: one. */
+ * out of memory. In either case, call influence_bend_finish(). Call from one thread only. */
 bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const struct surface *surface,
                          const struct bend_drawn *drawn, size_t most);
 void influence_bend_finish(struct influence_bend *bend);
 
 /* Adds the interpolation errors of the weights ("shares") of `width` sensors, at most BEND_WIDTH. at_points: `stride` numbers
- * per mesh point, of which the first `width` are weights. The order of calls does not affect the sums. Thread: any number of
- * concurrent calls. */
+ * per mesh point, of which the first `width` are weights. The order of calls does not affect the sums. Any number of threads
+ * may call at the same time. */
 void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width);
 
 struct bend_report { /* measured bend (interpolation error in drawn triangles); all zero: no bend was measured */
@@ -77,7 +77,7 @@ struct bend_report { /* measured bend (interpolation error in drawn triangles); 
  * bend of each drawn triangle in colour steps. errors (may be NULL): receives, by vertex, the largest difference from the exact
  * solution in the adjacent triangles: bend plus discretisation error, as a share of the spread of readings (fin: spread of
  * readings and ambient); 1 where it is unknown. around: the field's value far from all sensors, as (value - MIN) / (MAX - MIN);
- * 0 for interpolations whose weights sum to 1. Thread: one. */
+ * 0 for interpolations whose weights sum to 1. Call from one thread only. */
 void influence_bend_measure(struct influence_bend *bend, double around, float *steps, float *errors, struct bend_report *report);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the influence of an asset's sensors and writes the file KEY.influence (protocol/ASSET.md). Thread: one at a time,
- * which uses the threads of the `struct workers` passed in. */
+/* Computes the influence of an asset's sensors and writes the file KEY.influence (protocol/ASSET.md). Call from one thread at a
+ * time, which uses the threads of the `struct workers` passed in. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #include "base/files/cache_file.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The finite-element mesh on which sensors' weights are computed: the surface's triangles, refined around each sensor so that a
- * disc of the sensor's size contains some mesh points. Thread: one; any for reading a const mesh. */
+ * disc of the sensor's size contains some mesh points. Call from one thread only; any for reading a const mesh. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_MESH_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_MESH_H
 #include "surface/geodesic/intrinsic.h"

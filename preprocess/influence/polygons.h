@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clips convex, counter-clockwise polygons in a plane against triangles (Sutherland & Hodgman, Reentrant polygon clipping,
- * 1974). Thread: one. */
+ * 1974). Call from one thread only. */
 #ifndef PREPROCESS_INFLUENCE_POLYGONS_H
 #define PREPROCESS_INFLUENCE_POLYGONS_H
 #include <stdbool.h>

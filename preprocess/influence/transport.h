@@ -4,8 +4,8 @@
  * energy is sum_ij w_ij |u_i - R_ij u_j|^2. The result is u / |u|. w_ij are the cotangent weights of the intrinsic Delaunay
  * triangulation. R_ij is the smallest rotation between the tangent planes of two points (Singer, Wu, Vector diffusion maps,
  * 2012). R_ij does not depend on the order of triangles around a point. So an edge may have any number of faces, of either
- * orientation. The method is exact on planes and developable surfaces, and along great circles up to the triangle size. Thread:
- * one, which uses the workers. */
+ * orientation. The method is exact on planes and developable surfaces, and along great circles up to the triangle size. Call
+ * from one thread only, which uses the workers. */
 #ifndef PREPROCESS_INFLUENCE_TRANSPORT_H
 #define PREPROCESS_INFLUENCE_TRANSPORT_H
 #include "base/log/log.h"

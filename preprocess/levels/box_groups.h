@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups axis-aligned boxes: boxes that overlap or touch, directly or through other boxes, are in one group. Thread: any. */
+/* Groups axis-aligned boxes: boxes that overlap or touch, directly or through other boxes, are in one group. Call from any thread. */
 #ifndef PREPROCESS_LEVELS_BOX_GROUPS_H
 #define PREPROCESS_LEVELS_BOX_GROUPS_H
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the largest distance between two triangle surfaces, separately for each part (connected component). Thread: any. */
+/* Measures the largest distance between two triangle surfaces, separately for each part (connected component). Call from any thread. */
 #ifndef PREPROCESS_LEVELS_DEVIATION_H
 #define PREPROCESS_LEVELS_DEVIATION_H
 #include "base/workers.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies one part (connected component) of an asset by edge collapses, starting with those that move the surface least, and tracks how
- * far the surface has moved. Thread: any, each with its own object. */
+/* Simplifies one part (connected component) of an asset by edge collapses, starting with those that move the surface least, and
+ * tracks how far the surface has moved. Call from any thread, each with its own object. */
 #ifndef PREPROCESS_LEVELS_BOUNDED_H
 #define PREPROCESS_LEVELS_BOUNDED_H
 #include "preprocess/levels/levels_impl.h"

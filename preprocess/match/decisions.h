@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads and writes matches.csv: the equipment that each tag was matched to, and the reason. Rows edited by people are kept and
- * override the matcher. Thread: one. */
+ * override the matcher. Call from one thread only. */
 #ifndef PREPROCESS_MATCH_DECISIONS_H
 #define PREPROCESS_MATCH_DECISIONS_H
 #include "base/text/text.h"

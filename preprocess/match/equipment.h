@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Chooses the model nodes that become assets of the plant file: by level of the hierarchy, by name patterns or from a list of
- * names. Thread: any. */
+ * names. Call from any thread. */
 #ifndef PREPROCESS_MATCH_EQUIPMENT_H
 #define PREPROCESS_MATCH_EQUIPMENT_H
 #include "base/text/text.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Replaces several files of a plant's folder. All new files are written to disk before the first old one is replaced; they are
- * replaced in the order they were added. Functions that return int return 0 or -errno. Thread: one. */
+ * replaced in the order they were added. Functions that return int return 0 or -errno. Call from one thread only. */
 #ifndef PREPROCESS_MATCH_FILE_SET_H
 #define PREPROCESS_MATCH_FILE_SET_H
 #include <stdbool.h>

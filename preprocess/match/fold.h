@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Normalises text to remove invisible differences: full-width letters, kinds of dashes and blanks (Unicode form NFKC). Thread: any. */
+/* Normalises text to remove invisible differences: full-width letters, kinds of dashes and blanks (Unicode form NFKC). Call from
+   any thread. */
 #ifndef PREPROCESS_MATCH_FOLD_H
 #define PREPROCESS_MATCH_FOLD_H
 

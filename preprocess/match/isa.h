@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parses tag names according to ANSI/ISA-5.1: prefix, letters for the measured variable and the function, loop number, suffix,
- * and the attribute appended by control systems (.PV, .SP). Thread: any. */
+ * and the attribute appended by control systems (.PV, .SP). Call from any thread. */
 #ifndef PREPROCESS_MATCH_ISA_H
 #define PREPROCESS_MATCH_ISA_H
 #include "preprocess/match/name_tokens.h"

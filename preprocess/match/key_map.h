@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A hash map from keys to assets and nodes; several entries may have the same key. Thread: one while entries are added, any afterwards. */
+/* A hash map from keys to assets and nodes; several entries may have the same key. Call from one thread only while entries are
+   added, any afterwards. */
 #ifndef PREPROCESS_MATCH_KEY_MAP_H
 #define PREPROCESS_MATCH_KEY_MAP_H
 #include <stddef.h>

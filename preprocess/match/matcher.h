@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Matches tags to equipment. Tries methods in order of certainty, from a model node with the tag's own name down to an alias,
- * and gives a reason for each match. Conflicting evidence lowers a match to "likely" or none. Thread: any; one per matcher
- * while rules and aliases are read. */
+ * and gives a reason for each match. Conflicting evidence lowers a match to "likely" or none. Call from any thread; one per
+ * matcher while rules and aliases are read. */
 #ifndef PREPROCESS_MATCH_MATCHER_H
 #define PREPROCESS_MATCH_MATCHER_H
 #include <regex.h>

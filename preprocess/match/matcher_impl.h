@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The methods that match a tag to equipment. Each proposes one asset, several that it cannot tell apart, or nothing. Included
- * only by matcher.c and match_*.c. Thread: any. */
+ * only by matcher.c and match_*.c. Call from any thread. */
 #ifndef PREPROCESS_MATCH_MATCHER_IMPL_H
 #define PREPROCESS_MATCH_MATCHER_IMPL_H
 #include "preprocess/match/isa.h"

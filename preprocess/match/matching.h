@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs `plantcast match` once: reads a plant's folder and an export of tags, and writes plant.yaml, tags.csv and matches.csv. Thread:
- * one. */
+/* Runs `plantcast match` once: reads a plant's folder and an export of tags, and writes plant.yaml, tags.csv and matches.csv.
+ * Call from one thread only. */
 #ifndef PREPROCESS_MATCH_MATCHING_H
 #define PREPROCESS_MATCH_MATCHING_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Index of everything that a tag may be matched to: the plant's assets, the nodes of their models, and their names and
- * attributes. Thread: one while the index is built, any afterwards. */
+ * attributes. Call from one thread only while the index is built, any afterwards. */
 #ifndef PREPROCESS_MATCH_MODEL_INDEX_H
 #define PREPROCESS_MATCH_MODEL_INDEX_H
 #include "plant/plant.h"

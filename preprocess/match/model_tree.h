@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The nodes of a glTF model with names, attributes (extras) and bounding boxes, and with vertices if these are stored
- * uncompressed. Thread: any. */
+ * uncompressed. Call from any thread. */
 #ifndef PREPROCESS_MATCH_MODEL_TREE_H
 #define PREPROCESS_MATCH_MODEL_TREE_H
 #include <jansson.h>

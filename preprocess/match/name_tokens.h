@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits names of equipment and tags into runs of letters and digits, so that TE-101A, te_101a and TE101A compare equal. Thread: any. */
+/* Splits names of equipment and tags into runs of letters and digits, so that TE-101A, te_101a and TE101A compare equal. Call from
+   any thread. */
 #ifndef PREPROCESS_MATCH_NAME_TOKENS_H
 #define PREPROCESS_MATCH_NAME_TOKENS_H
 #include <stdbool.h>

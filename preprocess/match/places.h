@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Proposes the position of a tag on its equipment: that of the node with the tag's name, else of a nozzle or end named in the
  * tag's description, else one of several positions spread over the equipment. Positions of the second and third kind are marked
- * as assumed until a person confirms them. Thread: one. */
+ * as assumed until a person confirms them. Call from one thread only. */
 #ifndef PREPROCESS_MATCH_PLACES_H
 #define PREPROCESS_MATCH_PLACES_H
 #include "preprocess/match/matcher.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits a plant file as text: appends lines to its lists and leaves all other bytes unchanged. No side effects. Thread: any. */
+/* Edits a plant file as text: appends lines to its lists and leaves all other bytes unchanged. No side effects. Call from any thread. */
 #ifndef PREPROCESS_MATCH_PLANT_EDIT_H
 #define PREPROCESS_MATCH_PLANT_EDIT_H
 #include "base/text/text.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads a plant from texts not yet written, to check that they are valid. Thread: one per plant. */
+/* Loads a plant from texts not yet written, to check that they are valid. Use each plant in one thread only. */
 #ifndef PREPROCESS_MATCH_PLANT_TRIAL_H
 #define PREPROCESS_MATCH_PLANT_TRIAL_H
 #include "plant/plant.h"

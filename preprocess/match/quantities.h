@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assigns tags to groups by unit and, if the unit is ambiguous, by their ISA-5.1 letters; derives value ranges from scaled limits. Thread:
- * one. */
+/* Assigns tags to groups by unit and, if the unit is ambiguous, by their ISA-5.1 letters; derives value ranges from scaled
+ * limits. Call from one thread only. */
 #ifndef PREPROCESS_MATCH_QUANTITIES_H
 #define PREPROCESS_MATCH_QUANTITIES_H
 #include "plant/plant.h"

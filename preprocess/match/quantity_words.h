@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recognises quantities in text in ten languages: "Bearing temperature", "Füllstand", "泵轴承温度". Thread: any. */
+/* Recognises quantities in text in ten languages: "Bearing temperature", "Füllstand", "泵轴承温度". Call from any thread. */
 #ifndef PREPROCESS_MATCH_QUANTITY_WORDS_H
 #define PREPROCESS_MATCH_QUANTITY_WORDS_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A table of text cells from a CSV file or a spreadsheet. Reads more leniently than csv.h, because other programs write these
- * files: rows may differ in length. Thread: any. */
+ * files: rows may differ in length. Call from any thread. */
 #ifndef PREPROCESS_MATCH_TABLE_H
 #define PREPROCESS_MATCH_TABLE_H
 #include <stdbool.h>

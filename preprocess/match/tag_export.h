@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the tag list exported by a control system or OPC server, with columns of any names: Kepware CSV, Ignition JSON and CSV,
- * AVEVA InTouch DBDump and Galaxy dump, DeltaV and Experion style lists, plain CSV, spreadsheets. Thread: any. */
+ * AVEVA InTouch DBDump and Galaxy dump, DeltaV and Experion style lists, plain CSV, spreadsheets. Call from any thread. */
 #ifndef PREPROCESS_MATCH_TAG_EXPORT_H
 #define PREPROCESS_MATCH_TAG_EXPORT_H
 #include <stdbool.h>

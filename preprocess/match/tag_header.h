@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recognises the columns of a tag list from its header. Thread: any. */
+/* Recognises the columns of a tag list from its header. Call from any thread. */
 #ifndef PREPROCESS_MATCH_TAG_HEADER_H
 #define PREPROCESS_MATCH_TAG_HEADER_H
 #include "preprocess/match/export_field.h"

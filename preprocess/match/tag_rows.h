@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the rows of the tag list (tags.csv): adds the tags of an export and sets the equipment of existing ones. Thread: one. */
+/* Edits the rows of the tag list (tags.csv): adds the tags of an export and sets the equipment of existing ones. Call from one
+   thread only. */
 #ifndef PREPROCESS_MATCH_TAG_ROWS_H
 #define PREPROCESS_MATCH_TAG_ROWS_H
 #include "preprocess/match/decisions.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes Draco-compressed meshes (KHR_draco_mesh_compression) behind a plain C interface. Thread: any, one per mesh. */
+/* Decodes Draco-compressed meshes (KHR_draco_mesh_compression) behind a plain C interface. Call from any thread; each mesh from one
+   thread at a time. */
 #ifndef PREPROCESS_MODEL_DRACO_SHIM_H
 #define PREPROCESS_MODEL_DRACO_SHIM_H
 #include <stddef.h>

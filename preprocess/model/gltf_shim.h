@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a glTF model into plain C arrays and validates every number. Hides tinygltf. Thread: any, one per model. */
+/* Reads a glTF model into plain C arrays and validates every number. Hides tinygltf. Call from any thread; each model from one
+   thread at a time. */
 #ifndef PREPROCESS_MODEL_GLTF_SHIM_H
 #define PREPROCESS_MODEL_GLTF_SHIM_H
 #include "preprocess/model/model_source.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The distinct model files of a plant. All files are hashed first. A file is parsed and in memory only while its assets are
- * extracted. Thread: one. */
+ * extracted. Call from one thread only. */
 #ifndef PREPROCESS_MODEL_FILES_H
 #define PREPROCESS_MODEL_FILES_H
 #include "plant/plant.h"

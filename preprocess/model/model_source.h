@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model file as stored on disk: its bytes, and one hash over the file and all files it refers to by URI. Thread: any, one per source. */
+/* A model file as stored on disk: its bytes, and one hash over the file and all files it refers to by URI. Call from any thread;
+   each source from one thread at a time. */
 #ifndef PREPROCESS_MODEL_SOURCE_H
 #define PREPROCESS_MODEL_SOURCE_H
 #include <stddef.h>

@@ -11,7 +11,7 @@
 #define BUILD_REVISION 57u
 
 /* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Uses all workers. Returns false
- * with the reason in why and without a file. Thread: any. */
+ * with the reason in why and without a file. Call from any thread. */
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 

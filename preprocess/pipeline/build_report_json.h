@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Converts a build report to JSON and back. The report is stored next to the asset file, so that it is still available when the
- * asset is unchanged. REPORT.md explains the names. Thread: any. */
+ * asset is unchanged. REPORT.md explains the names. Call from any thread. */
 #ifndef PREPROCESS_PIPELINE_BUILD_REPORT_JSON_H
 #define PREPROCESS_PIPELINE_BUILD_REPORT_JSON_H
 #include <jansson.h>

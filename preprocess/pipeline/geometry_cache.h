@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of everything that can be reused when only an asset's sensors change, so that the model need not be parsed. KEY.stock
  * contains geometry and levels before subdivision; KEY.surface contains the surface for computing distances (surface_store.h).
- * Both files can be deleted at any time; damaged files are logged and count as missing. Thread: one per cache. */
+ * Both files can be deleted at any time; damaged files are logged and count as missing. Use each cache in one thread only. */
 #ifndef PREPROCESS_PIPELINE_GEOMETRY_CACHE_H
 #define PREPROCESS_PIPELINE_GEOMETRY_CACHE_H
 #include "base/files/cache_file.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prepares all assets of a plant: keeps up-to-date files and builds the others. Each asset is written to disk as soon as it is
- * finished, so that after an interruption the next run continues from there. Thread: one. */
+ * finished, so that after an interruption the next run continues from there. Call from one thread only. */
 #ifndef PREPROCESS_PIPELINE_PREPARE_H
 #define PREPROCESS_PIPELINE_PREPARE_H
 #include <stdatomic.h>

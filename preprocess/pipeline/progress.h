@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prints progress and estimated remaining time while a plant is prepared. On a terminal, rewrites one line; otherwise prints a
- * new line from time to time. The caller passes the current time. Thread: one at a time. */
+ * new line from time to time. The caller passes the current time. Call from one thread at a time. */
 #ifndef PREPROCESS_PIPELINE_PROGRESS_H
 #define PREPROCESS_PIPELINE_PROGRESS_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-prep distances`: prints one sensor's distances as a table. Thread: one. */
+/* `plantcast-prep distances`: prints one sensor's distances as a table. Call from one thread only. */
 #ifndef PREPROCESS_REPORT_DISTANCES_H
 #define PREPROCESS_REPORT_DISTANCES_H
 #include "preprocess/pipeline/prepare.h"

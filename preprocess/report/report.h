@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reports the result of preparing a plant and possible problems, as text for people and as JSON for programs. REPORT.md
- * explains the numbers. Thread: one. */
+ * explains the numbers. Call from one thread only. */
 #ifndef PREPROCESS_REPORT_H
 #define PREPROCESS_REPORT_H
 #include "preprocess/pipeline/prepare.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text tables for a terminal: columns as wide as their contents, numbers aligned to the right. Thread: one. */
+/* Text tables for a terminal: columns as wide as their contents, numbers aligned to the right. Call from one thread only. */
 #ifndef PREPROCESS_REPORT_TEXT_TABLE_H
 #define PREPROCESS_REPORT_TEXT_TABLE_H
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Computes the sensors' interpolation weights at a point, like server/field, but eight sensors at a time (SIMD). The weights at
- * a point sum to 1. Thread: any. */
+ * a point sum to 1. Call from any thread. */
 #ifndef PREPROCESS_SUBDIVISION_INTERP_WEIGHTS_H
 #define PREPROCESS_SUBDIVISION_INTERP_WEIGHTS_H
 #include <stdbool.h>

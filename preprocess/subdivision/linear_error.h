@@ -6,7 +6,7 @@
  * asset, over both interpolations (Shepard, and Algorithm 1 of Kim & Suh, `paper` in PLANT.md), and over geodesic and
  * straight-line distances. Parameters come from the plant file. Ignored are sensors with an assumed position, which show
  * nothing or colour the whole asset evenly, and groups whose field is evaluated at each pixel (plant/exact.h). Out of reach of
- * all its sensors, a group has no data, and the nearest sensor's value is continued. Thread: any, once initialised. */
+ * all its sensors, a group has no data, and the nearest sensor's value is continued. Call from any thread, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #include "plant/plant.h"

@@ -36,12 +36,13 @@ void sample_cache_close(struct sample_cache *sample_cache);
 void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key);
 
 /* Looks up the surface triangle that a sample point projects onto; *tri is TRIMESH_NONE if there is none. key: a hash of
- * everything that the projection depends on, except the surface. Returns false if the lookup is not cached. Thread: any. */
+ * everything that the projection depends on, except the surface. Returns false if the lookup is not cached. Call from any
+ * thread. */
 bool sample_cache_find(const struct sample_cache *sample_cache, uint64_t key, uint32_t *tri);
 /* Records a lookup of a sample point in the calling thread's notes: its key, the triangle, and whether the cache had it. Moves
- * full notes to the cache. Thread: any, one at a time per notes object. */
+ * full notes to the cache. Call from any thread, one at a time per notes object. */
 void sample_cache_note(struct sample_cache *sample_cache, struct sample_cache_notes *notes, uint64_t key, uint32_t tri, bool known);
-/* Moves a thread's notes into the cache, for sample_cache_write(). Thread: any. */
+/* Moves a thread's notes into the cache, for sample_cache_write(). Call from any thread. */
 void sample_cache_hand_over(struct sample_cache *sample_cache, struct sample_cache_notes *notes);
 
 #endif

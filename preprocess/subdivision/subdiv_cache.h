@@ -7,8 +7,8 @@
  * from any limit. This is valid for Shepard interpolation if all sensors of a group have the same strength. Assets with a group
  * that uses Algorithm 1 or a reach are not cached: under Algorithm 1 every sensor matters everywhere, and a reach bends the
  * weights at its end. Coarser levels that were dropped are tried again once so many sensors have changed that findings would no
- * longer be used. The file can be deleted at any time; a damaged file counts as absent. Thread: one, unless a function says
- * otherwise. */
+ * longer be used. The file can be deleted at any time; a damaged file counts as absent. Call from one thread only, unless a
+ * function says otherwise. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #include "base/files/cache_file.h"

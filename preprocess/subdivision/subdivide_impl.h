@@ -102,11 +102,12 @@ size_t subdiv_take_sample(struct level *sample, const struct level *level);
 
 /* --- cache (subdiv_cache.c) --- */
 
-/* Returns the cache key for the measured error of the edge or triangle with these corners, or 0 if it is not cached. Thread: any. */
+/* Returns the cache key for the measured error of the edge or triangle with these corners, or 0 if it is not cached. Call from any
+   thread. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count);
 /* Looks up the last run's finding (measured error) with this key, if it is still valid despite changed sensors. *next: guess of
  * its index, initially 0; updated for the next call. Returns false if the key is unknown or the finding may be out of date.
- * Thread: any. */
+ * Call from any thread. */
 bool subdiv_cache_find(const struct subdiv *subdiv, uint64_t key, const uint32_t *corners, size_t count, uint32_t *next,
                        struct subdiv_finding *finding);
 /* Records a finding (measured error) for the next run, under finding->key. */

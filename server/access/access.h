@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Access rules of the daemon: where it may listen, which host names and web pages may use it, and what its own pages may load.
-   message/role.h says what each role may do. No input or output except in access_notice_read(). Thread: any. */
+   message/role.h says what each role may do. No input or output except in access_notice_read(). Call from any thread. */
 #ifndef ACCESS_ACCESS_H
 #define ACCESS_ACCESS_H
 #include "access/quota.h"

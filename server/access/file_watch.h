@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* File watch: detects that a file has changed since the caller last read it and must be read again. Thread: one. */
+/* File watch: detects that a file has changed since the caller last read it and must be read again. Call from one thread only. */
 #ifndef ACCESS_FILE_WATCH_H
 #define ACCESS_FILE_WATCH_H
 #include <stdbool.h>

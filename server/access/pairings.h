@@ -2,7 +2,7 @@
 /* Pairing of devices that show a wall's display, so that nobody needs to type a token there. A device generates a secret and
    shows six digits that this daemon assigns to it. An engineer who reads the digits approves the device. Then the secret's hash
    is stored in devices.json in the history folder until the device is revoked. The secret grants the role viewer, for that
-   display only. Thread: the event loop. */
+   display only. Call only in the event loop. */
 #ifndef ACCESS_PAIRINGS_H
 #define ACCESS_PAIRINGS_H
 #include <jansson.h>

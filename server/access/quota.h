@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Quotas: limits on the resources of clients and of model-reading programs (option --limit NAME=N). No input or output except
-   quotas_print(). Thread: any. */
+   quotas_print(). Call from any thread. */
 #ifndef ACCESS_QUOTA_H
 #define ACCESS_QUOTA_H
 #include <stdbool.h>

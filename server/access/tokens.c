@@ -250,7 +250,7 @@ static void take_lines(struct tokens *tokens, char *text)
 }
 
 /* Reads the token file. Checks owner and mode of the open descriptor, so that nobody can swap the file between check and read.
-   Returns false on failure, logged. */
+   On failure, logs the reason and returns false. */
 static bool read_file(struct tokens *tokens)
 {
     struct stat st = { 0 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The token file: one token per line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER]
    [plant PLANT]`. A token that is not in the file or is for another plant is refused. All tokens are refused if the file is
-   missing or users other than its owner may write it. Thread: one. */
+   missing or users other than its owner may write it. Call from one thread only. */
 #ifndef ACCESS_TOKENS_H
 #define ACCESS_TOKENS_H
 #include "base/log/log.h"

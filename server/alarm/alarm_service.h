@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The alarm service of a running plant. Its thread evaluates the store's samples ten times a second, writes changes to the
-   journal, and sets the alarm of each tag in the store. Only alarm_service_halt() blocks on the disk. Thread: any. */
+   journal, and sets the alarm of each tag in the store. Only alarm_service_halt() blocks on the disk. Call from any thread. */
 #ifndef ALARM_ALARM_SERVICE_H
 #define ALARM_ALARM_SERVICE_H
 #include "alarm/alarms.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State machine of one alarm (ISA-18.2, alarm state transition diagram). No input or output. Thread: any. */
+/* State machine of one alarm (ISA-18.2, alarm state transition diagram). No input or output. Call from any thread. */
 #ifndef ALARM_ALARM_STATE_H
 #define ALARM_ALARM_STATE_H
 #include <stdbool.h>

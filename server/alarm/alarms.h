@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* All alarms of a plant, driven by samples, time and operators' actions. No input or output: the caller passes the time, and a
-   listener receives the changes. Thread: one at a time. */
+   listener receives the changes. Call from one thread at a time. */
 #ifndef ALARM_ALARMS_H
 #define ALARM_ALARMS_H
 #include <stddef.h>

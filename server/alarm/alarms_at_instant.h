@@ -9,7 +9,7 @@
 
 /* Sets the alarms in a historical snapshot to those at the time snapshot->taken_utc_ns; sets none if nothing was recorded at
    that time. folder: folder of the alarm journal; reader: reader of the history in that folder. Returns 0 or -errno (logged).
-   Thread: that of the reader. */
+   Call only in the reader's thread. */
 int alarms_at_instant(struct log *log, struct history_reader *reader, const char *folder, const struct plant *plant,
                       struct snapshot *snapshot);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The condition of an alarm: a limit with a deadband, and with delays before it becomes active (on delay) and inactive (off
    delay). Changes depend only on the samples and their times, not on how often the condition is evaluated. No input or output;
-   times are monotonic. Thread: any. */
+   times are monotonic. Call from any thread. */
 #ifndef ALARM_CONDITION_H
 #define ALARM_CONDITION_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The devices from which tags are read: each unit of each source. A device that does not answer raises one alarm instead of one
-   per tag. No input or output. Thread: one at a time. */
+   per tag. No input or output. Call from one thread at a time. */
 #ifndef ALARM_DEVICES_H
 #define ALARM_DEVICES_H
 #include "plant/plant.h"

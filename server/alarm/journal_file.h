@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The alarm journal's SQLite file. Functions that return int return 0 or -errno, already logged. Thread: one per file. */
+/* The alarm journal's SQLite file. Functions that return int return 0 or -errno, already logged. Use each file in one thread only. */
 #ifndef ALARM_JOURNAL_FILE_H
 #define ALARM_JOURNAL_FILE_H
 #include "alarm/alarms.h"

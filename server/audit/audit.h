@@ -17,10 +17,10 @@ void audit_stop(struct audit **audit);
 struct settling_ticket audit_begin(struct audit *audit);
 void audit_end(struct audit *audit, struct settling_ticket *ticket);
 int audit_settled(struct audit *audit, const struct settling_ticket *ticket);
-/* Waits up to a second until audit_settled() knows the result, and returns that result. Thread: any except the event loop,
-   which must not block. */
+/* Waits up to a second until audit_settled() knows the result, and returns that result. Call from any thread except the event
+   loop, which must not block. */
 int audit_wait(struct audit *audit, const struct settling_ticket *ticket);
-/* Queues a copy of an entry for the audit trail. audit NULL: no-op. Thread: any. */
+/* Queues a copy of an entry for the audit trail. audit NULL: no-op. Call from any thread. */
 void audit_say(struct audit *audit, const struct audit_entry *entry);
 
 #endif

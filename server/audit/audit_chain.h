@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lines of the audit trail. Each is a JSON object with a sequence number, the hash of the previous line, and its own hash: the SHA-256
-   of the line's text before that hash. No input or output. Thread: one per chain. */
+/* Lines of the audit trail. Each is a JSON object with a sequence number, the hash of the previous line, and its own hash: the
+   SHA-256 of the line's text before that hash. No input or output. Use each chain in one thread only. */
 #ifndef AUDIT_AUDIT_CHAIN_H
 #define AUDIT_AUDIT_CHAIN_H
 #include <stdbool.h>

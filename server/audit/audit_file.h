@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The audit trail's file. New lines go to PATH; full files stay next to it as PATH.NUMBER, where NUMBER is the sequence number
    of their last line. PATH.head names the line written last, so that removing lines at the end is detected. Functions that
-   return int return 0 or -errno. Thread: one. */
+   return int return 0 or -errno. Call from one thread only. */
 #ifndef AUDIT_AUDIT_FILE_H
 #define AUDIT_AUDIT_FILE_H
 #include <stddef.h>

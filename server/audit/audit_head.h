@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PATH.head: sequence number and hash of the audit trail's last line. It has a fixed length and is overwritten in place, so
-   that writing it works even on a full disk. Thread: one. */
+   that writing it works even on a full disk. Call from one thread only. */
 #ifndef AUDIT_AUDIT_HEAD_H
 #define AUDIT_AUDIT_HEAD_H
 #include "audit/audit_chain.h"

@@ -11,7 +11,7 @@ struct audit_syslog;
 struct audit_syslog *audit_syslog_start(const struct audit_params *params);
 /* Sends the queued lines, for a few seconds at most, then ends the thread. Accepts a pointer to NULL; sets *syslog to NULL. */
 void audit_syslog_stop(struct audit_syslog **syslog);
-/* Queues a copy of an audit line for sending. good: the audited action was done, not refused or failed. Thread: any. */
+/* Queues a copy of an audit line for sending. good: the audited action was done, not refused or failed. Call from any thread. */
 void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good, int64_t utc_us, const char *line, size_t count);
 
 struct syslog_message {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clocks. Only the main loops of threads read them; all other code takes the time as an argument. Thread: any. */
+/* Clocks. Only the main loops of threads read them; all other code takes the time as an argument. Call from any thread. */
 #ifndef BASE_CLOCK_H
 #define BASE_CLOCK_H
 #include <pthread.h>

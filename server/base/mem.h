@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Memory allocation, always zeroed; free with mem_free(). The functions abort when out of memory, and are for small or fixed
-   sizes. For sizes that come from a file, a client or a plant, use mem_try_array(), which returns NULL instead. Thread: any. */
+   sizes. For sizes that come from a file, a client or a plant, use mem_try_array(), which returns NULL instead. Call from any
+   thread. */
 #ifndef BASE_MEM_H
 #define BASE_MEM_H
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Refusals: why an action was refused, as a code with named arguments. Each client turns the code into a sentence in its user's
-   language (clients/web/words/refused.*.js). Pure. Thread: any. */
+   language (clients/web/words/refused.*.js). Pure. Call from any thread. */
 #ifndef BASE_REFUSAL_H
 #define BASE_REFUSAL_H
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Thread pool of fixed size: runs background jobs, and runs loops in parallel on all cores. Thread: any. */
+/* Thread pool of fixed size: runs background jobs, and runs loops in parallel on all cores. Call from any thread. */
 #ifndef BASE_WORKERS_H
 #define BASE_WORKERS_H
 #include <stddef.h>

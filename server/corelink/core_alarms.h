@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JSON messages with alarm states from a core to its renderers and its standby. Thread: any. */
+/* JSON messages with alarm states from a core to its renderers and its standby. Call from any thread. */
 #ifndef CORELINK_CORE_ALARMS_H
 #define CORELINK_CORE_ALARMS_H
 #include <jansson.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first message between a core and a renderer, with version, plant and configuration, and the check that these are equal.
-   Pure. Thread: any. */
+   Pure. Call from any thread. */
 #ifndef CORELINK_CORE_IDENTITY_H
 #define CORELINK_CORE_IDENTITY_H
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serialises the readings at a past instant, as recorded by a core, for a renderer, and parses them. Pure. Thread: any. */
+/* Serialises the readings at a past instant, as recorded by a core, for a renderer, and parses them. Pure. Call from any thread. */
 #ifndef CORELINK_CORE_INSTANT_H
 #define CORELINK_CORE_INSTANT_H
 #include "base/text/text.h"

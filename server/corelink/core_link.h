@@ -46,9 +46,9 @@ struct core_link *core_link_start(const struct core_link_params *params);
 void core_link_halt(struct core_link *link);
 /* Ends the thread like core_link_halt() and frees the link. Sets *link to NULL; accepts a pointer to NULL. */
 void core_link_stop(struct core_link **link);
-bool core_link_is_up(struct core_link *link); /* Returns true if a core is sending readings now. Thread: any. */
+bool core_link_is_up(struct core_link *link); /* Returns true if a core is sending readings now. Call from any thread. */
 
-/* Returns the number of the connection over which a core sends readings; 0: there is none. Thread: any. */
+/* Returns the number of the connection over which a core sends readings; 0: there is none. Call from any thread. */
 uint64_t core_link_session(struct core_link *link);
 
 /* HTTP address of the core. */
@@ -58,7 +58,7 @@ struct core_peer {
        the system's. Both stay valid as long as the link */
     const char *authorization, *ca_path;
 };
-/* Writes the address of the core that is sending readings to *out, for HTTP queries. Returns false if no core is. Thread: any. */
+/* Writes the address of the core that is sending readings to *out, for HTTP queries. Returns false if no core is. Call from any thread. */
 bool core_link_peer(struct core_link *link, struct core_peer *out);
 
 struct core_act {
@@ -69,10 +69,10 @@ struct core_act {
     const char *text;     /* the client's message, JSON */
 };
 /* Sends a user's action to the core. Returns false, with nothing sent, if no core is connected or too many actions are
-   unanswered. Thread: any. */
+   unanswered. Call from any thread. */
 bool core_link_act(struct core_link *link, const struct core_act *act);
 
-/* Sends a JSON message that needs no answer. Returns false if no core is connected. Thread: any. */
+/* Sends a JSON message that needs no answer. Returns false if no core is connected. Call from any thread. */
 bool core_link_tell(struct core_link *link, const char *text);
 
 /* A message from the core, to be handled by the event loop. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Readings sent by a core to its renderers, as bytes: value, quality, source time and age of each tag, as the core has them.
-   Pure. Thread: any. */
+   Pure. Call from any thread. */
 #ifndef CORELINK_CORE_READINGS_H
 #define CORELINK_CORE_READINGS_H
 #include "base/text/text.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Samples (readings in order of arrival) sent by a core to its standby, as bytes. The standby records them as the core does.
-   Thread: any. */
+   Call from any thread. */
 #ifndef CORELINK_CORE_SAMPLES_H
 #define CORELINK_CORE_SAMPLES_H
 #include "base/text/text.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lease: the rule by which two cores agree which core leads, that is, polls the devices and owns the alarms. Pure: the
-   caller passes the time. Thread: one at a time. Three parties vote: the leader, its standby, and a row in a database. The
-   leader may act for LEASE_HOLD_NS from the time when it sent the last confirmed request. Such a request is a renewal of the
-   row, or a question that the standby answered with a promise not to bid for LEASE_NS. A follower may bid for the row only if
-   three conditions hold: it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and the row names it or
+   caller passes the time. Call from one thread at a time. Three parties vote: the leader, its standby, and a row in a database.
+   The leader may act for LEASE_HOLD_NS from the time when it sent the last confirmed request. Such a request is a renewal of
+   the row, or a question that the standby answered with a promise not to bid for LEASE_NS. A follower may bid for the row only
+   if three conditions hold: it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and the row names it or
    nobody as standby. A bid changes the row only if the row is still as the bidder saw it. So one of two bids wins, and a leader
    that has renewed in the meantime stays leader. A leader that shuts down gives the lease: it stops acting, then removes itself
    from the row and names the node that may bid at once. A follower that saw the former leader in the row of the same epoch need

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Holds the lease (corelink/lease.h) for one of two cores, on a thread of its own. It reads the row in PostgreSQL, bids for it
-   and renews it. It lets the kernel kill the process at the moment from which it may no longer act as leader. Thread: any,
-   unless stated otherwise. */
+   and renews it. It lets the kernel kill the process at the moment from which it may no longer act as leader. Call from any
+   thread, unless stated otherwise. */
 #ifndef CORELINK_LEASE_KEEPER_H
 #define CORELINK_LEASE_KEEPER_H
 #include "base/log/log.h"

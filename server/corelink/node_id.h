@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A core's unique identity, even among cores of the same name: a random number in its history folder. Only one process may use
-   it at a time, and a copy of the folder gets a new identity. Thread: any. */
+   it at a time, and a copy of the folder gets a new identity. Call from any thread. */
 #ifndef CORELINK_NODE_ID_H
 #define CORELINK_NODE_ID_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dirty rectangles: the parts of a frame that differ from the previous one. Pure. Thread: any. */
+/* Dirty rectangles: the parts of a frame that differ from the previous one. Pure. Call from any thread. */
 #ifndef ENCODE_DIRTY_RECTS_H
 #define ENCODE_DIRTY_RECTS_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoders: turn frames into packets. Thread: one at a time per encoder (a worker). */
+/* Encoders: turn frames into packets. Call from one thread at a time per encoder (a worker). */
 #ifndef ENCODE_ENCODER_H
 #define ENCODE_ENCODER_H
 #include "base/log/log.h"
@@ -20,7 +20,7 @@ struct encoder_params {
 };
 
 /* Creates an encoder. name: "jpeg", "png" or, unless left out of the build, "h264"; H.264 packets depend on each other, so each
-   stream needs its own encoder. library: the libavcodec encoder for H.264. Returns NULL on failure, logged. */
+   stream needs its own encoder. library: the libavcodec encoder for H.264. On failure, logs the reason and returns NULL. */
 struct encoder *encoder_create(struct log *log, const char *name, const char *library);
 void encoder_destroy(struct encoder **encoder); /* frees the encoder and sets *encoder to NULL; accepts a pointer to NULL */
 /* Encodes a frame. Returns 0; -EAGAIN: call encoder_receive() first; another negative value: the frame cannot be encoded (logged). */

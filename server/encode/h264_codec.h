@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* H.264 with libavcodec: planar frames in, access units (encoded frames) out. No other encoding code uses libavcodec, so that
-   h264_lazy.c can load this module and libavcodec together on first use. Thread: one at a time per codec. */
+   h264_lazy.c can load this module and libavcodec together on first use. Call from one thread at a time per codec. */
 #ifndef ENCODE_H264_CODEC_H
 #define ENCODE_H264_CODEC_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts planar frames to a pixel format that a libavcodec encoder accepts: planar, with interleaved chroma, or in its device's
-   memory. Thread: one. */
+/* Converts planar frames to a pixel format that a libavcodec encoder accepts: planar, with interleaved chroma, or in its
+   device's memory. Call from one thread only. */
 #ifndef ENCODE_H264_UPLOAD_H
 #define ENCODE_H264_UPLOAD_H
 #include <libavcodec/avcodec.h>

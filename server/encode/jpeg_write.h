@@ -3,7 +3,7 @@
    standard tables, made for photographs, lose most of the chroma within a few pixels. At quality 80, on areas a few pixels
    wide, values are misread by 3.9 % of the range with the standard tables. With these tables it is 2.3 %, for 8 % more bytes.
    From JPEG_READ_QUALITY up, the chroma tables allow at most a fifth of luma's error if chroma is subsampled, and half of
-   luma's error if not. Private to jpeg.c. Thread: one at a time per writer. */
+   luma's error if not. Private to jpeg.c. Call from one thread at a time per writer. */
 #ifndef ENCODE_JPEG_WRITE_H
 #define ENCODE_JPEG_WRITE_H
 #include <stdbool.h>

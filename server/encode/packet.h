@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An encoded frame. Immutable and reference-counted; one packet may be sent to many sessions. Thread: any. */
+/* An encoded frame. Immutable and reference-counted; one packet may be sent to many sessions. Call from any thread. */
 #ifndef ENCODE_PACKET_H
 #define ENCODE_PACKET_H
 #include <stdatomic.h>

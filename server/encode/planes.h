@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Converts frames to luma and subsampled chroma (4:2:0, BT.601, full range) for JPEG and H.264. The mean chroma of four pixels
    is weighted by saturation. A plain mean would mix a field's colour at its edge with the adjacent grey, and the result would
-   read as another value. Thread: any; horizontal bands of one frame may be converted in parallel. */
+   read as another value. Call from any thread; horizontal bands of one frame may be converted in parallel. */
 #ifndef ENCODE_PLANES_H
 #define ENCODE_PLANES_H
 #include <stddef.h>

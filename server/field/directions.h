@@ -5,7 +5,7 @@
    vectors on two sides of a sphere do not cancel in between merely because they point in opposite directions in space. A
    direction is unknown where no sensor with a direction reaches, and where a sensor without a usable direction or reading is
    nearest. It is also unknown where vectors cancel (|sum| < DIRECTION_LEAST times the sum of their lengths), and where a vector
-   is nearly perpendicular to the surface. Thread: any that may read the scene. */
+   is nearly perpendicular to the surface. Call from any thread that may read the scene. */
 #ifndef FIELD_DIRECTIONS_H
 #define FIELD_DIRECTIONS_H
 #include "field/params.h"

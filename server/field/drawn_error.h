@@ -2,7 +2,7 @@
 /* Error of the drawn field: how far values interpolated between a triangle's corners may be from the field inside it. For high
    powers of shepard with geodesic distances, errors of the distances count, too. Preparation subdivides triangles until the
    error is below one colour step for the plant file's parameters. But it may reach its limit of triangles, and a view may use
-   other parameters. So the error is measured for the parameters in use. Thread: one. */
+   other parameters. So the error is measured for the parameters in use. Call from one thread only. */
 #ifndef FIELD_DRAWN_ERROR_H
 #define FIELD_DRAWN_ERROR_H
 #include "base/workers.h"

@@ -8,7 +8,7 @@
    shifts found one after the other: Chen & Liu, Joint estimation of model parameters and outlier effects in time series, 1993).
    - Standard errors allow for correlated residuals (Newey & West 1987), because changes of the plant last for hours. - A
    drifting sensor distorts the predictions of all others. Therefore the clearest drift is found first, and its sensor is
-   excluded before the others are judged. Pure. Thread: any. */
+   excluded before the others are judged. Pure. Call from any thread. */
 #ifndef FIELD_DRIFT_H
 #define FIELD_DRIFT_H
 #include "field/neighbours.h"

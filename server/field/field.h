@@ -25,8 +25,8 @@
    nearest to such a sensor are flagged. The uncertainty (standard deviation of gp) and the blind spots (smallest hot spot that
    the nearest Good sensor would show) depend only on which sensors are Good. The field is linear in the readings: value = G v /
    G 1, with weights G before normalisation, and 1 a vector of ones. A bounded cache keeps G; without it, G is recomputed with
-   identical bits. A changed reading adds its change times one column of G. A changed quality recomputes the sum. Thread: one at
-   a time per field (work is spread over `workers`). */
+   identical bits. A changed reading adds its change times one column of G. A changed quality recomputes the sum. Call from one
+   thread at a time per field (work is spread over `workers`). */
 #ifndef FIELD_FIELD_H
 #define FIELD_FIELD_H
 #include "base/workers.h"
@@ -39,7 +39,7 @@
 #include "value/baselines.h"
 #include "value/snapshot.h"
 
-/* Computes the scalars of all assets of a scene, and caches them by their parameters. Thread: one at a time. */
+/* Computes the scalars of all assets of a scene, and caches them by their parameters. Call from one thread at a time. */
 struct field;
 /* Creates an empty field. Both workers and scene must outlive it. The caller destroys it. */
 struct field *field_create(struct workers *workers, const struct scene *scene);

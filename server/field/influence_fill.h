@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values of lost sensors (those without usable reading) for a prepared interpolation. With P the precision matrix of all
    sensors, L the lost and U the used ones, the values v_L solve P_LL v_L = -P_LU v_U. With these values, the weights prepared
-   for all sensors give the same field as the used sensors alone. Thread: any; immutable once made. */
+   for all sensors give the same field as the used sensors alone. Call from any thread; immutable once made. */
 #ifndef FIELD_INFLUENCE_FILL_H
 #define FIELD_INFLUENCE_FILL_H
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The field's inner loops on plain arrays: no files, no scene, no threads; written so that the compiler vectorises them.
-   `restrict`: no two arrays overlap. Distances are metres, >= 0, or INFINITY (not connected). Thread: any. */
+   `restrict`: no two arrays overlap. Distances are metres, >= 0, or INFINITY (not connected). Call from any thread. */
 #ifndef FIELD_KERNELS_H
 #define FIELD_KERNELS_H
 #include <stdbool.h>

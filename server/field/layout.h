@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sensors of one group on one asset, and their distances from all vertices. Thread: one. */
+/* The sensors of one group on one asset, and their distances from all vertices. Call from one thread only. */
 #ifndef FIELD_LAYOUT_H
 #define FIELD_LAYOUT_H
 #include "base/workers.h"

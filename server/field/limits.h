@@ -7,7 +7,7 @@
    limit; if that end lies beyond the existing limit, the middle is the point half a range away from that limit. - From the
    middle (0), the position rises to +1 at H, and on to +2 at HH. Beyond HH, the slope continues. - H without HH: the slope from
    the middle continues beyond H, to just below +2. - HH without H: the position stays below +1 up to HH, is +2 at HH, and then
-   rises with half the slope from the middle to HH. Pure. Thread: any. */
+   rises with half the slope from the middle to HH. Pure. Call from any thread. */
 #ifndef FIELD_LIMITS_H
 #define FIELD_LIMITS_H
 #include "plant/plant.h"

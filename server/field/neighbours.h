@@ -3,7 +3,7 @@
  * first interpolation prepared for the group among gp, harmonic and fin, through the precision P of the prepared sensors: v_i -
  * (P v)_i / P_ii, with v the readings (Dubrule, Cross validation of kriging in a unique neighborhood, 1983); otherwise shepard
  * with geodesic distances. Time and memory grow with the square of the number of sensors, so there are no predictions on an
- * asset with more than NEIGHBOURS_MOST sensors. Thread: any that may read the scene. */
+ * asset with more than NEIGHBOURS_MOST sensors. Call from any thread that may read the scene. */
 #ifndef FIELD_NEIGHBOURS_H
 #define FIELD_NEIGHBOURS_H
 #include "scene/scene.h"
@@ -38,7 +38,7 @@ void neighbours_predict(const struct neighbours *neighbours, const double *value
    which no path leads. out: receives at most `most` sensor indices. Returns their number. */
 size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out);
 
-/* A cache of the latest predictions by asset and group; zero-initialise. The scene must outlive the cache. Thread: one. */
+/* A cache of the latest predictions by asset and group; zero-initialise. The scene must outlive the cache. Call from one thread only. */
 struct neighbours_cache {
     struct neighbours_kept {
         struct neighbours *of;  /* sensors of the group; NULL: the group has no sensor with a known position on the asset */

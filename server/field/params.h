@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parameters of a field: a session's choice of how the field is computed and which quantity is shown. Thread: any. */
+/* The parameters of a field: a session's choice of how the field is computed and which quantity is shown. Call from any thread. */
 #ifndef FIELD_PARAMS_H
 #define FIELD_PARAMS_H
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fields based on straight-line distances: shepard and paper (field.h) depend on these distances alone, so renderers evaluate
-   them at the surface point of each pixel. Such a field is exact on triangles of any size and on every level of detail. Thread:
-   any. */
+   them at the surface point of each pixel. Such a field is exact on triangles of any size and on every level of detail. Call
+   from any thread. */
 #ifndef FIELD_PIXEL_FIELD_H
 #define FIELD_PIXEL_FIELD_H
 #include <stdbool.h>

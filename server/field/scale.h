@@ -5,7 +5,7 @@
    colours are never mixed. - Bands of equal width (`interval`): band k begins at MIN + k interval, for k < max(1, ceil((MAX -
    MIN)/interval - 0.001)). MAX may make the last band shorter. A band has the colour at the middle of its positions. - Bands
    between `breaks`: n breaks inside (MIN, MAX) make n + 1 bands. Band i has the colour at the position (i + 0.5)/(n + 1). MIN,
-   MAX and value are compared as 32-bit floats, because they are stored as such. Pure. Thread: any. */
+   MAX and value are compared as 32-bit floats, because they are stored as such. Pure. Call from any thread. */
 #ifndef FIELD_SCALE_H
 #define FIELD_SCALE_H
 #include <stdbool.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field of one asset for one set of parameters: its scalars, and the readings from which they were computed. Thread: one at a time. */
+/* The field of one asset for one set of parameters: its scalars, and the readings from which they were computed. Call from one
+   thread at a time. */
 #ifndef FIELD_STATE_H
 #define FIELD_STATE_H
 #include "base/workers.h"

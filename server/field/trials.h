@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trials: sets of sensor positions that a user is trying out, each with an id by which views refer to it. A set is immutable;
-   each step of dragging a sensor creates a new one. Ids are never reused. Thread: any. */
+   each step of dragging a sensor creates a new one. Ids are never reused. Call from any thread. */
 #ifndef FIELD_TRIALS_H
 #define FIELD_TRIALS_H
 #include <stdbool.h>

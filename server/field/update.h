@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Updates a state's sums and scalars to new readings. The work can be spread over several calls, which all use the readings
-   present when the update began. Thread: one at a time (work is spread over `workers`). */
+   present when the update began. Call from one thread at a time (work is spread over `workers`). */
 #ifndef FIELD_UPDATE_H
 #define FIELD_UPDATE_H
 #include "field/state.h"
@@ -15,9 +15,9 @@ bool update_go_on(struct field_state *state, struct workers *workers, double wor
    updates. */
 bool update_is_light(const struct field_state *state);
 /* After update_begin(): runs the whole update on the calling thread, provided update_is_light() returned true. update_end()
-   must follow. Thread: any, in parallel with updates of other states. */
+   must follow. Call from any thread, in parallel with updates of other states. */
 void update_run(struct field_state *state);
-/* Completes the update after update_run(). Thread: the one that owns the field. */
+/* Completes the update after update_run(). Call only in the thread that owns the field. */
 void update_end(struct field_state *state, uint64_t *versions);
 /* Returns true if the readings in state->now differ by no more than the range that preparation assumed. */
 bool update_is_in_range(const struct field_state *state);

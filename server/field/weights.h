@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The matrix G: the weight of each usable sensor at each vertex of an asset, for one set of parameters and one set of usable
    sensors (field.h). G does not depend on readings, so instances of one asset and sessions with equal parameters share it.
-   Columns of G may be cached or recomputed for each sum, with bit-identical results. Thread: one, but weights_prepare() and
-   weights_add() may run in parallel on different blocks. */
+   Columns of G may be cached or recomputed for each sum, with bit-identical results. Call from one thread only, but
+   weights_prepare() and weights_add() may run in parallel on different blocks. */
 #ifndef FIELD_WEIGHTS_H
 #define FIELD_WEIGHTS_H
 #include "field/params.h"
@@ -121,11 +121,11 @@ void weights_drop_columns(struct weights *weights);
 /* Returns a vertex's byte for struct scalar's `lacking`. filled: areas around lost sensors have data. The vertex must be prepared. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
 /* Computes those of the arrays near_m, top and place that a block of vertices lacks (begin: a multiple of KERNEL_BLOCK; count
-   <= KERNEL_BLOCK). Thread: any, on different blocks. */
+   <= KERNEL_BLOCK). Call from any thread; different threads need different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 
 /* For interpolation gp: writes the standard deviation at vertices of one block, exact for the used sensors except for the
-   sampling done in preparation. Takes (lost * lost) steps per vertex. Thread: any. */
+   sampling done in preparation. Takes (lost * lost) steps per vertex. Call from any thread. */
 void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out);
 
 /* List of columns of G (a column is one sensor's weights at a block of vertices) for weights_add(), each with a factor. */
@@ -143,7 +143,7 @@ struct weights_sums {
     double *total, *marked;
 };
 /* Adds columns of G, multiplied by their factors, to the sums of a prepared block. Computes columns that are not cached, and
-   caches them if caching is on. Thread: any, on different blocks. */
+   caches them if caching is on. Call from any thread; different threads need different blocks. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
 /* Returns the cached weights of one sensor at a block of vertices. */
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);

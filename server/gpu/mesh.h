@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The geometry of one asset file on the GPU, shared by all its instances. Thread: the one of the GL context. */
+/* The geometry of one asset file on the GPU, shared by all its instances. Call only in the thread that owns the GL context. */
 #ifndef GPU_MESH_H
 #define GPU_MESH_H
 #include <stdbool.h>
@@ -46,13 +46,13 @@ struct gpu_mesh {
 };
 
 bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
-               const struct mesh_params *params); /* creates the buffers from `params`; returns false when out of memory, logged */
+               const struct mesh_params *params); /* creates the buffers from `params`; returns false when out of memory (logged) */
 void mesh_finish(struct gpu_mesh *mesh);
 void mesh_bind(const struct gpu_mesh *mesh); /* makes the mesh the source of the draws that follow */
 /* Sets the instances for the following draws. instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance. */
 void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances);
 
-/* Creates an immutable buffer. Returns its GL name; 0 when the GPU is out of memory, logged. */
+/* Creates an immutable buffer. Returns its GL name; 0 when the GPU is out of memory (logged). */
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Per-vertex numbers of many assets in a few GPU buffers (pages), so that one draw can show many assets. Shaders read the
    buffers as texels. Each slice (an asset's range in a page) begins at a multiple of POOL_BLOCK texels, because shaders address
-   slices by block index. Thread: the one of the GL context. */
+   slices by block index. Call only in the thread that owns the GL context. */
 #ifndef GPU_POOL_H
 #define GPU_POOL_H
 #include <stdbool.h>
@@ -34,7 +34,7 @@ struct pool *pool_create(struct log *log, const char *name, GLenum format, size_
 void pool_destroy(struct pool **pool); /* frees the pool and its buffers and sets *pool to NULL; accepts a pointer to NULL */
 /* Announces the slices that will be taken next, so that they share one page if possible. texels: sum of their sizes. */
 void pool_expect(struct pool *pool, size_t texels, size_t slices);
-/* Takes a slice of `count` texels, with one reference. Returns NULL if the GPU has no room for it, logged. */
+/* Takes a slice of `count` texels, with one reference. Logs and returns NULL if the GPU has no room for it. */
 struct pool_slice *pool_take(struct pool *pool, size_t count);
 struct pool_slice *pool_ref(struct pool_slice *slice); /* NULL is fine */
 void pool_unref(struct pool_slice **slice);            /* drops a reference and sets *slice to NULL; accepts a pointer to NULL */

@@ -20,7 +20,7 @@ struct expansion {
 
 static bool expand(struct expansion *x, const char *name, const char *text);
 
-/* Replaces a line `#include "x.glsl"` with that file's text. Returns false on failure, logged. */
+/* Replaces a line `#include "x.glsl"` with that file's text. On failure, logs the reason and returns false. */
 static bool expand_include(struct expansion *x, const char *from, int line, const char *directive)
 {
     const char *open = strchr(directive, '"');

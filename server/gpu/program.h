@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiles shader programs from the embedded sources. Thread: the one of the GL context. */
+/* Compiles shader programs from the embedded sources. Call only in the thread that owns the GL context. */
 #ifndef GPU_PROGRAM_H
 #define GPU_PROGRAM_H
 #include <glad/gl.h>
@@ -18,9 +18,9 @@ struct program_params {
 GLuint program_create(struct log *log, const struct program_params *params);
 void program_destroy(GLuint *program); /* deletes the program and sets *program to 0; 0 is a no-op */
 
-/* Compiles one stage from text. name: the text's name in log messages. Returns 0 on failure, logged. */
+/* Compiles one stage from text. name: the text's name in log messages. On failure, logs the reason and returns 0. */
 GLuint program_compile(struct log *log, GLenum stage, const char *name, const char *text, const char *defines);
-/* Links two stages (0: none) into a program and deletes the stages. Returns 0 on failure, logged. */
+/* Links two stages (0: none) into a program and deletes the stages. On failure, logs the reason and returns 0. */
 GLuint program_link(struct log *log, const char *name, const GLuint stages[2]);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An offscreen render target with 8-bit colour and 32-bit depth, with or without multisampling. Thread: the one of the GL context. */
+/* An offscreen render target with 8-bit colour and 32-bit depth, with or without multisampling. Call only in the thread that owns
+   the GL context. */
 #ifndef GPU_TARGET_H
 #define GPU_TARGET_H
 #include <stdbool.h>
@@ -21,7 +22,7 @@ struct target {
 };
 
 size_t target_bytes(const struct target *target); /* returns the size in bytes of the target's textures; 0 for an empty target */
-/* Creates framebuffers and textures. Returns false when out of GPU memory, logged. */
+/* Creates framebuffers and textures. Logs and returns false when out of GPU memory. */
 bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples);
 void target_finish(struct target *target);
 /* Resolves a rectangle of a multisampled target: averages the colours of the samples, and takes the depth of one sample. No-op

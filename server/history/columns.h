@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Compresses rows of 64-bit numbers: groups the bytes by column and position in the number, then compresses everything with
    zstd. The result is small if most numbers in a column are small, such as differences of successive times or XOR of successive
-   values. Thread: any. */
+   values. Call from any thread. */
 #ifndef HISTORY_COLUMNS_H
 #define HISTORY_COLUMNS_H
 #include <math.h>

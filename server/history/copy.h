@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Copies databases to which a daemon may be writing (SQLite's online backup), and other files; checks that a copy is complete.
-   Thread: any. */
+   Call from any thread. */
 #ifndef HISTORY_COPY_H
 #define HISTORY_COPY_H
 #include <stdbool.h>

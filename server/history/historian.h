@@ -29,7 +29,8 @@ struct historian *historian_start(const struct historian_params *params);
 /* Call this on a standby once it has connected to the leading daemon. Points that the leader recorded earlier and that this
    machine lacks are then read from PostgreSQL. */
 void historian_follow(struct historian *historian);
-/* Records samples that the leading daemon has recorded, in its order. Call it only while this daemon is a standby. Thread: one. */
+/* Records samples that the leading daemon has recorded, in its order. Call it only while this daemon is a standby. Call from one
+   thread only. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
 /* Ends mirroring, because this daemon becomes the leader: from now on it records the samples of its own store. Values between
    the last mirrored sample and now are recorded as unknown. */

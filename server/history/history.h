@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queries recorded history: series of one tag over time, and the readings of all tags at one time. Never writes; works while a daemon is
-   recording. Functions that return int return 0 or -errno, already logged. Thread: one per reader. */
+/* Queries recorded history: series of one tag over time, and the readings of all tags at one time. Never writes; works while a
+   daemon is recording. Functions that return int return 0 or -errno, already logged. Use each reader in one thread only. */
 #ifndef HISTORY_HISTORY_H
 #define HISTORY_HISTORY_H
 #include "history/month_file.h"

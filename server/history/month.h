@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* UTC months and the names of their history files, such as history-2026-11.sqlite. Thread: any. */
+/* UTC months and the names of their history files, such as history-2026-11.sqlite. Call from any thread. */
 #ifndef HISTORY_MONTH_H
 #define HISTORY_MONTH_H
 #include <stdbool.h>

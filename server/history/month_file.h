@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes and reads one month of history in one SQLite file. HISTORY.md describes its tables. Functions that return int return 0
-   or -errno, already logged. Thread: one at a time per handle; readers have handles of their own. */
+   or -errno, already logged. Call from one thread at a time per handle; readers have handles of their own. */
 #ifndef HISTORY_MONTH_FILE_H
 #define HISTORY_MONTH_FILE_H
 #include <stddef.h>

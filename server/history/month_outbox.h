@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outbox: the points in a month's file that are yet to be sent to PostgreSQL. The historian writes them in the same transaction
-   as the points themselves (month_file_use_outbox()); the sender reads and deletes them through a handle of its own. Thread:
-   one per handle. Functions that return int return 0 or -errno, already logged. */
+   as the points themselves (month_file_use_outbox()); the sender reads and deletes them through a handle of its own. Use each
+   handle in one thread only. Functions that return int return 0 or -errno, already logged. */
 #ifndef HISTORY_MONTH_OUTBOX_H
 #define HISTORY_MONTH_OUTBOX_H
 #include <stddef.h>

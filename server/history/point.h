@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A recorded point of a tag. Points are joined by straight lines, or by steps if the tag is a switch. Pure. Thread: any. */
+/* A recorded point of a tag. Points are joined by straight lines, or by steps if the tag is a switch. Pure. Call from any thread. */
 #ifndef HISTORY_POINT_H
 #define HISTORY_POINT_H
 #include <math.h>

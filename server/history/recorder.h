@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Selects the samples to record, with one swinging-door filter per tag. No input or output. Thread: one. */
+/* Selects the samples to record, with one swinging-door filter per tag. No input or output. Call from one thread only. */
 #ifndef HISTORY_RECORDER_H
 #define HISTORY_RECORDER_H
 #include "history/month_file.h"

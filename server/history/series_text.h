@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes history series as JSON and as CSV, as described in protocol/HTTP.md. No input or output. Thread: any. */
+/* Writes history series as JSON and as CSV, as described in protocol/HTTP.md. No input or output. Call from any thread. */
 #ifndef HISTORY_SERIES_TEXT_H
 #define HISTORY_SERIES_TEXT_H
 #include "base/text/text.h"

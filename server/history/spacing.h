@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the median time between the usable samples of a series in bounded memory. No input or output. Thread: one. */
+/* Computes the median time between the usable samples of a series in bounded memory. No input or output. Call from one thread only. */
 #ifndef HISTORY_SPACING_H
 #define HISTORY_SPACING_H
 #include <stddef.h>

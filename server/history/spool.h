@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The spool: a file for rows that could not be written to history before the daemon ended. The next start reads it. Thread: one. */
+/* The spool: a file for rows that could not be written to history before the daemon ended. The next start reads it. Call from one
+   thread only. */
 #ifndef HISTORY_SPOOL_H
 #define HISTORY_SPOOL_H
 #include "history/recorder.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A plant's exports folder, for unmodified exports from other systems: models, files that models refer to, and one tag list.
-   Thread: any, one at a time per folder. */
+   Call from any thread, but for each folder from one thread at a time. */
 #ifndef IMPORTING_EXPORT_FOLDER_H
 #define IMPORTING_EXPORT_FOLDER_H
 #include <stdbool.h>

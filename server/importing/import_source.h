@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The data source of an imported plant: one Modbus TCP device. No input or output. Thread: any. */
+/* The data source of an imported plant: one Modbus TCP device. No input or output. Call from any thread. */
 #ifndef IMPORTING_IMPORT_SOURCE_H
 #define IMPORTING_IMPORT_SOURCE_H
 #include <jansson.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Records of loop checks. A tag passes if a value that an engineer forces at its transmitter arrives as the tag's value, which
    shows that the tag is wired correctly. The records are in proofs.csv in the history folder, an append-only file
-   (LOOPCHECK.md). Thread: the event loop. */
+   (LOOPCHECK.md). Call only in the event loop. */
 #ifndef LOOPCHECK_LOOP_CHECKS_H
 #define LOOPCHECK_LOOP_CHECKS_H
 #include "base/files/file_writer.h"
@@ -49,7 +49,7 @@ uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
 /* Appends CSV: a header line, then the newest check of every tag that has a source. */
 void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);
 /* Returns true if pictures must mark the tag as unproven: at least one tag has been checked, but this one has not passed.
-   Derived tags are never marked. Thread: any. */
+   Derived tags are never marked. Call from any thread. */
 bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag);
 /* Returns a hash of all settings whose change invalidates a tag's loop check: source, address, type, byte order, scaling, asset
    and position. */

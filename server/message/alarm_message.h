@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The message `alarm`: acknowledging, shelving and other actions on alarms. Thread: the event loop. */
+/* The message `alarm`: acknowledging, shelving and other actions on alarms. Call only in the event loop. */
 #ifndef MESSAGE_ALARM_MESSAGE_H
 #define MESSAGE_ALARM_MESSAGE_H
 #include "alarm/alarm_service.h"

@@ -8,7 +8,7 @@
 #include "message/message.h"
 
 /* Cache of the newest message `alarms`: its JSON text is built only once for all sessions that need the same one.
-   Zero-initialise; end with alarm_text_cache_finish(). Thread: the event loop. */
+   Zero-initialise; end with alarm_text_cache_finish(). Call only in the event loop. */
 struct alarm_text_cache {
     char *text;
     uint64_t since, number;
@@ -35,7 +35,7 @@ bool alarm_query_parse(const struct plant *plant, bool journal, const char *cons
 /* Returns the alarms that are not normal, as JSON or CSV. */
 char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns);
 /* Appends the journal rows that the query selects, as CSV if query->csv, else as JSON. Reads the disk. Returns false, with *out
-   emptied, if the journal cannot be read (logged). Thread: any. */
+   emptied, if the journal cannot be read (logged). Call from any thread. */
 bool alarms_journal_text(struct log *log, const char *folder, const struct plant *plant, const struct alarm_query *query, struct text *out);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Functions that read one member of a JSON object and check its type and range. If the member is wrong, each returns false,
-   with *error saying what was expected. Pure. Thread: any. */
+   with *error saying what was expected. Pure. Call from any thread. */
 #ifndef MESSAGE_JSON_FIELDS_H
 #define MESSAGE_JSON_FIELDS_H
 #include "message/message.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers, texts and vectors as used in messages. Each function returns a new JSON value, owned by the caller. Pure. Thread: any. */
+/* Numbers, texts and vectors as used in messages. Each function returns a new JSON value, owned by the caller. Pure. Call from any
+   thread. */
 #ifndef MESSAGE_JSON_VALUES_H
 #define MESSAGE_JSON_VALUES_H
 #include <jansson.h>

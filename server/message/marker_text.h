@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The message `markers`, which precedes a frame: positions and values of the frame's markers and labels. A client's first
-   message has all markers and labels, later ones only changes. Pure. Thread: the event loop. */
+   message has all markers and labels, later ones only changes. Pure. Call only in the event loop. */
 #ifndef MESSAGE_MARKER_TEXT_H
 #define MESSAGE_MARKER_TEXT_H
 #include "render/frame.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A client's message: its JSON text is parsed and checked, and becomes a struct. No other code parses clients' messages. Pure.
-   Thread: any. */
+   Call from any thread. */
 #ifndef MESSAGE_MESSAGE_H
 #define MESSAGE_MESSAGE_H
 #include <jansson.h>

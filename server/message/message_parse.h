@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses a client's JSON message, according to a table of all message types. Pure. Thread: any. */
+/* Parses a client's JSON message, according to a table of all message types. Pure. Call from any thread. */
 #ifndef MESSAGE_MESSAGE_PARSE_H
 #define MESSAGE_MESSAGE_PARSE_H
 #include "message/message.h"

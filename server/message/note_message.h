@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages `note` and `remove_note`: parses them and carries them out. Thread: the event loop. */
+/* The messages `note` and `remove_note`: parses them and carries them out. Call only in the event loop. */
 #ifndef MESSAGE_NOTE_MESSAGE_H
 #define MESSAGE_NOTE_MESSAGE_H
 #include "message/message.h"

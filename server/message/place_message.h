@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages by which engineers move sensors on trial, accept assumed places, and save the tag list. Thread: the event loop. */
+/* Messages by which engineers move sensors on trial, accept assumed places, and save the tag list. Call only in the event loop. */
 #ifndef MESSAGE_PLACE_MESSAGE_H
 #define MESSAGE_PLACE_MESSAGE_H
 #include "message/message.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages `save_view` and `remove_view`, by which users edit named views, and `share_view`, which makes a short link.
-   Thread: the loop. */
+/* The messages `save_view` and `remove_view`, by which users edit named views, and `share_view`, which makes a short link. Call
+   only in the event loop. */
 #ifndef MESSAGE_VIEWS_MESSAGE_H
 #define MESSAGE_VIEWS_MESSAGE_H
 #include "message/message.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages of control-room displays, of desks that send views to them, and of engineers who pair them. Thread: the event loop. */
+/* Messages of control-room displays, of desks that send views to them, and of engineers who pair them. Call only in the event loop. */
 #ifndef MESSAGE_WALL_MESSAGE_H
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"

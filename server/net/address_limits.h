@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Limits per client address: how many connections, streams, requests and messages each has. IPv6 addresses are grouped by their
-   first 64 bits, because one customer usually owns all addresses of such a prefix. Pure: the caller passes the time. Thread:
-   the event loop. */
+   first 64 bits, because one customer usually owns all addresses of such a prefix. Pure: the caller passes the time. Call only
+   in the event loop. */
 #ifndef NET_ADDRESS_LIMITS_H
 #define NET_ADDRESS_LIMITS_H
 #include "session/pacing/admission.h"

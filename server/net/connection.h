@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connection identity: the user and the address at the other end of a connection, from its socket and its request headers. Thread: the
-   event loop. */
+/* Connection identity: the user and the address at the other end of a connection, from its socket and its request headers. Call
+   only in the event loop. */
 #ifndef NET_CONNECTION_H
 #define NET_CONNECTION_H
 #include "net/server_context.h"

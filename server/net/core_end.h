@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The side of a renderer or standby of its connection /core to the core, in the event loop: forwards users' actions to the
-   core, and distributes what arrives from the core. Thread: the event loop. */
+   core, and distributes what arrives from the core. Call only in the event loop. */
 #ifndef NET_CORE_END_H
 #define NET_CORE_END_H
 #include "net/server_context.h"

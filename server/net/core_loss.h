@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decides when a renderer that has lost all cores moves its sessions to other nodes. They move only while the load balancer
-   says that it sends users to other nodes. If all renderers have lost the cores, the sessions stay. Thread: one at a time;
-   takes the time as a parameter. */
+   says that it sends users to other nodes. If all renderers have lost the cores, the sessions stay. Call from one thread at a
+   time; takes the time as a parameter. */
 #ifndef NET_CORE_LOSS_H
 #define NET_CORE_LOSS_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Latency stages: histograms for /metrics that show where time is spent between an input, or a changed reading, and the frame
-   that shows it. Thread: the event loop. */
+   that shows it. Call only in the event loop. */
 #ifndef NET_LATENCY_STAGES_H
 #define NET_LATENCY_STAGES_H
 #include "base/metrics/counters.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The event loop: HTTP and WebSocket on one port, sessions, timers. Thread: the one that calls net_run(), unless a function's comment says
-   otherwise. */
+/* The event loop: HTTP and WebSocket on one port, sessions, timers. Call only in the thread that calls net_run(), unless a
+   function's comment says otherwise. */
 #ifndef NET_NET_H
 #define NET_NET_H
 #include "net/net_params.h"

@@ -52,9 +52,9 @@ bool net_hand_over(struct net *net);
 
 void net_calls_init(struct net *net);
 void net_calls_finish(struct net *net);
-/* Runs the waiting call (net_call), if any. Thread: the event loop. */
+/* Runs the waiting call (net_call), if any. Call only in the event loop. */
 void net_calls_run(struct net *net);
-/* Releases the threads that wait in net_call(); their calls are not run. Thread: the event loop. */
+/* Releases the threads that wait in net_call(); their calls are not run. Call only in the event loop. */
 void net_calls_close(struct net *net);
 
 /* --- net_plant.c; thread: the event loop --- */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signs pictures on a thread of its own: signing a statement about 10,000 readings takes a tenth of a second, too long for the
-   event loop. Thread: the event loop. */
+   event loop. Call only in the event loop. */
 #ifndef NET_PICTURE_SIGNER_H
 #define NET_PICTURE_SIGNER_H
 #include "provenance/signed_picture.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The core's side of connections to /core: accepts renderers and standbys, sends them what changed, and carries out actions of
    renderers' users. A peer that reads too slowly delays no other peer: it gets only the newest state, and is disconnected after
-   5 s without reading. Thread: the event loop. */
+   5 s without reading. Call only in the event loop. */
 #ifndef NET_RENDERERS_H
 #define NET_RENDERERS_H
 #include "net/server_context.h"

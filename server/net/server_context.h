@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The server context: state shared by the parts of the event loop. Private to net/. Thread: the event loop. */
+/* The server context: state shared by the parts of the event loop. Private to net/. Call only in the event loop. */
 #ifndef NET_SERVER_CONTEXT_H
 #define NET_SERVER_CONTEXT_H
 #include <libwebsockets.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One connection to /stream. Private to stream*.c and net_reload.c. Thread: the event loop. */
+/* One connection to /stream. Private to stream*.c and net_reload.c. Call only in the event loop. */
 #ifndef NET_STREAM_H
 #define NET_STREAM_H
 #include "message/marker_text.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The TLS certificate: checked before it is served, and read again when its files change. Thread: the event loop. */
+/* The TLS certificate: checked before it is served, and read again when its files change. Call only in the event loop. */
 #ifndef NET_TLS_H
 #define NET_TLS_H
 #include <openssl/ssl.h>

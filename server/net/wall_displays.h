@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wall displays of control rooms: which are connected and how old their pictures are, for desks and for /metrics. Thread: the event
-   loop. */
+/* Wall displays of control rooms: which are connected and how old their pictures are, for desks and for /metrics. Call only in
+   the event loop. */
 #ifndef NET_WALL_DISPLAYS_H
 #define NET_WALL_DISPLAYS_H
 #include "net/server_context.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends alarm messages by SMTP and HTTP without blocking: one message at a time per recipient, all recipients in parallel. Thread: one,
-   except delivery_wake(). */
+/* Sends alarm messages by SMTP and HTTP without blocking: one message at a time per recipient, all recipients in parallel. Call
+   from one thread only, except delivery_wake(). */
 #ifndef NOTIFY_DELIVERY_H
 #define NOTIFY_DELIVERY_H
 #include <stdbool.h>
@@ -22,6 +22,6 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 /* Waits up to timeout_ms for network activity, and calls each() for every message that was sent or failed; `why` is NULL if the
    recipient's server accepted the message. */
 void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg);
-void delivery_wake(struct delivery *delivery); /* Makes delivery_wait() return. Thread: any. */
+void delivery_wake(struct delivery *delivery); /* Makes delivery_wait() return. Call from any thread. */
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sends alarms to users and external programs, as configured by the plant file's `notify`. Its thread wakes when an alarm
-   changes, stores pending messages in notify.json in the history folder, and sends them; no other thread waits for it. Thread:
-   one. */
+   changes, stores pending messages in notify.json in the history folder, and sends them; no other thread waits for it. Call
+   from one thread only. */
 #ifndef NOTIFY_NOTIFIER_H
 #define NOTIFY_NOTIFIER_H
 #include "alarm/alarm_service.h"
@@ -20,9 +20,9 @@ struct notifier_params {
 };
 
 struct notifier;
-/* Returns a sequence number that increases with each change of the content of notify.json. Thread: any. */
+/* Returns a sequence number that increases with each change of the content of notify.json. Call from any thread. */
 uint64_t notifier_number(struct notifier *notifier);
-/* Returns the content of notify.json (pending messages); free with mem_free(). Thread: any. */
+/* Returns the content of notify.json (pending messages); free with mem_free(). Call from any thread. */
 char *notifier_kept(struct notifier *notifier);
 /* Stores the leading daemon's notify.json as this daemon's file, for the notifier that starts when this daemon becomes the
    leader. Returns 0 or -errno. */

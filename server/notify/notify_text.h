@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts of alarm messages: e-mail (RFC 5322), a webhook's JSON, alerts of Alertmanager's API v2. Depends only on the arguments and the
-   local time zone. Thread: any. */
+/* Texts of alarm messages: e-mail (RFC 5322), a webhook's JSON, alerts of Alertmanager's API v2. Depends only on the arguments
+   and the local time zone. Call from any thread. */
 #ifndef NOTIFY_NOTIFY_TEXT_H
 #define NOTIFY_NOTIFY_TEXT_H
 #include "base/text/text.h"

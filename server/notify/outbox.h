@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decides which recipients are notified of which alarms, and when: rules, several alarms in one message, pauses, escalation,
    retries. No input or output: time is an argument, UTC in microseconds. The caller passes alarms in their present states, so
-   an alarm that came and went between two calls is missed. Thread: one at a time. */
+   an alarm that came and went between two calls is missed. Call from one thread at a time. */
 #ifndef NOTIFY_OUTBOX_H
 #define NOTIFY_OUTBOX_H
 #include <jansson.h>

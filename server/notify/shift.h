@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Selects the rules of `notify` that apply to an alarm, by shift, area and priority. Depends only on the arguments and the local time
-   zone, which is the plant's. Thread: any. */
+/* Selects the rules of `notify` that apply to an alarm, by shift, area and priority. Depends only on the arguments and the
+   local time zone, which is the plant's. Call from any thread. */
 #ifndef NOTIFY_SHIFT_H
 #define NOTIFY_SHIFT_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Selects the sensors whose assumed places (proposed by `plantcast match`) an engineer accepts in one operation. TAGS.md,
-   "Assumed places", describes assumed places. Thread: the event loop. */
+   "Assumed places", describes assumed places. Call only in the event loop. */
 #ifndef PLACING_ASSUMED_PLACES_H
 #define PLACING_ASSUMED_PLACES_H
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Computes geodesic distances from new sensor positions on an asset of a loaded plant. Uses the asset's prepared surface, or
-   builds a surface. Thread: any. */
+   builds a surface. Call from any thread. */
 #ifndef PLACING_MOVER_H
 #define PLACING_MOVER_H
 #include "scene/scene.h"

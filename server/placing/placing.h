@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors that users move on the model, before the new places are saved. Each user has a set of moved sensors. The set becomes
    a trial (a changed sensor layout, field/trials.h) with straight-line distances, and later a second trial with geodesic
-   distances. Thread: the event loop, except functions that workers call. */
+   distances. Call only in the event loop, except functions that workers call. */
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
 #include "base/log/log.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensor coverage: how far the points of an asset's surface are from its sensors, and how much of the area no usable sensor covers. No
-   input or output. Thread: any. */
+/* Sensor coverage: how far the points of an asset's surface are from its sensors, and how much of the area no usable sensor
+   covers. No input or output. Call from any thread. */
 #ifndef PLACING_SENSOR_COVERAGE_H
 #define PLACING_SENSOR_COVERAGE_H
 #include "field/layout.h"

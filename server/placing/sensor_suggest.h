@@ -4,7 +4,7 @@
    a hot spot as strong as the group's full value range is undetectable. The measure is the mean over the surface of ln(h / h0)
    / ln(1 / 0.05), capped at 1. h is the strength of the weakest hot spot that is detectable at a point (drawn by the view
    option `show: blind`), and h0 that strength at a sensor. This greedy choice among the tested positions reaches at least 63 %
-   of the best set's gain (Nemhauser, Wolsey & Fisher, 1978). Thread: one; waits for worker threads. */
+   of the best set's gain (Nemhauser, Wolsey & Fisher, 1978). Call from one thread only; waits for worker threads. */
 #ifndef PLACING_SENSOR_SUGGEST_H
 #define PLACING_SENSOR_SUGGEST_H
 #include "base/log/log.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tag list on disk. A new version gets the list's name, and the previous one is kept as NAME.1, NAME.2, ... No version is
-   ever overwritten. Thread: any, one at a time per list. */
+   ever overwritten. Call from any thread, but for each list from one thread at a time. */
 #ifndef PLACING_TAG_FILE_H
 #define PLACING_TAG_FILE_H
 #include <stdbool.h>

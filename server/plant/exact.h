@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fields (interpolated values) that pictures show exactly: the interpolations `shepard` and `paper` with straight-line
    distances are evaluated at each pixel (field/pixel_field.h). plantcast-prep does not subdivide triangles for such fields.
-   Thread: any. */
+   Call from any thread. */
 #ifndef PLANT_EXACT_H
 #define PLANT_EXACT_H
 #include "plant/influence.h"

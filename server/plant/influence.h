@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interpolations with a physical meaning. plantcast-prep computes the weight of each sensor at each vertex, so the daemon only
-   forms weighted sums of the readings (INTERPOLATIONS.md, *Interpolations that solve an equation*). Thread: any. */
+   forms weighted sums of the readings (INTERPOLATIONS.md, *Interpolations that solve an equation*). Call from any thread. */
 #ifndef PLANT_INFLUENCE_H
 #define PLANT_INFLUENCE_H
 #include "plant/plant.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant, loaded from its plant file (YAML) and tag list (CSV) and checked for syntax and meaning. Immutable once loaded.
-   Thread: any. plantcastd, plantcast-prep and plantcast-sim all use it. */
+/* A plant, loaded from its plant file (YAML) and tag list (CSV) and checked for syntax and meaning. Immutable once loaded. Call
+   from any thread. plantcastd, plantcast-prep and plantcast-sim all use it. */
 #ifndef PLANT_PLANT_H
 #define PLANT_PLANT_H
 #include <stdbool.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Describes how two plants differ, in words: tags, assets, groups and sources that were added, removed or changed. Pure. Thread: any. */
+/* Describes how two plants differ, in words: tags, assets, groups and sources that were added, removed or changed. Pure. Call from
+   any thread. */
 #ifndef PLANT_PLANT_DIFF_H
 #define PLANT_PLANT_DIFF_H
 #include "plant/plant.h"

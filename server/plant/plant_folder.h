@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Exclusive access to a plant's folder. Only one program at a time may change files in it: an import, a match, or a daemon that saves. A
-   revision (an import or its undoing) replaces several files together. If a program is killed during a revision, the next program that
-   locks the folder finishes the revision. A revision has a record: a folder inside the plant's folder, whose name tells its state.
-   .revision: the revision is complete; .revision.pending: the files new/NAME are being moved into place; .revision.undoing: the files
-   old/NAME are being moved back. The record's file `files` has lines "HASH WAS NAME"; WAS is 1 if old/NAME is the previous version. A
-   file in another folder is listed by its path; its versions are called elsewhere-NAME.
-   Functions that return int return 0 or -errno. Thread: any; one at a time per folder. */
+/* Exclusive access to a plant's folder. Only one program at a time may change files in it: an import, a match, or a daemon that
+   saves. A revision (an import or its undoing) replaces several files together. If a program is killed during a revision, the
+   next program that locks the folder finishes the revision. A revision has a record: a folder inside the plant's folder, whose
+   name tells its state. .revision: the revision is complete; .revision.pending: the files new/NAME are being moved into place;
+   .revision.undoing: the files old/NAME are being moved back. The record's file `files` has lines "HASH WAS NAME"; WAS is 1 if
+   old/NAME is the previous version. A file in another folder is listed by its path; its versions are called elsewhere-NAME.
+   Functions that return int return 0 or -errno. Call from any thread, but for each folder from one thread at a time. */
 #ifndef PLANT_PLANT_FOLDER_H
 #define PLANT_PLANT_FOLDER_H
 #include <stdbool.h>

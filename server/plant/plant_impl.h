@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions shared by the files that read the plant file and the tag list. Private to plant/. Thread: one. The functions that read a key
-   get the plant as void *, because struct yaml_key requires this type. */
+/* Functions shared by the files that read the plant file and the tag list. Private to plant/. Call from one thread only. The
+   functions that read a key get the plant as void *, because struct yaml_key requires this type. */
 #ifndef PLANT_PLANT_IMPL_H
 #define PLANT_PLANT_IMPL_H
 #include "plant/parse/yaml_reader.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hashes of everything that a prepared asset file depends on, except sensors, which are compared one by one (plant/sensors.h).
-   plantcast-prep writes the hashes into the manifest, and scene_create() compares them to reject outdated asset files. Thread:
-   any. */
+   plantcast-prep writes the hashes into the manifest, and scene_create() compares them to reject outdated asset files. Call
+   from any thread. */
 #ifndef PLANT_RECIPE_H
 #define PLANT_RECIPE_H
 #include <stdbool.h>

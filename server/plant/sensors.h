@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lists the sensors of an asset as its asset file must have them: plantcast-prep writes this list, and scene_create() compares
-   the file with it. Thread: any. */
+   the file with it. Call from any thread. */
 #ifndef PLANT_SENSORS_H
 #define PLANT_SENSORS_H
 #include <stdint.h>

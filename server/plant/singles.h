@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Assets that have only one sensor of a group. With the interpolation `shepard`, the group's field is constant there. So
    plantcast-prep does not subdivide their triangles, unless the plant file asks for `paper` or `singles: cut`: on undivided
-   triangles, neither `paper` nor distances are shown correctly. Sensors with an assumed place do not count. Thread: any. */
+   triangles, neither `paper` nor distances are shown correctly. Sensors with an assumed place do not count. Call from any
+   thread. */
 #ifndef PLANT_SINGLES_H
 #define PLANT_SINGLES_H
 #include "plant/plant.h"

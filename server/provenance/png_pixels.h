@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes the pixels of a PNG file. No input or output. Thread: any. */
+/* Decodes the pixels of a PNG file. No input or output. Call from any thread. */
 #ifndef PROVENANCE_PNG_PIXELS_H
 #define PROVENANCE_PNG_PIXELS_H
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text chunks of PNG files (PNG, third edition, 11.3.3): compressed zTXt. No input or output. Thread: any. */
+/* Text chunks of PNG files (PNG, third edition, 11.3.3): compressed zTXt. No input or output. Call from any thread. */
 #ifndef PROVENANCE_PNG_TEXT_H
 #define PROVENANCE_PNG_TEXT_H
 #include <stdbool.h>

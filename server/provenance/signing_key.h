@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ed25519 keys (RFC 8032) in PEM files, as OpenSSL writes them: the private key signs, the public key verifies. Immutable. Thread: any. */
+/* Ed25519 keys (RFC 8032) in PEM files, as OpenSSL writes them: the private key signs, the public key verifies. Immutable. Call
+   from any thread. */
 #ifndef PROVENANCE_SIGNING_KEY_H
 #define PROVENANCE_SIGNING_KEY_H
 #include <stdbool.h>

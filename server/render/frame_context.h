@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frame context: everything that the render passes need to know about the frame being drawn. Thread: the one that owns the GL context. */
+/* Frame context: everything that the render passes need to know about the frame being drawn. Call only in the thread that owns the
+   GL context. */
 #ifndef RENDER_FRAME_CONTEXT_H
 #define RENDER_FRAME_CONTEXT_H
 #include "gpu/target.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pixel buffers of frames: counts their bytes, and keeps a few released buffers for reuse. Reusing them is faster: fresh memory
    from the kernel costs more time in page faults than filling a frame takes. Reference-counted, because frames outlive their
-   renderer. Thread: any. A NULL pool neither counts nor reuses buffers. */
+   renderer. Call from any thread. A NULL pool neither counts nor reuses buffers. */
 #ifndef RENDER_FRAME_POOL_H
 #define RENDER_FRAME_POOL_H
 #include <stddef.h>

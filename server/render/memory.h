@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures, limits and frees the memory that a renderer keeps between frames. Thread: the one that owns the GL context. */
+/* Measures, limits and frees the memory that a renderer keeps between frames. Call only in the thread that owns the GL context. */
 #ifndef RENDER_MEMORY_H
 #define RENDER_MEMORY_H
 #include "render/renderer.h"

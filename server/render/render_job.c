@@ -30,7 +30,7 @@ static GLuint copy_buffer(struct log *log, GLuint from)
     return copy;
 }
 
-/* Copies one asset's field. Returns false when out of memory (main or GPU), logged. */
+/* Copies one asset's field. Logs and returns false when out of memory (main or GPU). */
 static bool copy_field(const struct render_job *job, const struct fields_entry *from, bool on_gpu, struct fields_entry *copy)
 {
     struct log *log = job->context.gpu_scene->gl->log;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Render job: a frame being drawn in steps. The job holds everything that the frame shows, until its last step. Thread: the one
-   that owns the GL context. */
+/* Render job: a frame being drawn in steps. The job holds everything that the frame shows, until its last step. Call only in
+   the thread that owns the GL context. */
 #ifndef RENDER_RENDER_JOB_H
 #define RENDER_RENDER_JOB_H
 #include "render/frame.h"
@@ -33,8 +33,8 @@ struct render_job {
 
 /* Initialises a job: takes ownership of the frame, and copies view and lists of the frame context. */
 void render_job_init(struct render_job *job, const struct frame_context *context, struct frame *frame);
-/* Copies the fields into the job, so that planning later frames does not change them. on_gpu true: copies GPU buffers; false: vertex values
-   in main memory. Returns false when out of memory (main or GPU), logged. */
+/* Copies the fields into the job, so that planning later frames does not change them. on_gpu true: copies GPU buffers; false:
+   vertex values in main memory. Logs and returns false when out of memory (main or GPU). */
 bool render_job_hold_fields(struct render_job *job, bool on_gpu);
 /* Frees the job's members, and its frame unless job->frame was set to NULL. Does not free the backend's state. */
 void render_job_finish(struct render_job *job);

@@ -100,7 +100,7 @@ static double drawn_error_of(const struct frame_context *context)
     return unit * (parts <= 1 ? 1 : parts <= 2 ? 2 : parts <= 5 ? 5 : 10);
 }
 
-/* Returns a new frame whose members are set from the plan, except the pixels, which are not drawn yet. NULL: out of memory, logged. */
+/* Returns a new frame whose members are set from the plan, except the pixels, which are not drawn yet. NULL: out of memory (logged). */
 static struct frame *start_frame(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context)
 {
     const struct view *view = &plan->view;

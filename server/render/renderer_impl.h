@@ -42,11 +42,11 @@ void renderer_init_context(struct renderer *renderer, const struct frame_plan *p
    data, so the array must belong to the caller. The frame's content hash and age are then updated. */
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
                             struct frame *frame);
-/* Sets the context's colour map and, unless it is set already, its light set (baked light). Returns false when out of GPU memory,
-   logged. */
+/* Sets the context's colour map and, unless it is set already, its light set (baked light). Logs and returns false when out of
+   GPU memory. */
 bool renderer_find_light(struct renderer *renderer, struct frame_context *context);
-/* Sets the light set (baked light) and the colour map of a job; the job holds a reference to the light set. Returns false when out of GPU
-   memory, logged. */
+/* Sets the light set (baked light) and the colour map of a job; the job holds a reference to the light set. Logs and returns
+   false when out of GPU memory. */
 bool renderer_light_job(struct renderer *renderer, struct render_job *job);
 /* Returns the key of the default light, which most views use. */
 struct light_key renderer_usual_light(const struct renderer *renderer);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shaded colour maps: lookup tables of a scale's colours, in memory and as textures. In the default look, shading changes only
-   CIELAB L* and neither hue nor chroma, so that a viewer cannot mistake shading for another value. Thread: the one that owns
-   the GL context. */
+   CIELAB L* and neither hue nor chroma, so that a viewer cannot mistake shading for another value. Call only in the thread that
+   owns the GL context. */
 #ifndef RENDER_SHADED_COLORMAP_H
 #define RENDER_SHADED_COLORMAP_H
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of recently used shaded colour maps. Thread: the one that owns the GL context. */
+/* Cache of recently used shaded colour maps. Call only in the thread that owns the GL context. */
 #ifndef RENDER_SHADED_COLORMAP_CACHE_H
 #define RENDER_SHADED_COLORMAP_CACHE_H
 #include "render/shaded_colormap.h"

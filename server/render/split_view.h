@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws views that may be split into two halves under one camera. Each half is planned and drawn as a frame of its own; then
-   the two are joined side by side. A view that is not split has one half. Thread: the one that owns the GL context. */
+   the two are joined side by side. A view that is not split has one half. Call only in the thread that owns the GL context. */
 #ifndef RENDER_SPLIT_VIEW_H
 #define RENDER_SPLIT_VIEW_H
 #include "render/renderer.h"
@@ -30,7 +30,8 @@ struct frame *split_view_end(struct renderer *renderer, struct split_view **spli
 /* abandons all jobs and sets *split to NULL; accepts a pointer to NULL */
 void split_view_abandon(struct renderer *renderer, struct split_view **split);
 
-/* Plans and draws a frame of the view; waits until its fields are computed. The caller owns the frame. NULL on failure, logged. */
+/* Plans and draws a frame of the view; waits until its fields are computed. The caller owns the frame. NULL on failure, after
+   logging the reason. */
 struct frame *split_view_draw_now(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 
 #endif

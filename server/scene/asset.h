@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One prepared asset file, mapped into memory and checked. Immutable; reference-counted. Thread: any. */
+/* One prepared asset file, mapped into memory and checked. Immutable; reference-counted. Call from any thread. */
 #ifndef SCENE_ASSET_H
 #define SCENE_ASSET_H
 #include "base/log/log.h"
@@ -27,10 +27,10 @@ struct asset {
     struct closed_bodies *_Atomic *closed;
 };
 
-/* Opens a file. Returns NULL on failure, logged with path and reason. */
+/* Opens a file. On failure, logs path and reason and returns NULL. */
 struct asset *asset_open(struct log *log, const char *path);
-/* Maps and checks the file KEY.influence next to the asset's file, unless it is open already. Returns false if there is no
-   valid file, logged. Thread: one, before others use the asset. */
+/* Maps and checks the file KEY.influence next to the asset's file, unless it is open already. Logs and returns false if there
+   is no valid file. Call from one thread only, before others use the asset. */
 bool asset_open_influence(struct log *log, struct asset *asset);
 /* Returns a placeholder for an asset that could not be prepared: one invisibly small triangle, no sensors. */
 struct asset *asset_stand_in(void);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A camera in the plant frame (metres) and its matrices. Column-major; GL clip space, depth -1..1. Thread: any. */
+/* A camera in the plant frame (metres) and its matrices. Column-major; GL clip space, depth -1..1. Call from any thread. */
 #ifndef SCENE_CAMERA_H
 #define SCENE_CAMERA_H
 #include <stdbool.h>

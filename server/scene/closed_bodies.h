@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds which triangles of a level bound closed bodies, whose cut sections are drawn solid. A body is a set of triangles
-   connected by vertex positions; it is closed if each edge is used equally often in both directions. Thread: any. */
+   connected by vertex positions; it is closed if each edge is used equally often in both directions. Call from any thread. */
 #ifndef SCENE_CLOSED_BODIES_H
 #define SCENE_CLOSED_BODIES_H
 #include <stddef.h>

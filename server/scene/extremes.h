@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Outermost points of a plant in many directions, for views that must contain the whole plant. Thread: any. */
+/* Outermost points of a plant in many directions, for views that must contain the whole plant. Call from any thread. */
 #ifndef SCENE_EXTREMES_H
 #define SCENE_EXTREMES_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Camera framings of the plant, an asset or a sensor. Thread: any. */
+/* Camera framings of the plant, an asset or a sensor. Call from any thread. */
 #ifndef SCENE_FRAMING_H
 #define SCENE_FRAMING_H
 #include "scene/scene.h"

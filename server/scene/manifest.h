@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* FOLDER/manifest.json: the prepared file of each asset (protocol/ASSET.md). Thread: one. */
+/* FOLDER/manifest.json: the prepared file of each asset (protocol/ASSET.md). Call from one thread only. */
 #ifndef SCENE_MANIFEST_H
 #define SCENE_MANIFEST_H
 #include <stdbool.h>
@@ -22,7 +22,7 @@ struct manifest {
     size_t count;
 };
 
-/* Reads the manifest. Returns false on failure; logged, with advice. */
+/* Reads the manifest. On failure, logs the reason with advice and returns false. */
 bool manifest_read(struct log *log, const char *folder, struct manifest *manifest);
 void manifest_finish(struct manifest *manifest);
 const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id); /* returns NULL if no asset has that id */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds the first visible surface along a ray: on the finest level, ignoring hidden, ghosted and cut-away parts and back faces
    of one-sided surfaces. A ray that meets the cut through a closed body (scene/closed_bodies.h) hits the section plane. Skips
-   clusters that the ray misses. Thread: any. */
+   clusters that the ray misses. Call from any thread. */
 #ifndef SCENE_RAYCAST_H
 #define SCENE_RAYCAST_H
 #include "scene/scene.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant with all its assets at their positions, and their sensors. Immutable once made. Thread: any. */
+/* The plant with all its assets at their positions, and their sensors. Immutable once made. Call from any thread. */
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 #include <stdbool.h>

@@ -272,7 +272,7 @@ static void open_files(struct file_uses *uses)
     workers_destroy(&workers);
 }
 
-/* Adds the asset's file to the list, unless the asset is missing. Returns false if the file does not match the plant, logged. */
+/* Adds the asset's file to the list, unless the asset is missing. Logs and returns false if the file does not match the plant. */
 static bool find_file(struct file_uses *uses, const struct manifest *manifest, uint64_t *hashes, int index)
 {
     struct log *log = uses->log;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes the scene of a plant from its prepared files. Thread: any. */
+/* Makes the scene of a plant from its prepared files. Call from any thread. */
 #ifndef SCENE_SCENE_CREATE_H
 #define SCENE_SCENE_CREATE_H
 #include "base/log/log.h"

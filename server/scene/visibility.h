@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility of a view: which assets it shows or ghosts, and what is cut away. Plain data. Thread: any. */
+/* Visibility of a view: which assets it shows or ghosts, and what is cut away. Plain data. Call from any thread. */
 #ifndef SCENE_VISIBILITY_H
 #define SCENE_VISIBILITY_H
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Deferred requests: groups of requests whose frame cannot be drawn yet, for example because a field is not computed. They wait
-   for a later turn of the render thread. (In each turn, the thread draws a frame, or a step of one.) Pure. Thread: the render
-   thread. */
+   for a later turn of the render thread. (In each turn, the thread draws a frame, or a step of one.) Pure. Call only in the
+   render thread. */
 #ifndef SERVICE_DEFERRED_REQUESTS_H
 #define SERVICE_DEFERRED_REQUESTS_H
 #include "service/request_group.h"

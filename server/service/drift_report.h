@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Judges which sensors of a group on an asset drifted in the week before an instant (field/drift.h), from recorded history, and
-   writes the result as text (HTTP.md, /api/v1/drift). Thread: one that reads history. */
+   writes the result as text (HTTP.md, /api/v1/drift). Call only in a thread that reads history. */
 #ifndef SERVICE_DRIFT_REPORT_H
 #define SERVICE_DRIFT_REPORT_H
 #include "base/text/text.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The encode queue: encodes frames on the worker threads, once for all clients that share an encode stream. Each client gets the packets
-   (encoded frames) of its stream in order. Thread: any. */
+/* The encode queue: encodes frames on the worker threads, once for all clients that share an encode stream. Each client gets
+   the packets (encoded frames) of its stream in order. Call from any thread. */
 #ifndef SERVICE_ENCODE_QUEUE_H
 #define SERVICE_ENCODE_QUEUE_H
 #include "base/metrics/counters.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Encode streams: which clients share one stream of packets (encoded frames). A packet may depend on the previous one (H.264,
    or a picture of changes only), so each client belongs to one stream and has a position in it. Clients of one view share a
-   stream. A client that missed packets gets them later, or gets a key frame. Pure: the caller passes the time. Thread: under
+   stream. A client that missed packets gets them later, or gets a key frame. Pure: the caller passes the time. Call only under
    the lock of the encode queue. */
 #ifndef SERVICE_ENCODE_STREAMS_H
 #define SERVICE_ENCODE_STREAMS_H

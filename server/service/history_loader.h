@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The history loader: reads the readings of past instants on a thread of its own, and puts them into the historical snapshot
-   cache, from which frames are drawn. Only the newest request of each client counts. Thread: any. */
+   cache, from which frames are drawn. Only the newest request of each client counts. Call from any thread. */
 #ifndef SERVICE_HISTORY_LOADER_H
 #define SERVICE_HISTORY_LOADER_H
 #include "base/log/log.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* History queries: series, recording gaps, drifting sensors and the alarm journal, read for HTTP on threads of their own. An
    answer comes in pieces of a few hundred kilobytes, each made on request, so that a slow reader occupies the memory of one
-   piece only. Client addresses take turns. Thread: any. */
+   piece only. Client addresses take turns. Call from any thread. */
 #ifndef SERVICE_HISTORY_QUERIES_H
 #define SERVICE_HISTORY_QUERIES_H
 #include <stdbool.h>

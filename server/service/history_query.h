@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A query on recorded history: series, recording gaps, drifting sensors, or the alarm journal. Pure. Thread: any. */
+/* A query on recorded history: series, recording gaps, drifting sensors, or the alarm journal. Pure. Call from any thread. */
 #ifndef SERVICE_HISTORY_QUERY_H
 #define SERVICE_HISTORY_QUERY_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pending readbacks: frames completely submitted to the GPU whose pixels are not read back yet, oldest first. The next frame can be drawn
-   meanwhile. Thread: the render thread. */
+/* Pending readbacks: frames completely submitted to the GPU whose pixels are not read back yet, oldest first. The next frame
+   can be drawn meanwhile. Call only in the render thread. */
 #ifndef SERVICE_PENDING_READBACKS_H
 #define SERVICE_PENDING_READBACKS_H
 #include "render/split_view.h"

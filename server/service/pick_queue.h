@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queue of pick queries ("what is at this pixel?") for the render thread, and of its answers. Each client has at most one waiting query;
-   a newer one replaces it. Thread: any. */
+/* Queue of pick queries ("what is at this pixel?") for the render thread, and of its answers. Each client has at most one
+   waiting query; a newer one replaces it. Call from any thread. */
 #ifndef SERVICE_PICK_QUEUE_H
 #define SERVICE_PICK_QUEUE_H
 #include "render/pick/pick.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The recent-frame cache: the last frames drawn, for clients that request the same view a moment later. So any number of
-   clients of one view cost one rendering, even if their requests come at different times. Thread: the render thread. */
+   clients of one view cost one rendering, even if their requests come at different times. Call only in the render thread. */
 #ifndef SERVICE_RECENT_FRAMES_H
 #define SERVICE_RECENT_FRAMES_H
 #include "render/frame.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Answers history queries on a renderer (daemon that draws for a core). The core writes the answers, so they are the same to
-   the byte as on the core. Each call queries the core and may block for seconds. Thread: one that reads history. */
+   the byte as on the core. Each call queries the core and may block for seconds. Call only in a thread that reads history. */
 #ifndef SERVICE_REMOTE_HISTORY_H
 #define SERVICE_REMOTE_HISTORY_H
 #include "corelink/core_history.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The render service: a thread that takes frame requests of many clients, draws the most urgent one, has workers encode the
-   frame, and hands the encoded frames back. Each client has at most one waiting request; a newer one replaces it. Thread: any,
-   unless said otherwise. */
+   frame, and hands the encoded frames back. Each client has at most one waiting request; a newer one replaces it. Call from any
+   thread, unless said otherwise. */
 #ifndef SERVICE_RENDER_SERVICE_H
 #define SERVICE_RENDER_SERVICE_H
 #include "base/metrics/counters.h"

@@ -66,7 +66,7 @@ void render_service_remove_client(struct render_service *service, uint64_t id);
 void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, enum frame_absence absence);
 /* Calls params.notify if encoded frames or pick answers wait for collection and notify was not yet called for them. Any thread. */
 void render_service_announce(void *service);
-/* Takes the encoded packets for one request (ticket), or the failure, from the encode queue. Thread: a worker. */
+/* Takes the encoded packets for one request (ticket), or the failure, from the encode queue. Called in a worker thread. */
 void render_service_on_encoded(void *service, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
 
 /* --- render_thread.c -------------------------------------------------------------------------------------------------- */

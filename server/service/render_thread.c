@@ -433,7 +433,7 @@ static bool draw(struct render_thread *thread, struct request_group *group)
 /* --- start, main loop and end of the render thread -------------------------------------------------------------------- */
 
 /* Creates the GL context and everything that depends on it. kind: GL_AUTO, or the kind of the lost context. hardware: true:
-   rejects a software renderer. Returns false on failure, logged. */
+   rejects a software renderer. On failure, logs the reason and returns false. */
 static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardware)
 {
     const struct render_service_params *params = &thread->service->params;

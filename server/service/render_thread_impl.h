@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State and functions of the render thread. Private to render_thread*.c and frame_sharing.c. Thread: the render thread. */
+/* State and functions of the render thread. Private to render_thread*.c and frame_sharing.c. Call only in the render thread. */
 #ifndef SERVICE_RENDER_THREAD_IMPL_H
 #define SERVICE_RENDER_THREAD_IMPL_H
 #include "render/memory.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Time accounts: how much of the render thread's time each client address was charged for drawing. Time is shared among addresses first,
-   then among the clients of each address. Pure. Thread: under the lock of the render service. */
+/* Time accounts: how much of the render thread's time each client address was charged for drawing. Time is shared among
+   addresses first, then among the clients of each address. Pure. Call only under the lock of the render service. */
 #ifndef SERVICE_TIME_ACCOUNTS_H
 #define SERVICE_TIME_ACCOUNTS_H
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One client's session: the view it shows, the messages it gets and the resources it uses. Its state is in session_state.h.
-   Pure: no socket, no clock, no GL; the caller passes the time. Thread: the event loop. */
+   Pure: no socket, no clock, no GL; the caller passes the time. Call only in the event loop. */
 #ifndef SESSION_SESSION_H
 #define SESSION_SESSION_H
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State that all sessions share: the plant, its services and the server's limits. Thread: the event loop. */
+/* State that all sessions share: the plant, its services and the server's limits. Call only in the event loop. */
 #ifndef SESSION_SESSION_CONTEXT_H
 #define SESSION_SESSION_CONTEXT_H
 #include "access/openid/openid.h"

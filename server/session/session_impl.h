@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions that the session's source files share. Private to session_*.c. Thread: the event loop. */
+/* Functions that the session's source files share. Private to session_*.c. Call only in the event loop. */
 #ifndef SESSION_SESSION_IMPL_H
 #define SESSION_SESSION_IMPL_H
 #include "base/files/settling.h"

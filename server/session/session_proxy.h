@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Carries out users' actions that another daemon forwarded: a renderer (daemon that draws for a core) sends them to its core,
-   which acts on them. Thread: the event loop. */
+   which acts on them. Call only in the event loop. */
 #ifndef SESSION_SESSION_PROXY_H
 #define SESSION_SESSION_PROXY_H
 #include "session/session.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The state of one client's session, grouped by concern. The event loop reads it; only functions of session.h change it. Thread: the
-   event loop. */
+/* The state of one client's session, grouped by concern. The event loop reads it; only functions of session.h change it. Call
+   only in the event loop. */
 #ifndef SESSION_SESSION_STATE_H
 #define SESSION_SESSION_STATE_H
 #include "access/login_throttle.h"

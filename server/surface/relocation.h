@@ -33,7 +33,7 @@ struct relocation_shape {
     uint64_t surface_key;
 };
 /* Starts to build the asset's surface on a worker; requests wait until it is built. Takes seconds for a large asset, and a few
- * hundred bytes per triangle. Never returns NULL. Thread: create and destroy from one thread, all other functions from any. */
+ * hundred bytes per triangle. Never returns NULL. Create and destroy from one thread, all other functions from any. */
 struct relocation *relocation_create(struct log *log, struct workers *workers, const struct relocation_shape *shape);
 /* Cancels waiting requests, waits for running ones, frees everything and sets *relocation to NULL. *relocation may be NULL. Must not be
  * called from a `done` callback. */

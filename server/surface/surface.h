@@ -54,8 +54,8 @@ struct surface_report {
 
 /* Builds a surface from a model's triangles (positions in metres, 3 indices per triangle; all copied): welds, repairs, samples.
    workers may be NULL, else they must outlive the surface. Returns NULL if no triangle has an area or memory runs out; the
-   reason is logged, or stored in params->why if that is set. Thread: one call at a time per surface; surfaces are independent.
-   */
+   reason is logged, or stored in params->why if that is set. One call at a time per surface; surfaces are
+   independent. */
 struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count,
                                const uint32_t *triangles, size_t triangle_count, const struct surface_params *params);
 /* Frees the surface and sets *surface to NULL. *surface may be NULL. */
@@ -112,9 +112,9 @@ bool surface_find_point_among(const struct surface *surface, const double point_
 bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *hit);
 
 /* Computes the geodesic distance in metres from each point (projected onto the surface) to every model vertex: out[point *
- * vertex_count + vertex]. It is INFINITY where the surface does not connect them. Runs on all workers. Returns false when out
- * of memory, logged. Thread: any number of concurrent calls, of this and all functions below, unless their comment says
- * otherwise. */
+ * vertex_count + vertex]. It is INFINITY where the surface does not connect them. Runs on all workers. Logs and returns false
+ * when out of memory. Any number of threads may call at the same time, of this and all functions below, unless their comment
+ * says otherwise. */
 bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
 
 /* Distances of every point of the sampled surface from a set of sources. Distances of other surface points are interpolated from these. */
@@ -134,8 +134,9 @@ struct surface_columns {
 };
 /* Returns the number of points of the sampled surface, which is the length of a column (distances from one source). */
 size_t surface_column_length(const struct surface *surface);
-/* Computes the field of these sources. Columns (distances from one source) that the cache contains are fetched; computed columns are stored
- * in the cache (columns NULL: no cache). Returns false when out of memory, logged; nothing needs freeing then. */
+/* Computes the field of these sources. Columns (distances from one source) that the cache contains are fetched; computed
+ * columns are stored in the cache (columns NULL: no cache). Returns false when out of memory (logged); nothing needs freeing
+ * then. */
 bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count,
                         const struct surface_columns *columns);
 /* Frees the field. */
@@ -145,8 +146,9 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
 /* Writes the distance of a surface point from every source: out[source]. */
 void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *hit, float *out);
 
-/* Compares the field with the heat method for some of its sources, and fills heat_disagreement, time_m2 and factor_s of the report. Returns
- * false when out of memory, logged. Thread: one call at a time; other functions may run concurrently, except those that read the report. */
+/* Compares the field with the heat method for some of its sources, and fills heat_disagreement, time_m2 and factor_s of the
+ * report. Logs and returns false when out of memory. One call at a time; other functions may run
+ * concurrently, except those that read the report. */
 bool surface_check(struct surface *surface, const struct surface_field *field);
 
 #endif

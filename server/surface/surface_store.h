@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serialises a surface to bytes and back. Loading a stored surface is fifty times as fast as building it. Thread: any. */
+/* Serialises a surface to bytes and back. Loading a stored surface is fifty times as fast as building it. Call from any thread. */
 #ifndef SURFACE_SURFACE_STORE_H
 #define SURFACE_SURFACE_STORE_H
 #include "base/files/pack.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kinds and states of alarms, their names and priorities, and the limit that a reading has passed. No side effects. Thread: any. */
+/* Kinds and states of alarms, their names and priorities, and the limit that a reading has passed. No side effects. Call from any
+   thread. */
 #ifndef VALUE_ALARM_H
 #define VALUE_ALARM_H
 #include "plant/plant.h"

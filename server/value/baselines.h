@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baselines: saved readings of all tags. A view can show the difference between the current readings and a baseline. Users save named
-   baselines; unnamed ones are identified by the time of their readings alone. Ids increase and are never reused, so the id of a dropped
-   baseline never names a newer one. Thread: any. */
+/* Baselines: saved readings of all tags. A view can show the difference between the current readings and a baseline. Users save
+   named baselines; unnamed ones are identified by the time of their readings alone. Ids increase and are never reused, so the
+   id of a dropped baseline never names a newer one. Call from any thread. */
 #ifndef VALUE_BASELINES_H
 #define VALUE_BASELINES_H
 #include <stdbool.h>

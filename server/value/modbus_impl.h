@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Declarations shared by the files of a Modbus source. These are its thread (modbus.c), the state of each unit
    (modbus_units.c), its adaptation to the way the device handles connections (modbus_manners.c), and processing of responses
-   (modbus_answers.c). Thread: the source's own. */
+   (modbus_answers.c). Call only in the source's own thread. */
 #ifndef VALUE_MODBUS_IMPL_H
 #define VALUE_MODBUS_IMPL_H
 #include "base/log/log_pace.h"

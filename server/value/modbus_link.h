@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A read-only connection to a Modbus device or serial line (function codes 1 to 4): Modbus TCP, RTU frames over TCP, or RTU. Every call
-   returns by its deadline. Thread: one, except modbus_link_interrupt(). */
+/* A read-only connection to a Modbus device or serial line (function codes 1 to 4): Modbus TCP, RTU frames over TCP, or RTU.
+   Every call returns by its deadline. Call from one thread only, except modbus_link_interrupt(). */
 #ifndef VALUE_MODBUS_LINK_H
 #define VALUE_MODBUS_LINK_H
 #include <stdbool.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One read request and its response in Modbus TCP frames. Written by hand because libmodbus checks neither the unit nor the length in
-   the header of a response. Source: MODBUS Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3. Thread: one. */
+/* One read request and its response in Modbus TCP frames. Written by hand because libmodbus checks neither the unit nor the
+   length in the header of a response. Source: MODBUS Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3. Call from one
+   thread only. */
 #ifndef VALUE_MODBUS_TCP_H
 #define VALUE_MODBUS_TCP_H
 #include <stdbool.h>

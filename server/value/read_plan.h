@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Read plan of a Modbus source: its tags, grouped into blocks; one request reads one block. No input or output, no clock. Thread: one. */
+/* Read plan of a Modbus source: its tags, grouped into blocks; one request reads one block. No input or output, no clock. Call from
+   one thread only. */
 #ifndef VALUE_READ_PLAN_H
 #define VALUE_READ_PLAN_H
 #include <stddef.h>

@@ -4,7 +4,7 @@
    _h. Or the column has dates and times (timestamp.h), and is called Time, Timestamp, UTC, DateTime or Date, or is the first
    one. Values: a header line with Tag, Time and Value, perhaps Quality and Unit; one value a line, as printed by `plantcast
    history export`. Long: no header, lines of `time in ms,type,entity,property,value,...`; a series is called `entity/property`.
-   Dates and times without a zone are in the local zone of the process. Thread: one. */
+   Dates and times without a zone are in the local zone of the process. Call from one thread only. */
 #ifndef VALUE_SERIES_H
 #define VALUE_SERIES_H
 #include <stdbool.h>

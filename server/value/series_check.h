@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks that the files of a plant's replay sources contain the series that its tags replay. Reads only the beginning of each file.
-   Thread: one. */
+/* Checks that the files of a plant's replay sources contain the series that its tags replay. Reads only the beginning of each
+   file. Call from one thread only. */
 #ifndef VALUE_SERIES_CHECK_H
 #define VALUE_SERIES_CHECK_H
 #include "plant/plant.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of historical snapshots (readings of all tags at a past time). A time that users view is read from history once; all
-   its users share the snapshot. Thread: any. */
+   its users share the snapshot. Call from any thread. */
 #ifndef VALUE_SNAPSHOT_CACHE_H
 #define VALUE_SNAPSHOT_CACHE_H
 #include "value/snapshot.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes samples to the store, each with the timestamp that its sender (publisher or server) states. Thread: one. */
+/* Writes samples to the store, each with the timestamp that its sender (publisher or server) states. Call from one thread only. */
 #ifndef VALUE_STAMPED_WRITER_H
 #define VALUE_STAMPED_WRITER_H
 #include "plant/plant.h"

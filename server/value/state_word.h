@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State words that historians write in place of a value, such as "Bad", "No Data" or "I/O Timeout". No side effects. Thread: any. */
+/* State words that historians write in place of a value, such as "Bad", "No Data" or "I/O Timeout". No side effects. Call from any
+   thread. */
 #ifndef VALUE_STATE_WORD_H
 #define VALUE_STATE_WORD_H
 #include <stdbool.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A list of entries made by users, stored as JSON in a file of the history's folder. Each entry has an `id`. Thread: the loop. */
+/* A list of entries made by users, stored as JSON in a file of the history's folder. Each entry has an `id`. Call only in the event
+   loop. */
 #ifndef VIEWS_KEPT_LIST_H
 #define VIEWS_KEPT_LIST_H
 #include <jansson.h>

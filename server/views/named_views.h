@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named views, in an order that all clients share: first the views of the plant file, which users cannot change, then those that users
- * saved. The latter are stored with earlier versions in views.json in the history's folder. Thread: the loop. */
+/* Named views, in an order that all clients share: first the views of the plant file, which users cannot change, then those
+ * that users saved. The latter are stored with earlier versions in views.json in the history's folder. Call only in the event
+ * loop. */
 #ifndef VIEWS_NAMED_VIEWS_H
 #define VIEWS_NAMED_VIEWS_H
 #include <jansson.h>

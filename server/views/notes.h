@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notes of users on a position, an asset, a tag or the whole plant, with an optional end; stored in notes.json in the history's folder.
- * Notes that have expired or been removed stay in the file for the next shift. Thread: the loop. */
+/* Notes of users on a position, an asset, a tag or the whole plant, with an optional end; stored in notes.json in the history's
+ * folder. Notes that have expired or been removed stay in the file for the next shift. Call only in the event loop. */
 #ifndef VIEWS_NOTES_H
 #define VIEWS_NOTES_H
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the answer of another plant's server to a request for a picture. No side effects. Thread: any. */
+/* Checks the answer of another plant's server to a request for a picture. No side effects. Call from any thread. */
 #ifndef VIEWS_OTHER_PICTURE_H
 #define VIEWS_OTHER_PICTURE_H
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures of other plants for wall panes: requests them from their servers with a viewer's token, while some display shows them. Each
- * picture is checked. It is passed on to displays until it is too old or the server sends another answer. Uses one thread and libcurl; no
- * other thread waits for it. Thread: any, for the functions below. */
+/* Pictures of other plants for wall panes: requests them from their servers with a viewer's token, while some display shows
+ * them. Each picture is checked. It is passed on to displays until it is too old or the server sends another answer. Uses one
+ * thread and libcurl; no other thread waits for it. Call from any thread, for the functions below. */
 #ifndef VIEWS_OTHER_PLANTS_H
 #define VIEWS_OTHER_PLANTS_H
 #include "base/clock.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Short links: views that users share under a short id, such as /v/ID. Stored in links.json in the history's folder. Thread: the loop. */
+/* Short links: views that users share under a short id, such as /v/ID. Stored in links.json in the history's folder. Call only in
+   the event loop. */
 #ifndef VIEWS_SHORT_LINKS_H
 #define VIEWS_SHORT_LINKS_H
 #include <jansson.h>

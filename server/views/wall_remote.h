@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Remote control of the panes of video walls from desks. A user sends a view to a pane, holds a pane, or points at a position
  * in it. Also records which displays are connected. Orders are stored in walls.json in the history's folder, if any, until the
- * pane is released. Thread: the loop. */
+ * pane is released. Call only in the event loop. */
 #ifndef VIEWS_WALL_REMOTE_H
 #define VIEWS_WALL_REMOTE_H
 #include <jansson.h>

@@ -23,7 +23,7 @@ struct sensor_crowd {
     uint64_t random;
 };
 
-/* Returns false on failure, logged. Call crowd_finish() in both cases. */
+/* On failure, logs the reason and returns false. Call crowd_finish() in both cases. */
 bool crowd_init(struct sensor_crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params);
 void crowd_finish(struct sensor_crowd *crowd);
 void crowd_change(struct sensor_crowd *crowd, int64_t mono_ns); /* changes every reading to another value within the range */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts all calls of GL by replacing each GL function with a small trampoline. Thread: that of the GL context. */
+/* Counts all calls of GL by replacing each GL function with a small trampoline. Call only in the thread that owns the GL context. */
 #ifndef TESTS_SUPPORT_GL_CALLS_H
 #define TESTS_SUPPORT_GL_CALLS_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Times and sorting for benchmarks and tests. Thread: any. */
+/* Times and sorting for benchmarks and tests. Call from any thread. */
 #ifndef TESTS_SUPPORT_MEASURE_H
 #define TESTS_SUPPORT_MEASURE_H
 #include <time.h>

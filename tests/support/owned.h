@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Resources that belong to the running test and are released after its tear-down, the newest first. Resources of a group's
-   set-up, and of programs without tests, are released when the program exits. Thread: any. */
+   set-up, and of programs without tests, are released when the program exits. Call from any thread. */
 #ifndef TESTS_OWNED_H
 #define TESTS_OWNED_H
 #include <jansson.h>

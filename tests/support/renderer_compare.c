@@ -14,7 +14,7 @@ struct measure_target {
     GLuint framebuffer, numbers, depth;
 };
 
-/* Creates the target, clears it to MEASURE_NOTHING and binds it. Returns false, logged, if the GPU is out of memory;
+/* Creates the target, clears it to MEASURE_NOTHING and binds it. Logs and returns false if the GPU is out of memory;
    measure_target_finish() must still be called. */
 static bool measure_target_begin(struct measure_target *measure, struct log *log, int width_px, int height_px)
 {

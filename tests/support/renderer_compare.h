@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads numbers instead of colours from a renderer, and disables its optimisations. Thread: the one that created the GL context. */
+/* Reads numbers instead of colours from a renderer, and disables its optimisations. Call only in the thread that created the GL context. */
 #ifndef TESTS_RENDERER_COMPARE_H
 #define TESTS_RENDERER_COMPARE_H
 #include <stdbool.h>
@@ -21,7 +21,7 @@ size_t renderer_occluded_count(const struct renderer *renderer);
 void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
 /* Fills `out` with the field's values at one sample per pixel, rows from the top. Channels: position in the range (unclamped,
    always linear), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near,
-   0 far). finest: uses only the finest levels of detail. Returns false on failure, logged. */
+   0 far). finest: uses only the finest levels of detail. On failure, logs the reason and returns false. */
 bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4]);
 
 #endif

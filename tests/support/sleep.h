@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Waits for other threads and programs. Thread: any. */
+/* Waits for other threads and programs. Call from any thread. */
 #ifndef TESTS_SLEEP_H
 #define TESTS_SLEEP_H
 #include <errno.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fleet file (YAML): the plants whose servers `plantcast fleet` watches. deploy/pages/MONITORING.md describes it. Thread: one. */
+/* The fleet file (YAML): the plants whose servers `plantcast fleet` watches. deploy/pages/MONITORING.md describes it. Call from one
+   thread only. */
 #ifndef CLI_FLEET_FLEET_FILE_H
 #define CLI_FLEET_FLEET_FILE_H
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests metrics and pictures from a fleet's servers, on a thread of its own and never more often than the fleet file allows. Thread:
-   any. */
+/* Requests metrics and pictures from a fleet's servers, on a thread of its own and never more often than the fleet file allows.
+   Call from any thread. */
 #ifndef CLI_FLEET_FLEET_POLL_H
 #define CLI_FLEET_FLEET_POLL_H
 #include "fleet_state.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* State of a plant's server, parsed from its /metrics, and the state of a whole fleet as JSON and as metrics. No side effects.
-   Thread: any. */
+   Call from any thread. */
 #ifndef CLI_FLEET_FLEET_STATE_H
 #define CLI_FLEET_FLEET_STATE_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Offline renderer: everything that is needed to draw pictures of a prepared plant without a daemon. Thread: one. */
+/* Offline renderer: everything that is needed to draw pictures of a prepared plant without a daemon. Call from one thread only. */
 #ifndef CLI_PICTURE_OFFLINE_RENDERER_H
 #define CLI_PICTURE_OFFLINE_RENDERER_H
 #include "history/history.h"
@@ -36,16 +36,16 @@ bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapsh
 bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
 /* Like offline_renderer_open(), but the renderer already has this plant open: reads only new values, a new baseline and a new view. */
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
-/* Creates the GL context and the renderer. Returns false on failure, logged. */
+/* Creates the GL context and the renderer. On failure, logs the reason and returns false. */
 bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Opens the plant's recorded history. Returns false, with the reason printed, if the plant has none. */
 bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Sets the readings and the view to an instant in the recorded history. Returns false if the history cannot be read (logged) or
    has no readings before that instant (printed). */
 bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, struct view *view);
-/* Draws the view. Returns the frame, which the caller releases (frame_unref), or NULL on failure, logged. */
+/* Draws the view. Returns the frame, which the caller releases (frame_unref), or NULL on failure, after logging the reason. */
 struct frame *offline_renderer_draw(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
-/* Writes the frame as a PNG file. Returns false on failure, logged. */
+/* Writes the frame as a PNG file. On failure, logs the reason and returns false. */
 bool offline_renderer_save(struct offline_renderer *offline, struct frame *frame, const char *path);
 /* Frees all members, even if only some were opened. */
 void offline_renderer_close(struct offline_renderer *offline);

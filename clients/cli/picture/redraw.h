@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Redraws a signed picture from its signed statement (plant, time, view, readings) and compares the result with the picture. Thread:
-   one. */
+/* Redraws a signed picture from its signed statement (plant, time, view, readings) and compares the result with the picture.
+   Call from one thread only. */
 #ifndef CLI_PICTURE_REDRAW_H
 #define CLI_PICTURE_REDRAW_H
 #include "provenance/signed_picture.h"

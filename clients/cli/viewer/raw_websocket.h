@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* WebSocket client without libwebsockets, over plain TCP, for viewers that do not decode. It reads only the first bytes of a binary message
-   and lets the kernel drop the rest. libwebsockets touches every byte, which takes 0.3 ms for a frame of 40 kB; with hundreds of viewers on
-   the daemon's machine, that cost would dominate the measurement. Thread: one. */
+/* WebSocket client without libwebsockets, over plain TCP, for viewers that do not decode. It reads only the first bytes of a
+   binary message and lets the kernel drop the rest. libwebsockets touches every byte, which takes 0.3 ms for a frame of 40 kB;
+   with hundreds of viewers on the daemon's machine, that cost would dominate the measurement. Call from one thread only. */
 #ifndef CLI_VIEWER_RAW_WEBSOCKET_H
 #define CLI_VIEWER_RAW_WEBSOCKET_H
 #include "base/text/text.h"

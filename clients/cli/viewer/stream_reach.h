@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests whether WebSockets can reach a daemon that answers over HTTP. Thread: one. */
+/* Tests whether WebSockets can reach a daemon that answers over HTTP. Call from one thread only. */
 #ifndef CLI_VIEWER_STREAM_REACH_H
 #define CLI_VIEWER_STREAM_REACH_H
 #include <stdbool.h>

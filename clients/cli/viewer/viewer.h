@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A viewer without a screen: connects, moves its camera, decodes every frame before it acknowledges the frame, and measures latencies.
-   Thread: the one that services its libwebsockets context (viewer_threads.h). */
+   Call only in the thread that services its libwebsockets context (viewer_threads.h). */
 #ifndef CLI_VIEWER_VIEWER_H
 #define CLI_VIEWER_VIEWER_H
 #include <libwebsockets.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast import --anew`: replaces a plant folder's models together with its plant file and tag list, without taking
- * anything over from the existing files. Thread: one. */
+ * anything over from the existing files. Call from one thread only. */
 #ifndef PREPROCESS_IMPORT_ANEW_H
 #define PREPROCESS_IMPORT_ANEW_H
 #include "preprocess/import/revision/revise.h"

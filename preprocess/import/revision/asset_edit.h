@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Edits the assets in the text of a plant file, leaving everything else, such as order and comments, unchanged. No side
- * effects. Thread: any. */
+ * effects. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_ASSET_EDIT_H
 #define PREPROCESS_IMPORT_ASSET_EDIT_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rewrites node patterns (nodes.h) of the old model so that they match the same nodes of the new model: a renamed node's
- * pattern becomes its new name, and "#number" the new number. Thread: one. */
+ * pattern becomes its new name, and "#number" the new number. Call from one thread only. */
 #ifndef PREPROCESS_IMPORT_ASSET_PATTERN_H
 #define PREPROCESS_IMPORT_ASSET_PATTERN_H
 #include "plant/models/model_header.h"

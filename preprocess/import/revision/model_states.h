@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Compares the vertices of a model before and after a revision to find how far each part has moved. Lengths and axes are in the
- * model's units and frame. Thread: any, one per struct. */
+ * model's units and frame. Call from any thread; each struct from one thread at a time. */
 #ifndef PREPROCESS_IMPORT_MODEL_STATES_H
 #define PREPROCESS_IMPORT_MODEL_STATES_H
 #include "preprocess/import/revision/node_pairs.h"

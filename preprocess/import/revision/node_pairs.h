@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds which node of a new export corresponds to which node of the old one. Compares, in this order: GUIDs; names from the
  * roots down; names that occur once; for renamed nodes below one parent, bounding boxes and numbers of descendants. No side
- * effects. Thread: any. */
+ * effects. Call from any thread. */
 #ifndef PREPROCESS_IMPORT_NODE_PAIRS_H
 #define PREPROCESS_IMPORT_NODE_PAIRS_H
 #include "preprocess/import/model_outline.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Imports new versions of models into a folder that already contains a plant. Thread: one. */
+/* Imports new versions of models into a folder that already contains a plant. Call from one thread only. */
 #ifndef PREPROCESS_IMPORT_REVISE_H
 #define PREPROCESS_IMPORT_REVISE_H
 #include "preprocess/import/plant_draft.h"

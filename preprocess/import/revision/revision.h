@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plans how a new export of a plant's models changes its plant file and tag list: assets follow their nodes, sensors their
  * equipment; assets are removed with their equipment, and added for new equipment. Also writes a review of these changes for
- * users. Thread: one. */
+ * users. Call from one thread only. */
 #ifndef PREPROCESS_IMPORT_REVISION_H
 #define PREPROCESS_IMPORT_REVISION_H
 #include "plant/plant.h"

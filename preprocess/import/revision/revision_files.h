@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Replaces several files of a plant folder as one transaction that can be undone. The caller must hold the folder's lock
  * (plant_folder.h). If the program is killed at any time, either the old files remain or the next program completes the
- * transaction. Functions that return int return 0 or -errno. Thread: one. */
+ * transaction. Functions that return int return 0 or -errno. Call from one thread only. */
 #ifndef PREPROCESS_IMPORT_REVISION_FILES_H
 #define PREPROCESS_IMPORT_REVISION_FILES_H
 #include <stdbool.h>

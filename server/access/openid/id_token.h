@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Verifies ID tokens of OpenID Connect: the signature, then the claims (OpenID Connect Core 1.0, 3.1.3.7). Only public-key algorithms
-   are accepted, so neither the algorithm `none` nor an HMAC made with a public key passes. No input or output; the caller passes the
-   time. Thread: any. */
+/* Verifies ID tokens of OpenID Connect: the signature, then the claims (OpenID Connect Core 1.0, 3.1.3.7). Only public-key
+   algorithms are accepted, so neither the algorithm `none` nor an HMAC made with a public key passes. No input or output; the
+   caller passes the time. Call from any thread. */
 #ifndef OPENID_ID_TOKEN_H
 #define OPENID_ID_TOKEN_H
 #include <jansson.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sign-in with OpenID Connect: authorization code flow with PKCE. Background threads talk to the identity provider. The event
    loop begins log-ins, passes on the codes that browsers bring back, and finds the user of a session cookie. Users' rights are
-   rechecked at the provider at intervals; while the provider does not answer, they stay unchanged. Thread: the event loop,
+   rechecked at the provider at intervals; while the provider does not answer, they stay unchanged. Call only in the event loop,
    unless said otherwise. */
 #ifndef OPENID_OPENID_H
 #define OPENID_OPENID_H

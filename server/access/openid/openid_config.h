@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The configuration file of --openid: the identity provider, and the roles of its user groups. OPENID.md describes the keys.
-   Thread: one reads the file; the configuration is immutable afterwards. */
+   One thread reads the file; the configuration is immutable afterwards. */
 #ifndef OPENID_OPENID_CONFIG_H
 #define OPENID_OPENID_CONFIG_H
 #include "base/log/log.h"

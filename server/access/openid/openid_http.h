@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to the identity provider. Each call blocks for at most 7 s. Thread: any. */
+/* HTTP requests to the identity provider. Each call blocks for at most 7 s. Call from any thread. */
 #ifndef OPENID_OPENID_HTTP_H
 #define OPENID_OPENID_HTTP_H
 #include <jansson.h>

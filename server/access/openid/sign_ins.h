@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of log-ins in progress and of signed-in users. The caller passes the time. Thread: one at a time. */
+/* Tables of log-ins in progress and of signed-in users. The caller passes the time. Call from one thread at a time. */
 #ifndef OPENID_SIGN_INS_H
 #define OPENID_SIGN_INS_H
 #include "access/tokens.h"

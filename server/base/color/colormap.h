@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Colour maps of 256 sRGB colours each. deploy/colormaps generates the table of built-in maps from shaders/maps/NAME.csv. A
-   plant's own maps are in plant/colormaps.h. Pure. Thread: any. */
+   plant's own maps are in plant/colormaps.h. Pure. Call from any thread. */
 #ifndef BASE_COLOR_COLORMAP_H
 #define BASE_COLOR_COLORMAP_H
 #include <stdbool.h>

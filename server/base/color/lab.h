@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Conversion between sRGB and CIELAB (D65), and simulation of deuteranopia. Pure. Thread: any. */
+/* Conversion between sRGB and CIELAB (D65), and simulation of deuteranopia. Pure. Call from any thread. */
 #ifndef BASE_COLOR_LAB_H
 #define BASE_COLOR_LAB_H
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Replaces a file atomically: writes the new content to a temporary file in the same folder, and renames that once its whole
-   content is on disk. Readers see either the old file or the new one. Functions that return int return 0 or -errno. Thread: one
-   at a time per file. */
+   content is on disk. Readers see either the old file or the new one. Functions that return int return 0 or -errno. Call from
+   one thread at a time per file. */
 #ifndef BASE_FILES_ATOMIC_FILE_H
 #define BASE_FILES_ATOMIC_FILE_H
 #include <stdbool.h>

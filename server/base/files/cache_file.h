@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache files: results of long computations, stored under a key. A file that is missing, damaged, of another kind or under
-   another key is not used. Thread: any. */
+   another key is not used. Call from any thread. */
 #ifndef BASE_FILES_CACHE_FILE_H
 #define BASE_FILES_CACHE_FILE_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compresses the contents of cache files with zstd, without loss. The contents are arrays of integers and floating-point numbers. They are
-   compressed in chunks; each chunk is stored in the layout that makes it smallest. Thread: any. */
+/* Compresses the contents of cache files with zstd, without loss. The contents are arrays of integers and floating-point
+   numbers. They are compressed in chunks; each chunk is stored in the layout that makes it smallest. Call from any thread. */
 #ifndef BASE_FILES_COMPRESS_H
 #define BASE_FILES_COMPRESS_H
 #include <stdbool.h>
@@ -13,7 +13,7 @@
 int compress_parts(const struct atomic_file_part *parts, size_t part_count, int (*put)(void *arg, const void *bytes, size_t count),
                    void *arg);
 
-/* Reads compressed bytes from start to end, without holding all decompressed bytes in memory. Thread: one. */
+/* Reads compressed bytes from start to end, without holding all decompressed bytes in memory. Call from one thread only. */
 struct decompressor;
 /* Returns NULL if the compressed bytes are incomplete, if the sizes in them contradict each other, or if memory is short. The caller keeps
    `compressed` and calls decompressor_destroy(). */

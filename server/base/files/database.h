@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An SQLite file in one of our formats: opens it, upgrades it to this program's version, renames it if it is damaged, and
-   prepares its statements once. Thread: one at a time per database. Functions that return int return 0 or -errno, already
-   logged, unless they are said to return an SQLite code. -EBADMSG: the file is damaged; -ENOSPC: the disk is full; -EROFS: the
-   file cannot be written. */
+   prepares its statements once. Call from one thread at a time per database. Functions that return int return 0 or -errno,
+   already logged, unless they are said to return an SQLite code. -EBADMSG: the file is damaged; -ENOSPC: the disk is full;
+   -EROFS: the file cannot be written. */
 #ifndef BASE_FILES_DATABASE_H
 #define BASE_FILES_DATABASE_H
 #include <sqlite3.h>

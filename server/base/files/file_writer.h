@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A thread that writes small files for the event loop, which must never wait for the disk. Jobs are written in order, and the
-   loop receives the result of each. Thread: the event loop, except where a comment names another one. */
+   loop receives the result of each. Call only in the event loop, except where a comment names another one. */
 #ifndef BASE_FILES_FILE_WRITER_H
 #define BASE_FILES_FILE_WRITER_H
 #include <stdbool.h>
@@ -10,7 +10,7 @@
 
 /* A job of the file writer. Embed it as the first member of a struct with the job's data, and set `write`, `finish` and `owner`. */
 struct file_job {
-    int (*write)(struct file_job *job); /* writes the file; returns 0 or -errno. Thread: the writer's */
+    int (*write)(struct file_job *job); /* writes the file; returns 0 or -errno. Called in the writer's thread */
     /* Ends the job on the event loop: if `error` is 0, puts the saved change into effect, else discards it; then frees the job.
        If `owner` is NULL (file_writer_forget()), only frees the job. */
     void (*finish)(struct file_job *job, int error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a file with a user name on its first line and a password on its second. Thread: any. */
+/* Reads a file with a user name on its first line and a password on its second. Call from any thread. */
 #ifndef BASE_FILES_LOGIN_FILE_H
 #define BASE_FILES_LOGIN_FILE_H
 #include <stdbool.h>

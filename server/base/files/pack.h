@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Serialises arrays into bytes, for files that only this program reads, on machines of the same kind. Thread: any. */
+/* Serialises arrays into bytes, for files that only this program reads, on machines of the same kind. Call from any thread. */
 #ifndef BASE_FILES_PACK_H
 #define BASE_FILES_PACK_H
 #include <stdbool.h>

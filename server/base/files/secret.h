@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a secret, such as a token or a password, from the first line of a file. Thread: any. */
+/* Reads a secret, such as a token or a password, from the first line of a file. Call from any thread. */
 #ifndef BASE_FILES_SECRET_H
 #define BASE_FILES_SECRET_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes image files into pixels. Only the implementation includes OpenImageIO. Thread: any. */
+/* Decodes image files into pixels. Only the implementation includes OpenImageIO. Call from any thread. */
 #ifndef BASE_IMAGE_IMAGE_H
 #define BASE_IMAGE_IMAGE_H
 #include <stdbool.h>

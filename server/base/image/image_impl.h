@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the decoders and by image.c, which chooses the decoder of an image. Thread: any. */
+/* Shared by the decoders and by image.c, which chooses the decoder of an image. Call from any thread. */
 #ifndef BASE_IMAGE_IMAGE_IMPL_H
 #define BASE_IMAGE_IMAGE_IMPL_H
 #include "base/image/image.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The transfer function of sRGB (IEC 61966-2-1) and its inverse, for values from 0 to 1; functions that end in f use single precision.
-   Thread: any. */
+/* The transfer function of sRGB (IEC 61966-2-1) and its inverse, for values from 0 to 1; functions that end in f use single
+   precision. Call from any thread. */
 #ifndef BASE_IMAGE_SRGB_H
 #define BASE_IMAGE_SRGB_H
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes log lines to stderr: as text, as JSON, or as entries of the systemd journal. Repeated lines are counted and logged once a
-   second. Thread: any. */
+/* Writes log lines to stderr: as text, as JSON, or as entries of the systemd journal. Repeated lines are counted and logged
+   once a second. Call from any thread. */
 #ifndef BASE_LOG_LOG_H
 #define BASE_LOG_LOG_H
 #include <stdbool.h>

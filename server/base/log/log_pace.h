@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rate limit for log lines about one repeating state. The first line is due immediately, later ones after pauses that double
-   from `first_ns` to `longest_ns`; each states how many occurrences were suppressed. Pure; the caller passes now_ns. Thread:
-   one. */
+   from `first_ns` to `longest_ns`; each states how many occurrences were suppressed. Pure; the caller passes now_ns. Call from
+   one thread only. */
 #ifndef BASE_LOG_LOG_PACE_H
 #define BASE_LOG_LOG_PACE_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Axis-aligned bounding box of points. Thread: any. */
+/* Axis-aligned bounding box of points. Call from any thread. */
 #ifndef BASE_MATH_EXTENT_H
 #define BASE_MATH_EXTENT_H
 #include "base/math/vec.h"

@@ -6,7 +6,8 @@
    triangles are kept if they have more than 2 % of the area and end at several places on the far side: such a long pipe belongs
    to the pieces that it connects. The main part is the side with the larger area. A simpler rule, the box of 98 % of the area,
    would crop flare stacks, pipe racks and tanks at the edge of a plant. They have less than 2 % of the area but stand next to
-   the rest. It would also keep a stray box 7,000 km away that has a third of the area of a small model. Thread: any. */
+   the rest. It would also keep a stray box 7,000 km away that has a third of the area of a small model. Call from any thread.
+   */
 #ifndef BASE_MATH_GAP_SPLIT_H
 #define BASE_MATH_GAP_SPLIT_H
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The precision of readings in messages to people and programs. Thread: any. */
+/* The precision of readings in messages to people and programs. Call from any thread. */
 #ifndef BASE_MATH_ROUND_READING_H
 #define BASE_MATH_ROUND_READING_H
 

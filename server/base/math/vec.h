@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* 3-vectors in double precision; functions whose names begin with vecf take single precision. Thread: any. */
+/* 3-vectors in double precision; functions whose names begin with vecf take single precision. Call from any thread. */
 #ifndef BASE_MATH_VEC_H
 #define BASE_MATH_VEC_H
 #include <math.h>

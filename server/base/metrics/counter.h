@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An atomic number that threads update without a lock. Thread: any. */
+/* An atomic number that threads update without a lock. Call from any thread. */
 #ifndef BASE_METRICS_COUNTER_H
 #define BASE_METRICS_COUNTER_H
 #include <stdatomic.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Registry of metrics: named numbers and histograms, printed for /metrics in the text format of Prometheus. Thread: any. */
+/* Registry of metrics: named numbers and histograms, printed for /metrics in the text format of Prometheus. Call from any thread. */
 #ifndef BASE_METRICS_COUNTERS_H
 #define BASE_METRICS_COUNTERS_H
 #include "base/metrics/counter.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A histogram of durations in Prometheus format. Thread: any; each bucket is one atomic. */
+/* A histogram of durations in Prometheus format. Call from any thread; each bucket is one atomic. */
 #ifndef BASE_METRICS_HISTOGRAM_H
 #define BASE_METRICS_HISTOGRAM_H
 #include "base/metrics/counter.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of the machine's clock, as reported to the kernel by chrony, ntpd, systemd-timesyncd or a PTP daemon. Thread: any. */
+/* State of the machine's clock, as reported to the kernel by chrony, ntpd, systemd-timesyncd or a PTP daemon. Call from any thread. */
 #ifndef BASE_SYSTEM_CLOCK_STATE_H
 #define BASE_SYSTEM_CLOCK_STATE_H
 #include <stdbool.h>

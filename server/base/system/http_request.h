@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to other servers through libcurl: setup and error texts that all callers share. Thread: one per request. */
+/* HTTP requests to other servers through libcurl: setup and error texts that all callers share. Use each request in one thread only. */
 #ifndef BASE_SYSTEM_HTTP_REQUEST_H
 #define BASE_SYSTEM_HTTP_REQUEST_H
 #include <curl/curl.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Huge pages, if the system has them: speed up access to memory that is read from end to end. Thread: any. */
+/* Huge pages, if the system has them: speed up access to memory that is read from end to end. Call from any thread. */
 #ifndef BASE_SYSTEM_HUGE_PAGES_H
 #define BASE_SYSTEM_HUGE_PAGES_H
 #include <stddef.h>

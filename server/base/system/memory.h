@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Memory usage of this process. Thread: any. */
+/* Memory usage of this process. Call from any thread. */
 #ifndef BASE_SYSTEM_MEMORY_H
 #define BASE_SYSTEM_MEMORY_H
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modules: parts of a program in shared libraries that are loaded on first use, so that the program starts without loading
-   libraries with hundreds of dependencies. Thread: any. */
+   libraries with hundreds of dependencies. Call from any thread. */
 #ifndef BASE_SYSTEM_MODULE_H
 #define BASE_SYSTEM_MODULE_H
 #include <pthread.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Messages to the service manager that started this service: its state (sd_notify protocol) and journal entries (native journal
-   protocol). Both protocols are documented and stable, and need no library. Without a service manager nothing is sent. Thread:
-   any. */
+   protocol). Both protocols are documented and stable, and need no library. Without a service manager nothing is sent. Call
+   from any thread. */
 #ifndef BASE_SYSTEM_SERVICE_MANAGER_H
 #define BASE_SYSTEM_SERVICE_MANAGER_H
 #include <stdbool.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Character encodings of files from other programs: detects the encoding of a text, and converts the text to UTF-8. Thread: any. */
+/* Character encodings of files from other programs: detects the encoding of a text, and converts the text to UTF-8. Call from any
+   thread. */
 #ifndef BASE_TEXT_CHARSET_H
 #define BASE_TEXT_CHARSET_H
 #include <stdbool.h>

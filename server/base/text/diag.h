@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects diagnostics about files written by people: errors and warnings with file, line and column. Thread: one. */
+/* Collects diagnostics about files written by people: errors and warnings with file, line and column. Call from one thread only. */
 #ifndef BASE_TEXT_DIAG_H
 #define BASE_TEXT_DIAG_H
 #include <stdio.h>

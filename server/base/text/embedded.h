@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text files embedded in the program: the shaders, named relative to shaders/, and the fleet page, named by its path.
-   Immutable. Thread: any. */
+   Immutable. Call from any thread. */
 #ifndef BASE_TEXT_EMBEDDED_H
 #define BASE_TEXT_EMBEDDED_H
 

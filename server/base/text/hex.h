@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts bytes to and from hexadecimal, two digits per byte. Pure. Thread: any. */
+/* Converts bytes to and from hexadecimal, two digits per byte. Pure. Call from any thread. */
 #ifndef BASE_TEXT_HEX_H
 #define BASE_TEXT_HEX_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints JSON as text, and gets texts from JSON objects. Thread: any. */
+/* Prints JSON as text, and gets texts from JSON objects. Call from any thread. */
 #ifndef BASE_TEXT_JSON_TEXT_H
 #define BASE_TEXT_JSON_TEXT_H
 #include <jansson.h>

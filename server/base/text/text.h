@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A growing string, cells of CSV files, and reading of whole files. Thread: one per text. */
+/* A growing string, cells of CSV files, and reading of whole files. Use each text in one thread only. */
 #ifndef BASE_TEXT_TEXT_H
 #define BASE_TEXT_TEXT_H
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses and prints human-readable timestamps. Pure, except for local times. Thread: any, except timestamp_use_zone(). */
+/* Parses and prints human-readable timestamps. Pure, except for local times. Call from any thread, except timestamp_use_zone(). */
 #ifndef BASE_TEXT_TIMESTAMP_H
 #define BASE_TEXT_TIMESTAMP_H
 #include <stdbool.h>

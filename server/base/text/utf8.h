@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Characters in UTF-8 text (Unicode 15, table 3-7). Thread: any. */
+/* Characters in UTF-8 text (Unicode 15, table 3-7). Call from any thread. */
 #ifndef BASE_TEXT_UTF8_H
 #define BASE_TEXT_UTF8_H
 #include <stddef.h>

@@ -39,22 +39,22 @@ struct postgres_params {
 struct postgres;
 /* Starts the sending thread. Call it before anything is recorded in the folder. Returns NULL if the thread cannot be started (logged). */
 struct postgres *postgres_start(const struct postgres_params *params);
-/* Adds to the metric that counts points deleted by retention before they were sent. Thread: any. */
+/* Adds to the metric that counts points deleted by retention before they were sent. Call from any thread. */
 void postgres_count_lost(struct postgres *postgres, int64_t points);
 /* Makes this daemon the only writer to the database from to_us on. from_us: time of the last sample mirrored from the former
    leader; 0: no sample was mirrored, so the former leader's lines are ended at their last points. Points that the former leader
-   sent after from_us are read from the database as in postgres_fill(). Thread: any. */
+   sent after from_us are read from the database as in postgres_fill(). Call from any thread. */
 void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us);
 /* Once more reads the span just before this daemon became the leader from the database, because the former leader may have sent
-   more points for that time. Thread: any. */
+   more points for that time. Call from any thread. */
 void postgres_fill_again(struct postgres *postgres);
-/* For a standby: tells it that the leader has sent the database all points recorded until age_ns ago. Thread: any. */
+/* For a standby: tells it that the leader has sent the database all points recorded until age_ns ago. Call from any thread. */
 void postgres_sent_elsewhere(struct postgres *postgres, int64_t age_ns);
-/* Returns the age in nanoseconds of the newest time T such that all points recorded before T are in the database; INT64_MAX: T is unknown.
-   Thread: any. */
+/* Returns the age in nanoseconds of the newest time T such that all points recorded before T are in the database; INT64_MAX: T
+   is unknown. Call from any thread. */
 int64_t postgres_sent_age_ns(struct postgres *postgres);
 /* Replaces a gap in the files with the points that another daemon recorded between two times, once that daemon has sent them to
-   the database. from_us 0: from the last point in the files. Thread: any. */
+   the database. from_us 0: from the last point in the files. Call from any thread. */
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us);
 /* Sends pending points for at most two seconds, and ends the thread. *owed receives the time spans whose points must still be
    read from the database; owed NULL: not needed. Accepts a pointer to NULL, and then leaves *owed unchanged. Sets *postgres to

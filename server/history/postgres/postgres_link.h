@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A connection to a PostgreSQL server with timeouts for all operations: statements, and COPY of binary rows. After a failure
-   only postgres_link_why() and postgres_link_close() may be called. Thread: one. */
+   only postgres_link_why() and postgres_link_close() may be called. Call from one thread only. */
 #ifndef HISTORY_POSTGRES_POSTGRES_LINK_H
 #define HISTORY_POSTGRES_POSTGRES_LINK_H
 #include <libpq-fe.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Restores a plant's history from PostgreSQL on a machine that has none: one month at a time, newest first. A file in the
-   folder stores the progress, so that the restore continues after a restart. Thread: one. */
+   folder stores the progress, so that the restore continues after a restart. Call from one thread only. */
 #ifndef HISTORY_POSTGRES_POSTGRES_RESTORE_H
 #define HISTORY_POSTGRES_POSTGRES_RESTORE_H
 #include "history/month_file.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables in PostgreSQL (HISTORY.md): creates, checks and fills them. Functions return false on failure; postgres_link_why()
-   has the reason. Thread: one. */
+   has the reason. Call from one thread only. */
 #ifndef HISTORY_POSTGRES_POSTGRES_TABLES_H
 #define HISTORY_POSTGRES_POSTGRES_TABLES_H
 #include "history/month_outbox.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests: their state, their answers, and waiting for content. Private to http*.c. Thread: the event loop. */
+/* HTTP requests: their state, their answers, and waiting for content. Private to http*.c. Call only in the event loop. */
 #ifndef NET_HTTP_IMPL_H
 #define NET_HTTP_IMPL_H
 #include "importing/export_folder.h"

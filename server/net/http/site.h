@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The web client's files, as found when the daemon started. They are read into memory from one folder, so that a running
-   daemon never serves files of a newer version. Thread: the one that creates it, then only the event loop. */
+/* The web client's files, as found when the daemon started. They are read into memory from one folder, so that a running daemon
+   never serves files of a newer version. Call from the thread that creates it, afterwards only in the event loop. */
 #ifndef NET_SITE_H
 #define NET_SITE_H
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Closes connections whose request has begun but stalls before its head is complete. The parser of libwebsockets would never
    end a request head in which a header's name is only the beginning of a known name, such as `Acc:`: it waits for the rest of
-   the name. Thread: the event loop. */
+   the name. Call only in the event loop. */
 #ifndef HTTP_STUCK_HEAD_H
 #define HTTP_STUCK_HEAD_H
 #include "net/server_context.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks whether the sizes of assets are plausible, which reveals wrong units and axes. Pure. Thread: any. */
+/* Checks whether the sizes of assets are plausible, which reveals wrong units and axes. Pure. Call from any thread. */
 #ifndef PLANT_MODELS_ASSET_SIZE_H
 #define PLANT_MODELS_ASSET_SIZE_H
 #include "plant/plant.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Checks a plant's models without reading their vertices: whether the files are models and have the nodes that the plant file
-   names, how large the assets are, and whether the sensors are near them. Thread: one. */
+   names, how large the assets are, and whether the sensors are near them. Call from one thread only. */
 #ifndef PLANT_MODELS_MODEL_CHECK_H
 #define PLANT_MODELS_MODEL_CHECK_H
 #include <stdio.h>

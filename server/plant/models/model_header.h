@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, so that plantcastd --check is fast. Thread:
-   any. */
+/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, so that plantcastd --check is
+   fast. Call from any thread. */
 #ifndef PLANT_MODELS_MODEL_HEADER_H
 #define PLANT_MODELS_MODEL_HEADER_H
 #include "plant/models/nodes.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Formats error texts for rejected models: one line that names the object and the numbers. Thread: any. */
+/* Formats error texts for rejected models: one line that names the object and the numbers. Call from any thread. */
 #ifndef PLANT_MODELS_MODEL_REFUSAL_H
 #define PLANT_MODELS_MODEL_REFUSAL_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Validates the types and references of a glTF document, because the glTF library accepts invalid ones, or drops them without
-   an error. Thread: any. */
+   an error. Call from any thread. */
 #ifndef PLANT_MODELS_MODEL_RULES_H
 #define PLANT_MODELS_MODEL_RULES_H
 #include <jansson.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rules for the nodes of a glTF scene. plantcast-prep and plantcastd --check apply the same rules. Thread: any. */
+/* Rules for the nodes of a glTF scene. plantcast-prep and plantcastd --check apply the same rules. Call from any thread. */
 #ifndef PLANT_MODELS_NODE_RULES_H
 #define PLANT_MODELS_NODE_RULES_H
 #include <stdbool.h>

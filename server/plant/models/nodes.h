@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matches the node patterns of a plant file, an asset's `nodes` and a tag's `Node` (PLANT.md), against the nodes of a model. Thread:
-   any. */
+/* Matches the node patterns of a plant file, an asset's `nodes` and a tag's `Node` (PLANT.md), against the nodes of a model.
+   Call from any thread. */
 #ifndef PLANT_MODELS_NODES_H
 #define PLANT_MODELS_NODES_H
 #include <stdbool.h>

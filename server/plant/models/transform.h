@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Affine transforms (rotation, translation, scale) in double precision, 4x4, column-major: out = m * (x, y, z, 1). Thread: any. */
+/* Affine transforms (rotation, translation, scale) in double precision, 4x4, column-major: out = m * (x, y, z, 1). Call from any thread. */
 #ifndef PLANT_MODELS_TRANSFORM_H
 #define PLANT_MODELS_TRANSFORM_H
 #include <stdbool.h>

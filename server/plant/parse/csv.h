@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. In a tag list, the
-   row that the n-th call of csv_next() returns describes tag n. Thread: one. */
+/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. In a tag
+   list, the row that the n-th call of csv_next() returns describes tag n. Call from one thread only. */
 #ifndef PLANT_PARSE_CSV_H
 #define PLANT_PARSE_CSV_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recognises a file's kind from its first bytes, for errors about a file that a user named by mistake. Thread: any. */
+/* Recognises a file's kind from its first bytes, for errors about a file that a user named by mistake. Call from any thread. */
 #ifndef PLANT_PARSE_FILE_KIND_H
 #define PLANT_PARSE_FILE_KIND_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads text files: a plant's files, which are UTF-8, and files of other programs, in any encoding. Thread: any. */
+/* Reads text files: a plant's files, which are UTF-8, and files of other programs, in any encoding. Call from any thread. */
 #ifndef PLANT_PARSE_INPUT_H
 #define PLANT_PARSE_INPUT_H
 #include <stddef.h>

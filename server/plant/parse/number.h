@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses numbers of plant files and tag lists, which have a decimal point whatever the user's locale. Thread: any. */
+/* Parses numbers of plant files and tag lists, which have a decimal point whatever the user's locale. Call from any thread. */
 #ifndef PLANT_PARSE_NUMBER_H
 #define PLANT_PARSE_NUMBER_H
 

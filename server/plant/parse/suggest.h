@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests a known name for a mistyped one ("did you mean"). Thread: any. */
+/* Suggests a known name for a mistyped one ("did you mean"). Call from any thread. */
 #ifndef PLANT_PARSE_SUGGEST_H
 #define PLANT_PARSE_SUGGEST_H
 #include <stddef.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads YAML mappings into structs, by tables of their allowed keys. Errors and warnings go to diag with line and column. Thread: one. */
+/* Reads YAML mappings into structs, by tables of their allowed keys. Errors and warnings go to diag with line and column. Call from
+   one thread only. */
 #ifndef PLANT_PARSE_YAML_READER_H
 #define PLANT_PARSE_YAML_READER_H
 #include <stdbool.h>

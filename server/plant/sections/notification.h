@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `notify`: who is notified of which alarms, when and how. Immutable once loaded. Thread: any. */
+/* The plant file's `notify`: who is notified of which alarms, when and how. Immutable once loaded. Call from any thread. */
 #ifndef PLANT_SECTIONS_NOTIFICATION_H
 #define PLANT_SECTIONS_NOTIFICATION_H
 #include <stddef.h>

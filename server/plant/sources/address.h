@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses Modbus addresses, data types and byte orders in the notation of tag lists (TAGS.md). Thread: any. */
+/* Parses Modbus addresses, data types and byte orders in the notation of tag lists (TAGS.md). Call from any thread. */
 #ifndef PLANT_SOURCES_ADDRESS_H
 #define PLANT_SOURCES_ADDRESS_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Addresses of values that are published over MQTT (`TOPIC#PATH`) or Sparkplug (`GROUP/NODE[/DEVICE]#METRIC`), and templates of
-   topics (SOURCES.md). Thread: any. */
+   topics (SOURCES.md). Call from any thread. */
 #ifndef PLANT_SOURCES_MQTT_ADDRESS_H
 #define PLANT_SOURCES_MQTT_ADDRESS_H
 #include <stdbool.h>

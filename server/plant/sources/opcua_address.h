@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Addresses of OPC UA nodes: `[ELEMENT]nsu=URI;s=NAME` (SOURCES.md). Thread: any. */
+/* Addresses of OPC UA nodes: `[ELEMENT]nsu=URI;s=NAME` (SOURCES.md). Call from any thread. */
 #ifndef PLANT_SOURCES_OPCUA_ADDRESS_H
 #define PLANT_SOURCES_OPCUA_ADDRESS_H
 #include <stdbool.h>

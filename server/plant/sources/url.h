@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks URLs of servers that the plant file names. Thread: any. */
+/* Checks URLs of servers that the plant file names. Call from any thread. */
 #ifndef PLANT_SOURCES_URL_H
 #define PLANT_SOURCES_URL_H
 #include <stdbool.h>

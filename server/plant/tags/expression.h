@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Arithmetic expressions on tags (TAGS.md), such as [TT-1] - [TT-2] or mean([A], [B]). Immutable once parsed. Thread: any. */
+/* Arithmetic expressions on tags (TAGS.md), such as [TT-1] - [TT-2] or mean([A], [B]). Immutable once parsed. Call from any thread. */
 #ifndef PLANT_TAGS_EXPRESSION_H
 #define PLANT_TAGS_EXPRESSION_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Edits the text of a tag list to move sensors, or to confirm an assumed place. Everything else stays the same to the byte:
-   order, unknown columns, blank rows, quotes, number format, line ends. Pure. Thread: any. */
+   order, unknown columns, blank rows, quotes, number format, line ends. Pure. Call from any thread. */
 #ifndef PLANT_TAGS_TAG_EDIT_H
 #define PLANT_TAGS_TAG_EDIT_H
 #include <stdbool.h>

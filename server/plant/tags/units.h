@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Engineering units: knows which units measure the same quantity, and converts between them. Pure. Thread: any. Names are UCUM
-   codes (https://ucum.org/ucum, 2.1) and others in common use; factors are from NIST SP 811 (2008), appendix B. */
+/* Engineering units: knows which units measure the same quantity, and converts between them. Pure. Call from any thread. Names
+   are UCUM codes (https://ucum.org/ucum, 2.1) and others in common use; factors are from NIST SP 811 (2008), appendix B. */
 #ifndef PLANT_TAGS_UNITS_H
 #define PLANT_TAGS_UNITS_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant file's `views`, `tours`, `other_plants` and `walls`: named views, sequences of views, and the displays of a control room.
-   Immutable once loaded. Thread: any. */
+/* The plant file's `views`, `tours`, `other_plants` and `walls`: named views, sequences of views, and the displays of a control
+   room. Immutable once loaded. Call from any thread. */
 #ifndef PLANT_WALLS_WALL_H
 #define PLANT_WALLS_WALL_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the cells of a frame's depth grid (depth_grid.h) on the GPU. Thread: the one that owns the GL context. */
+/* Computes the cells of a frame's depth grid (depth_grid.h) on the GPU. Call only in the thread that owns the GL context. */
 #ifndef RENDER_GL_DEPTH_QUERY_H
 #define RENDER_GL_DEPTH_QUERY_H
 #include "render/depth_grid.h"
@@ -15,8 +15,8 @@ struct depth_query {
     int width_px, height_px; /* size in pixels of the frame whose depth grid is computed; 0: the frame gets no depth grid */
 };
 
-/* Starts computing the cells of the frame's depth grid on the GPU, if the frame gets a grid. Call it after the multisampled frame is
-   resolved. The previous frame that used this query must be complete. Returns false on a GL error, logged. */
+/* Starts computing the cells of the frame's depth grid on the GPU, if the frame gets a grid. Call it after the multisampled
+   frame is resolved. The previous frame that used this query must be complete. Returns false on a GL error (logged). */
 bool depth_query_start(struct depth_query *query, const struct frame_context *context, const struct light *light);
 /* Returns the frame's depth grid; call it after the GPU has computed the cells. The caller owns the grid. NULL: the frame gets no grid, or
    memory ran out. */

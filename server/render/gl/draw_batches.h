@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Collects the draw commands of a render pass into batches that need the same GL state. Each batch is one GL call, however many
    assets it draws. Data that differ between assets are in GPU buffers: the placement per instance, light and field values per
-   vertex (gpu/pool.h). Order of calls to draw_batches_*: begin, choose and add, upload, draw. Thread: the one that owns the GL
-   context. */
+   vertex (gpu/pool.h). Order of calls to draw_batches_*: begin, choose and add, upload, draw. Call only in the thread that owns
+   the GL context. */
 #ifndef RENDER_GL_DRAW_BATCHES_H
 #define RENDER_GL_DRAW_BATCHES_H
 #include "gpu/mesh.h"
@@ -76,14 +76,14 @@ void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const 
 /* Adds draws of the clusters of a submesh that survive culling. Returns the number of triangles added. */
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                           const struct culling *culling);
-/* Sorts the draw commands by batch, and uploads commands and instances to the GPU. places true: also uploads, for each command, its index
-   in `sorted` (place_buffer). Returns false when the GPU is out of memory, logged. */
+/* Sorts the draw commands by batch, and uploads commands and instances to the GPU. places true: also uploads, for each command,
+   its index in `sorted` (place_buffer). Logs and returns false when the GPU is out of memory. */
 bool draw_batches_upload(struct draw_batches *batches, bool places);
 /* Draws one batch. The caller has set the batch's state and bound its mesh. */
 void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);
 
-/* Overwrites a GL buffer with the new data of a frame, and grows it if needed. *room: size of the buffer in bytes. Returns
-   false when the GPU is out of memory, logged. */
+/* Overwrites a GL buffer with the new data of a frame, and grows it if needed. *room: size of the buffer in bytes. Logs and
+   returns false when the GPU is out of memory. */
 bool draw_batches_refill(struct log *log, GLuint *buffer, size_t *room, size_t bytes, const void *data);
 
 #endif

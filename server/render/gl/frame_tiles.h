@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A frame divided into tiles. They are drawn one after the other with the camera of the whole frame, so that no seams appear
-   between them. Thread: the one that owns the GL context. */
+   between them. Call only in the thread that owns the GL context. */
 #ifndef RENDER_GL_FRAME_TILES_H
 #define RENDER_GL_FRAME_TILES_H
 #include "render/frame_context.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pass that draws ghosted assets: an outline and a faint tint over the resolved picture, where no other surface is nearer.
-   Where ghosts overlap, the nearest is drawn. Thread: the one that owns the GL context. */
+   Where ghosts overlap, the nearest is drawn. Call only in the thread that owns the GL context. */
 #ifndef RENDER_GL_GHOSTS_H
 #define RENDER_GL_GHOSTS_H
 #include "gpu/target.h"
@@ -15,7 +15,7 @@ struct ghosts {
    asset is. */
 bool ghosts_shows(const struct frame_context *context, size_t asset);
 bool ghosts_any(const struct frame_context *context);
-/* Compiles the shader programs of the pass. Returns false on failure, logged. */
+/* Compiles the shader programs of the pass. On failure, logs the reason and returns false. */
 bool ghosts_init(struct ghosts *ghosts, struct log *log);
 void ghosts_finish(struct ghosts *ghosts);
 /* Draws all ghosts into the resolved picture; does nothing if there are none. */

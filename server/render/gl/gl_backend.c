@@ -103,7 +103,7 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
 }
 
 /* Prepares to continue a job after the renderer has drawn other frames. The job then holds a reference to its light set (baked
-   light), so that the set is not evicted. Returns false on failure, logged. */
+   light), so that the set is not evicted. On failure, logs the reason and returns false. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);

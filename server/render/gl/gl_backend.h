@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of the GL render backend, which draws whole frames on a GPU and tile by tile on a processor. Thread: the one that owns the
-   GL context. */
+/* State of the GL render backend, which draws whole frames on a GPU and tile by tile on a processor. Call only in the thread
+   that owns the GL context. */
 #ifndef RENDER_GL_BACKEND_H
 #define RENDER_GL_BACKEND_H
 #include "render/gl/frames_in_flight.h"
@@ -26,7 +26,7 @@ struct gl_backend {
 };
 
 /* Binds the light set (baked light), the colour map and the uniforms of a frame in GL. Call it again before continuing the
-   frame after other frames were drawn. Returns false when out of GPU memory, logged. */
+   frame after other frames were drawn. Logs and returns false when out of GPU memory. */
 bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scene on the GPU: one model for each asset file, with all its levels of detail. Thread: the one that owns the GL context. */
+/* The scene on the GPU: one model for each asset file, with all its levels of detail. Call only in the thread that owns the GL context. */
 #ifndef RENDER_GL_GPU_SCENE_H
 #define RENDER_GL_GPU_SCENE_H
 #include "gpu/gl.h"
@@ -19,7 +19,7 @@ struct gpu_scene {
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };
 
-/* Uploads all models. sky: the light for computing the colour ramps of previews. Returns false on failure, logged. */
+/* Uploads all models. sky: the light for computing the colour ramps of previews. On failure, logs the reason and returns false. */
 bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene, const struct environment_light *sky);
 void gpu_scene_finish(struct gpu_scene *gpu_scene);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The passes that draw lines over the resolved frame: feature edges, and the outline of the selected asset. Thread: the one
-   that owns the GL context. */
+/* The passes that draw lines over the resolved frame: feature edges, and the outline of the selected asset. Call only in the
+   thread that owns the GL context. */
 #ifndef RENDER_GL_LINES_H
 #define RENDER_GL_LINES_H
 #include "gpu/target.h"
@@ -11,7 +11,7 @@ struct gl_lines {
     struct render_texture mask;
 };
 
-/* Compiles the shader programs for edges and outlines. Returns false on failure, logged. */
+/* Compiles the shader programs for edges and outlines. On failure, logs the reason and returns false. */
 bool lines_init(struct gl_lines *lines, struct log *log);
 void lines_finish(struct gl_lines *lines);
 /* Draws feature edges: darkens the frame where its depth has a step, so that the shapes of assets are visible. */

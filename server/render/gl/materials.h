@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uploads a model's materials and textures, and computes the colour ramps for previews. Thread: the one that owns the GL context. */
+/* Uploads a model's materials and textures, and computes the colour ramps for previews. Call only in the thread that owns the GL
+   context. */
 #ifndef RENDER_GL_MATERIALS_H
 #define RENDER_GL_MATERIALS_H
 #include "render/gl/model.h"

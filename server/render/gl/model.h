@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One asset file on the GPU: geometry, materials, textures, and submeshes in drawing order. All instances of the asset share
-   it. Thread: the one that owns the GL context. */
+   it. Call only in the thread that owns the GL context. */
 #ifndef RENDER_GL_MODEL_H
 #define RENDER_GL_MODEL_H
 #include "gpu/gl.h"

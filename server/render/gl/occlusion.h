@@ -2,7 +2,7 @@
 /* Occlusion culling of assets: the GPU tests an asset's bounding box against the depth drawn so far, without writing depth. If
    a fragment of the box is visible, the shader enables the asset's draw commands in the command buffer, so the CPU reads
    nothing back. Conservative: the box encloses the asset with a margin larger than any rounding, so culling never changes a
-   pixel. Thread: the one that owns the GL context. */
+   pixel. Call only in the thread that owns the GL context. */
 #ifndef RENDER_GL_OCCLUSION_H
 #define RENDER_GL_OCCLUSION_H
 #include "render/gl/draw_batches.h"
@@ -29,7 +29,7 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
     size_t box_room;                     /* size of the GPU buffer box_buffer in bytes */
 };
 
-/* Compiles the shader program that tests bounding boxes. Returns false on failure, logged. */
+/* Compiles the shader program that tests bounding boxes. On failure, logs the reason and returns false. */
 bool occlusion_init(struct occlusion *occlusion, struct log *log);
 void occlusion_finish(struct occlusion *occlusion);
 /* Collects the boxes of all visible assets; call before the opaque draw commands are collected. Returns false if the frame has fewer than
@@ -41,7 +41,7 @@ enum { OCCLUSION_ROUNDS = 6 };
 size_t occlusion_round(const struct occlusion *occlusion, size_t first);
 /* Stores the range of draw commands that the test of an asset's bounding box enables. */
 void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset *asset, size_t first_command, size_t count);
-/* Uploads the bounding boxes to the GPU. Returns false when the GPU is out of memory, logged. */
+/* Uploads the bounding boxes to the GPU. Logs and returns false when the GPU is out of memory. */
 bool occlusion_upload(struct occlusion *occlusion);
 /* Tests the boxes of visible assets first..end-1 against the depth drawn so far. Changes the program, bindings, face culling and polygon
    offset; all other GL state of the pass (render/gl/surface_pass.c) stays unchanged. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pass that fills the cut faces (caps) of closed bodies where a section plane cuts them. Caps have a neutral colour, since
-   no sensor measures the field inside a body. The pass draws over the resolved frame and writes its depth. Thread: the one that
-   owns the GL context. */
+   no sensor measures the field inside a body. The pass draws over the resolved frame and writes its depth. Call only in the
+   thread that owns the GL context. */
 #ifndef RENDER_GL_SECTION_CAPS_H
 #define RENDER_GL_SECTION_CAPS_H
 #include "gpu/target.h"
@@ -13,7 +13,7 @@ struct section_caps {
     struct model_draws draws;
 };
 
-/* Compiles the shader programs for section caps. Returns false on failure, logged. */
+/* Compiles the shader programs for section caps. On failure, logs the reason and returns false. */
 bool section_caps_init(struct section_caps *caps, struct log *log);
 void section_caps_finish(struct section_caps *caps);
 /* Draws the caps of all section planes; does nothing if the view has none. */

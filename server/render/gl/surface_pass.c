@@ -109,7 +109,7 @@ static int choose_variant(const struct frame_context *context, const struct mode
     return variant | (cut ? SURFACE_CLIP : 0);
 }
 
-/* Returns the shader program with the features `variant`, compiled on first use. 0: compiling failed, logged. */
+/* Returns the shader program with the features `variant`, compiled on first use. 0: compiling failed (logged). */
 static GLuint choose_program(struct surface_pass *pass, const struct frame_context *context, const struct fields_entry *field, int variant)
 {
     enum surface_program_kind kind = kind_of(context, field);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that draws the surfaces of all visible assets, for previews and refined frames. Thread: the one that owns the GL context. */
+/* The pass that draws the surfaces of all visible assets, for previews and refined frames. Call only in the thread that owns the GL
+   context. */
 #ifndef RENDER_GL_SURFACE_PASS_H
 #define RENDER_GL_SURFACE_PASS_H
 #include "render/gl/draw_batches.h"
@@ -41,7 +42,7 @@ struct surface_pass {
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };
 
-/* Compiles the programs of SURFACE_PICTURE. Returns false on failure, logged. */
+/* Compiles the programs of SURFACE_PICTURE. On failure, logs the reason and returns false. */
 bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
 /* Draw the visible assets in steps. surface_pass_draw_some() draws opaque submeshes from the visible asset `first` on, until it

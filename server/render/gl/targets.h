@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cache of free render targets (framebuffers), so that the next frame of the same size allocates no GPU memory. Thread: the
-   one that owns the GL context. */
+/* A cache of free render targets (framebuffers), so that the next frame of the same size allocates no GPU memory. Call only in
+   the thread that owns the GL context. */
 #ifndef RENDER_GL_TARGETS_H
 #define RENDER_GL_TARGETS_H
 #include "gpu/target.h"
@@ -11,8 +11,8 @@ struct targets {               /* zero-initialise */
     size_t bound_bytes;        /* memory limit; one target is kept even if it exceeds the limit; 0: at most TARGETS targets, of any size */
 };
 
-/* Takes a render target of the given size from the cache, or creates one; the caller owns it until targets_give(). Returns false when the
-   GPU is out of memory, logged. */
+/* Takes a render target of the given size from the cache, or creates one; the caller owns it until targets_give(). Logs and
+   returns false when the GPU is out of memory. */
 bool targets_take(struct targets *targets, struct log *log, int width_px, int height_px, int samples, struct target *out);
 /* Puts a render target back into the cache; if the cache is full, the least recently used target is deleted. */
 void targets_give(struct targets *targets, const struct target *target);

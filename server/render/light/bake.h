@@ -2,7 +2,8 @@
 /* Bakes one light set in small steps, so that frames can be drawn in between. The set has a shadow map of the sun, and the
    light that reaches each vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps in 32
    directions. Openness depends on neither sun nor environment, so it is copied from another set, or read from a file. Openness
-   is always that of the whole plant; hiding assets only raises its lower bound. Thread: the one that owns the GL context. */
+   is always that of the whole plant; hiding assets only raises its lower bound. Call only in the thread that owns the GL
+   context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
@@ -35,7 +36,7 @@ struct light_set {
 struct bake_programs {
     GLuint sky, sun, faces_sky, faces_sun, ground_sky, ground_sun;
 };
-/* Compiles the shader programs of the bake. Returns false on failure, logged. */
+/* Compiles the shader programs of the bake. On failure, logs the reason and returns false. */
 bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 
@@ -43,11 +44,11 @@ struct bake;
 /* Returns the lower bound of openness (0..1) for a light set that shows only the assets in `shown`. The bound keeps surfaces
    next to hidden assets from staying dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
-/* Begins to bake a light set for `key`. Openness is most of the work, so it is taken from elsewhere if possible. from: a light set whose
-   openness is copied; read during the call only. `from` must not be rough, and bake_least_open() of its visibility must not exceed that of
-   the key's. kept: the plant's openness file, used if `from` is NULL; read during the call only. If both are NULL, openness is baked as
-   well, unless the key is rough. The caller ends the bake with bake_end() or bake_abandon(). Returns NULL when the GPU is out of memory,
-   logged. */
+/* Begins to bake a light set for `key`. Openness is most of the work, so it is taken from elsewhere if possible. from: a light
+   set whose openness is copied; read during the call only. `from` must not be rough, and bake_least_open() of its visibility
+   must not exceed that of the key's. kept: the plant's openness file, used if `from` is NULL; read during the call only. If
+   both are NULL, openness is baked as well, unless the key is rough. The caller ends the bake with bake_end() or
+   bake_abandon(). Logs and returns NULL when the GPU is out of memory. */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from, struct openness *kept);
 /* Returns the key (sun, environment, visible assets) of the light set being baked. */

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Image-based light of an environment map or of the built-in sky: irradiance as spherical harmonics, and prefiltered reflections for each
-   roughness. Exposure and white balance are such that a level white surface under the open sky reflects 1 in every channel. No GL.
-   Thread: any.
-   Irradiance: Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment maps", 2001. Prefiltered reflections:
-   Karis, "Real shading in Unreal Engine 4", 2013. */
+/* Image-based light of an environment map or of the built-in sky: irradiance as spherical harmonics, and prefiltered
+   reflections for each roughness. Exposure and white balance are such that a level white surface under the open sky reflects 1
+   in every channel. No GL. Call from any thread. Irradiance: Ramamoorthi and Hanrahan, "An efficient representation for
+   irradiance environment maps", 2001. Prefiltered reflections: Karis, "Real shading in Unreal Engine 4", 2013. */
 #ifndef RENDER_ENVIRONMENT_H
 #define RENDER_ENVIRONMENT_H
 #include <stdbool.h>

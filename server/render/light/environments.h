@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The environment maps of a plant on the GPU, by index. 0 is the built-in sky; 1 and up are those of the plant file, which
-   workers read and convolve in the background. Thread: the one that owns the GL context. */
+   workers read and convolve in the background. Call only in the thread that owns the GL context. */
 #ifndef RENDER_ENVIRONMENTS_H
 #define RENDER_ENVIRONMENTS_H
 #include <stdint.h>
@@ -32,8 +32,8 @@ struct environment_light { /* image-based light that shading code reads: the env
     const float (*brdf)[2];
 };
 
-/* Uploads the built-in sky and starts to load the plant's environments. plant and workers must outlive the environments. Returns false when
-   the GPU is out of memory, logged. */
+/* Uploads the built-in sky and starts to load the plant's environments. plant and workers must outlive the environments. Logs
+   and returns false when the GPU is out of memory. */
 bool environments_init(struct environments *environments, struct gl *gl, const struct plant *plant, struct workers *workers);
 void environments_finish(struct environments *environments);
 /* Waits up to timeout_ns for an environment to load. Returns true once the environment's state is final: it is loaded, or its image cannot

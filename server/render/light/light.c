@@ -167,8 +167,8 @@ static void drop_rough(struct light *light)
             drop(light, &light->sets[i]);
 }
 
-/* Ends the bake, whose GL calls must all have been issued, and puts its light set (baked light) into the cache. Returns NULL on
-   failure, logged. */
+/* Ends the bake, whose GL calls must all have been issued, and puts its light set (baked light) into the cache. On failure,
+   logs the reason and returns NULL. */
 static struct light_set *end(struct light *light)
 {
     struct light_set baked, *set;

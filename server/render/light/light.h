@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A cache of baked light within a memory limit: shadow map, and light at each vertex and on the ground. Light is baked once per
-   direction of the sun, environment and visible assets (render/light/bake.h). Thread: the one that owns the GL context. */
+   direction of the sun, environment and visible assets (render/light/bake.h). Call only in the thread that owns the GL context.
+   */
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/light/bake.h"
@@ -25,11 +26,12 @@ struct light {
     struct openness_writer *writer; /* thread that writes the openness file; NULL: not writing */
 };
 
-/* Compiles the shader programs for baking; bakes no light yet. Returns false on failure, logged. */
+/* Compiles the shader programs for baking; bakes no light yet. On failure, logs the reason and returns false. */
 bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments);
 void light_finish(struct light *light);
-/* Returns the light set (baked light) for `key`; if it is not cached, bakes it and waits. With key->rough, the bake takes a fraction of the
-   time; frames show such a rough set until the first full set is ready. Returns NULL when the GPU is out of memory, logged. */
+/* Returns the light set (baked light) for `key`; if it is not cached, bakes it and waits. With key->rough, the bake takes a
+   fraction of the time; frames show such a rough set until the first full set is ready. Logs and returns NULL when the GPU is
+   out of memory. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
 /* Returns the cached light set (baked light) most similar to `key`. Sets of the same environment come first, then sets with the
    same visible assets, then the nearest direction of the sun. NULL: none is cached. */

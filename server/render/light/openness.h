@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Openness (ambient occlusion, 0..255) at each vertex of a plant, stored in the file `openness` in the folder of prepared
    assets. Baking it is most of the cost of a light set on a processor, and it depends on neither sun nor environment. A damaged
-   file, or one from another plant, program or GL driver, counts as missing. Thread: the one that owns the GL context. */
+   file, or one from another plant, program or GL driver, counts as missing. Call only in the thread that owns the GL context.
+   */
 #ifndef RENDER_OPENNESS_H
 #define RENDER_OPENNESS_H
 #include "base/files/cache_file.h"
@@ -18,8 +19,8 @@ struct openness { /* the mapped openness file: visible part of the sky at the te
 /* Opens the openness file of the plant. Returns false if there is no valid file; openness_close() is then not needed. */
 bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene);
 void openness_close(struct openness *openness); /* a zeroed struct is fine */
-/* Uploads the next asset's openness into byte 2 of each texel of `slice`, the asset's range in the buffer of baked light. Returns false
-   when the GPU is out of memory, logged. */
+/* Uploads the next asset's openness into byte 2 of each texel of `slice`, the asset's range in the buffer of baked light. Logs
+   and returns false when the GPU is out of memory. */
 bool openness_upload(struct openness *openness, const struct gpu_scene *gpu_scene, const struct pool_slice *slice);
 /* Uploads the ground's openness (visible part of the sky) into byte 1 of each texel of the ground's texture. */
 void openness_upload_ground(const struct openness *openness, GLuint ground);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that draws the background where no surface is: backdrop, and the shadow on the ground. Thread: the one that owns the GL
-   context. */
+/* The pass that draws the background where no surface is: backdrop, and the shadow on the ground. Call only in the thread that
+   owns the GL context. */
 #ifndef RENDER_SKY_H
 #define RENDER_SKY_H
 #include "render/frame_context.h"
@@ -15,7 +15,7 @@ struct sky {
     GLuint vao;                             /* without attributes */
 };
 
-/* Compiles the shader programs and computes the colours of the backdrops. Returns false on failure, logged. */
+/* Compiles the shader programs and computes the colours of the backdrops. On failure, logs the reason and returns false. */
 bool sky_init(struct sky *sky, struct log *log);
 void sky_finish(struct sky *sky);
 /* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted. (The ground shows the

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pen: the drawing context shared by all overlay files. Sizes scale with the frame: `unit` is one pixel at 1280x720. Thread: any; one
-   pen belongs to one thread. */
+/* The pen: the drawing context shared by all overlay files. Sizes scale with the frame: `unit` is one pixel at 1280x720. Call
+   from any thread; one pen belongs to one thread. */
 #ifndef RENDER_OVERLAY_PEN_H
 #define RENDER_OVERLAY_PEN_H
 #include <stdbool.h>

@@ -18,11 +18,11 @@ enum overlay_word {
 };
 #undef OVERLAY_MEMBER
 
-/* Returns a word or sentence; static storage. Thread: any. */
+/* Returns a word or sentence; static storage. Call from any thread. */
 const char *overlay_word(enum language language, enum overlay_word word);
 /* Finds a language by its code: en, ko or de. Returns false for any other. */
 bool overlay_language_find(const char *name, enum language *out);
-/* Writes a sentence into `out`, replacing each {} by a, then b. b: NULL if the sentence has one {}. Thread: any. */
+/* Writes a sentence into `out`, replacing each {} by a, then b. b: NULL if the sentence has one {}. Call from any thread. */
 void overlay_say(enum language language, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
 #endif

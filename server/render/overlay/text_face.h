@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds a font for text with letters that DejaVu Sans lacks. Thread: any. */
+/* Finds a font for text with letters that DejaVu Sans lacks. Call from any thread. */
 #ifndef RENDER_OVERLAY_TEXT_FACE_H
 #define RENDER_OVERLAY_TEXT_FACE_H
 #include <cairo.h>

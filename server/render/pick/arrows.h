@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Positions of arrows, spread evenly over an asset whose field has directions. The visibility of arrows is tested together with
-   isoline labels (isolines.h); the overlay or the client draws the arrows. Thread: the one that owns the GL context. */
+   isoline labels (isolines.h); the overlay or the client draws the arrows. Call only in the thread that owns the GL context. */
 #ifndef RENDER_PICK_ARROWS_H
 #define RENDER_PICK_ARROWS_H
 #include "field/directions.h"

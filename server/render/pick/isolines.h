@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds points on isolines where labels may be placed, spread over each asset, and tests which are visible in a frame. Does the
-   same for positions of arrows (arrows.h). The lines themselves are drawn with the field (shaders/field.glsl). Thread: the one
-   that owns the GL context. */
+   same for positions of arrows (arrows.h). The lines themselves are drawn with the field (shaders/field.glsl). Call only in the
+   thread that owns the GL context. */
 #ifndef RENDER_PICK_ISOLINES_H
 #define RENDER_PICK_ISOLINES_H
 #include "render/frame.h"
@@ -50,8 +50,9 @@ size_t isolines_vertex_count(const struct scene_asset *asset);
 /* Collects possible positions of labels and arrows on all visible assets; their visibility is tested later. context->fields
    must hold the fields shown. */
 void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out);
-/* isolines_start() begins the visibility test of isoline points and arrows on the GPU; call it after the multisampled frame is resolved. It
-   returns false when the GPU is out of memory, logged. isolines_get() stores the result in the frame once the GPU is done. */
+/* isolines_start() begins the visibility test of isoline points and arrows on the GPU; call it after the multisampled frame is
+   resolved. It logs and returns false when the GPU is out of memory. isolines_get() stores the result in the frame once the GPU
+   is done. */
 bool isolines_start(struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points);
 void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,
                   struct frame *frame);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects the sensors of the shown group into the frame and tests which sensors are hidden. Thread: the one that owns the GL context. */
+/* Projects the sensors of the shown group into the frame and tests which sensors are hidden. Call only in the thread that owns the
+   GL context. */
 #ifndef RENDER_PICK_MARKERS_H
 #define RENDER_PICK_MARKERS_H
 #include "render/frame.h"
@@ -23,8 +24,9 @@ bool marker_is_shown(const struct scene *scene, const struct view *view, const s
 
 /* Returns the depth tolerance of an asset's markers: how far in front of a sensor's position the drawn surface may lie. */
 double markers_slack_m(const struct scene_asset *asset);
-/* markers_start() begins the visibility test of the sensors' markers on the GPU; call it after the multisampled frame is resolved. It
-   returns false when the GPU is out of memory, logged. markers_get() stores the result in the frame once the GPU is done. */
+/* markers_start() begins the visibility test of the sensors' markers on the GPU; call it after the multisampled frame is
+   resolved. It logs and returns false when the GPU is out of memory. markers_get() stores the result in the frame once the GPU
+   is done. */
 bool markers_start(struct point_visibility *queries, const struct frame_context *context);
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame);
 /* Recomputes the values of a frame's markers in a view of distances from a sensor; their positions stay unchanged. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Picks what is at a pixel: the asset, the position, and the value of the field there. Casts a ray; needs no GL.
-   Thread: the one that owns the field. */
+/* Picks what is at a pixel: the asset, the position, and the value of the field there. Casts a ray; needs no GL. Call only in
+   the thread that owns the field. */
 #ifndef RENDER_PICK_H
 #define RENDER_PICK_H
 #include "field/field.h"

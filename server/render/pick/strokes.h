@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Strokes along the directions of a field: short streamlines on the surface of one asset. A stroke begins at an arrow position
    and follows the interpolated direction from triangle to triangle. It ends where the direction is unknown, where the surface
-   ends, or at its full length. Therefore no stroke crosses a gap or a wall. Thread: the one that owns the GL context. */
+   ends, or at its full length. Therefore no stroke crosses a gap or a wall. Call only in the thread that owns the GL context.
+   */
 #ifndef RENDER_PICK_STROKES_H
 #define RENDER_PICK_STROKES_H
 #include "render/pick/arrows.h"

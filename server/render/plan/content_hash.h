@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of what a frame plan shows. Plans with equal hashes give equal frames. Pure. Thread: any. */
+/* Hashes of what a frame plan shows. Plans with equal hashes give equal frames. Pure. Call from any thread. */
 #ifndef RENDER_PLAN_CONTENT_HASH_H
 #define RENDER_PLAN_CONTENT_HASH_H
 #include "render/plan/frame_plan.h"

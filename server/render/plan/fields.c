@@ -142,8 +142,8 @@ static void show(struct fields_entry *entry)
     }
 }
 
-/* Uploads the entry's values to the GPU. If a frame in progress still uses the entry's slice (range of a GPU buffer), that slice stays
-   unchanged and a new one is taken. Returns false when there is no room for another slice, logged. */
+/* Uploads the entry's values to the GPU. If a frame in progress still uses the entry's slice (range of a GPU buffer), that
+   slice stays unchanged and a new one is taken. Logs and returns false when there is no room for another slice. */
 static bool upload(struct fields *fields, struct fields_entry *entry)
 {
     if (entry->slice->holds > 1) {

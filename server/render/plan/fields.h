@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of field values (scalars) on the GPU, per asset and field parameters. An entry is uploaded when its values differ from
    the GPU's copy by half a colour step or more. Beyond the size limit, the least recently used entries are evicted, except
-   those of the last frame. Thread: the one that owns the GL context. */
+   those of the last frame. Call only in the thread that owns the GL context. */
 #ifndef RENDER_PLAN_FIELDS_H
 #define RENDER_PLAN_FIELDS_H
 #include "field/directions.h"
@@ -63,7 +63,8 @@ struct fields_ask {
     const struct snapshot *snapshot;
 };
 /* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset shows no field. An asset whose
-   entry does not fit in memory gets one that shows no data; logged. The entries are valid until the next fields_trim(). */
+   entry does not fit in memory gets one that shows no data, and the failure is logged. The entries are valid until the next
+   fields_trim(). */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
 /* Returns how many of an asset's first `count` vertices need computed values for fields_get(): fewer if the field is evaluated at
    pixels. */

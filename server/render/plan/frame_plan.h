@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A frame plan decides once what one frame shows: visible assets and their levels of detail, light and fields. It also holds a
-   hash of all these. Immutable once complete. Everything that prepares, shares, draws or caches the frame uses its plan.
-   Thread: the one that owns the GL context. */
+   hash of all these. Immutable once complete. Everything that prepares, shares, draws or caches the frame uses its plan. Call
+   only in the thread that owns the GL context. */
 #ifndef RENDER_PLAN_FRAME_PLAN_H
 #define RENDER_PLAN_FRAME_PLAN_H
 #include "render/light/light.h"

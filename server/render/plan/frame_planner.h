@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes frame plans: what one frame shows, decided before it is drawn (frame_plan.h). Thread: the one that owns the GL context. */
+/* Makes frame plans: what one frame shows, decided before it is drawn (frame_plan.h). Call only in the thread that owns the GL context. */
 #ifndef RENDER_PLAN_FRAME_PLANNER_H
 #define RENDER_PLAN_FRAME_PLANNER_H
 #include "render/plan/frame_plan.h"
@@ -19,7 +19,7 @@ void frame_plan_destroy(struct frame_plan **plan); /* frees the plan and sets *p
    fast. If budget_ns is INT64_MAX, returns true immediately, and frame_plan_complete() computes the fields. */
 bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot, int64_t budget_ns);
 /* Computes the plan's fields from the newest readings in the snapshot and fills in the remaining members. A field that does not
-   fit in memory shows no data; logged. Plans with equal content give equal frames. */
+   fit in memory shows no data, and the failure is logged. Plans with equal content give equal frames. */
 void frame_plan_complete(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot);
 /* Returns the key of the light set (baked light) that the view asks for, whether or not that set is baked. */
 struct light_key frame_plan_wanted_light(const struct view *view);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Chooses levels of detail: the error bound of a frame, and each asset's level under that bound. The finest level shows the
    field accurately to one colour step. A coarser level's values are off by as much as its surface is displaced, which is
-   several colour steps at some pixels. So a frame with few triangles uses finer levels than its silhouettes need. Thread: any.
-   */
+   several colour steps at some pixels. So a frame with few triangles uses finer levels than its silhouettes need. Call from any
+   thread. */
 #ifndef RENDER_PLAN_LOD_SELECTION_H
 #define RENDER_PLAN_LOD_SELECTION_H
 #include "render/gl/gpu_scene.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values that follow from a view's camera: matrices and frustum planes. Plain data. Thread: any. */
+/* Values that follow from a view's camera: matrices and frustum planes. Plain data. Call from any thread. */
 #ifndef RENDER_PLAN_VIEW_CONSTANTS_H
 #define RENDER_PLAN_VIEW_CONSTANTS_H
 #include "render/view.h"

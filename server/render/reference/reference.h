@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reference computation of the field: at each fragment, from all sensors, with the distances of the finest level of detail. It
    is slow, and shares no code with the normal computation of fields; tests compare pictures with it (`--field per-fragment`).
-   Thread: the one that owns the GL context. */
+   Call only in the thread that owns the GL context. */
 #ifndef RENDER_REFERENCE_H
 #define RENDER_REFERENCE_H
 #include "field/field.h"
@@ -25,12 +25,12 @@ void reference_finish(struct reference *reference); /* a zeroed struct is fine *
    caller owns the buffer. Returns 0 when out of memory. */
 GLuint reference_sensors(const struct reference *reference, int asset, const struct field_params *params);
 /* Creates the GPU buffer that shaders with PIXEL_FIELD read to evaluate this field at each pixel. The caller owns the buffer.
-   Returns 0 when out of memory, logged. */
+   Logs and returns 0 when out of memory. */
 GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field);
 /* Binds a buffer from reference_pixel_sensors() for the next draws; their program must be compiled with PIXEL_FIELD. */
 void reference_bind_pixel_sensors(GLuint sensors);
-/* Binds the asset's distances and a buffer from reference_sensors() for the next draws of that asset. Returns false when out of
-   GPU memory, logged. */
+/* Binds the asset's distances and a buffer from reference_sensors() for the next draws of that asset. Logs and returns false
+   when out of GPU memory. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
 /* issues the draw commands with a field value computed at each fragment; the current program must be compiled with PER_FRAGMENT */
 void reference_draw(const struct draw_command *commands, size_t count);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reduces a depth buffer to the cells (squares of pixels) of a depth grid, the coarse depth with which clients warp a picture.
-   Pure. Thread: any. */
+   Pure. Call from any thread. */
 #ifndef RENDER_SOFT_DEPTH_CELLS_H
 #define RENDER_SOFT_DEPTH_CELLS_H
 #include "render/depth_grid.h"

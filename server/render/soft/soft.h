@@ -2,8 +2,8 @@
 /* Software renderer for machines without a GPU. It rasterizes on all cores with SIMD, whereas a software GL would process
    triangles on one thread. Previews look like shaders/preview.*, refined frames like shaders/refined.frag, within rounding.
    Visible parts of models are drawn into tiles, nearest first. Pixels are coloured afterwards by the triangles they show, so
-   that hidden surfaces are never shaded. The result does not depend on the order of tiles and threads. Thread: the one that
-   owns the GL context; work is spread over `workers`. */
+   that hidden surfaces are never shaded. The result does not depend on the order of tiles and threads. Call only in the thread
+   that owns the GL context; work is spread over `workers`. */
 #ifndef RENDER_SOFT_H
 #define RENDER_SOFT_H
 #include "base/workers.h"
@@ -16,7 +16,7 @@
 struct soft;    /* shared by all frames */
 struct refined; /* refined frame while it is drawn in steps */
 
-/* Returns NULL when out of memory, logged. All arguments must outlive the renderer. */
+/* Logs and returns NULL when out of memory. All arguments must outlive the renderer. */
 struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky,
                          const struct environments *environments);
 void soft_destroy(struct soft **soft); /* frees the software renderer and sets *soft to NULL; accepts a pointer to NULL */
@@ -31,7 +31,7 @@ void soft_drop_spare(struct soft *soft);          /* frees the working memory th
 /* frees working memory, copied light and kept visibility buffers, for example while no clients are watching */
 void soft_rest(struct soft *soft);
 
-/* Draws a whole preview frame: pixels, visibility of markers, and points for isoline labels. Returns false when out of memory; logged. */
+/* Draws a whole preview frame: pixels, visibility of markers, and points for isoline labels. Logs and returns false when out of memory. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame);
 
@@ -39,8 +39,8 @@ struct refined *refined_begin(struct soft *soft);
 /* Draws one step of a refined frame: four samples per pixel find the visible triangles, then each surface in a pixel is shaded once.
    context: the frame's context with light and colour map set; the same at each step. Returns true when no step is left. */
 bool refined_step(struct refined *refined, const struct frame_context *context, const struct light *light, struct frame *frame);
-/* Ends a refined frame after its last step: finds the labels of its isolines among `points`, and keeps its visibility buffer for
-   recolouring. Returns false when the frame failed because memory ran out; logged. */
+/* Ends a refined frame after its last step: finds the labels of its isolines among `points`, and keeps its visibility buffer
+   for recolouring. Logs and returns false when the frame failed because memory ran out. */
 bool refined_keep(struct refined *refined, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
 void refined_end(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 

@@ -56,7 +56,7 @@ static void abandon(struct renderer *renderer, struct render_job *job)
 }
 
 /* Prepares the job for its next step, since other frames may have been drawn in between. Sets its light set (baked light) and
-   colour map, and binds its environment. Returns false on failure, logged. */
+   colour map, and binds its environment. On failure, logs the reason and returns false. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     if (!renderer_light_job(renderer, job))

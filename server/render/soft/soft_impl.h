@@ -214,7 +214,7 @@ struct soft { /* shared by all frames */
     struct refined *spare;
 };
 
-/* Returns the copy, in main memory, of a light set (baked light); reads it from the GPU if needed. NULL: out of memory, logged. */
+/* Returns the copy, in main memory, of a light set (baked light); reads it from the GPU if needed. NULL: out of memory (logged). */
 const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
 void soft_free_light(const struct soft *soft, struct soft_light *light);
 /* Returns the table of colours for pixels that show a field: colormap->texels or, if `glossy` is true, soft->glossy. */

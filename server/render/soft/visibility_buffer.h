@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Visibility buffer: for each pixel the triangle it shows, the position on the triangle and the light there. While the camera
-   stands still, a frame with new readings is made from the buffer by looking up colours again. Thread: the one that owns the GL
-   context, except functions marked as running on a worker. */
+   stands still, a frame with new readings is made from the buffer by looking up colours again. Call only in the thread that
+   owns the GL context, except functions marked as running on a worker. */
 #ifndef RENDER_SOFT_VISIBILITY_BUFFER_H
 #define RENDER_SOFT_VISIBILITY_BUFFER_H
 #include "base/workers.h"

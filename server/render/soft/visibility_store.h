@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Store of visibility buffers of frames whose camera stands still, keyed by content_hash_shape(), so that a frame with new
    values only needs new colours. The store does not know what a buffer contains. If the buffers exceed the memory limit, the
-   least recently used ones are evicted. Thread: the one that owns the GL context. */
+   least recently used ones are evicted. Call only in the thread that owns the GL context. */
 #ifndef RENDER_SOFT_VISIBILITY_STORE_H
 #define RENDER_SOFT_VISIBILITY_STORE_H
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Admission: decides whether the server can take one more session, from configured limits and the measured drawing cost of
    finished frames. Capacity is shared equally among client addresses, then among each address's sessions, so that one address
-   cannot exhaust it. Pure: the caller passes the time. Thread: the event loop. */
+   cannot exhaust it. Pure: the caller passes the time. Call only in the event loop. */
 #ifndef SESSION_PACING_ADMISSION_H
 #define SESSION_PACING_ADMISSION_H
 #include "service/encoded_frame.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Estimates the network and the decoder of one client from its acknowledgements and pongs: round trip, bandwidth and decoding time. The
-   decoding time that the client reports is subtracted, so that a slow decoder does not look like a slow network. Pure; the caller passes
-   the time. Thread: the event loop. */
+/* Estimates the network and the decoder of one client from its acknowledgements and pongs: round trip, bandwidth and decoding
+   time. The decoding time that the client reports is subtracted, so that a slow decoder does not look like a slow network.
+   Pure; the caller passes the time. Call only in the event loop. */
 #ifndef SESSION_PACING_CHANNEL_H
 #define SESSION_PACING_CHANNEL_H
 #include <stdbool.h>

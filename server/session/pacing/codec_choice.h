@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses the codec for a client that decodes both H.264 and JPEG: H.264 takes at most half the bytes, JPEG half the processor time.
-   JPEG is chosen only if the network has spare capacity and the processors have none. Pure; the caller passes the time. Thread: the
-   event loop. */
+/* Chooses the codec for a client that decodes both H.264 and JPEG: H.264 takes at most half the bytes, JPEG half the processor
+   time. JPEG is chosen only if the network has spare capacity and the processors have none. Pure; the caller passes the time.
+   Call only in the event loop. */
 #ifndef SESSION_PACING_CODEC_CHOICE_H
 #define SESSION_PACING_CODEC_CHOICE_H
 #include <stdbool.h>

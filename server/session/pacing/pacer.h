@@ -2,7 +2,7 @@
 /* The pacer: limits how many frames may be under way to one client (requested, waiting, sent and not acknowledged), and owns
    the client's channel estimate and quality ladder. Unacknowledged frames together may have as many bytes as the bandwidth
    carries in 33 ms plus one round trip; one frame may always be sent. Nothing queues behind them. Pure; the caller passes the
-   time. Thread: the event loop. */
+   time. Call only in the event loop. */
 #ifndef SESSION_PACING_PACER_H
 #define SESSION_PACING_PACER_H
 #include "session/pacing/quality_ladder.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The quality ladder (adaptive bitrate): the quality of one session's previews. As bandwidth drops, first the JPEG or H.264
    quality is lowered, then the number of pixels; if that is not enough, the pacer sends fewer frames. Steps down are immediate.
-   Steps up wait for a delay, which doubles if the last step up did not hold. Pure; the caller passes the time. Thread: the
+   Steps up wait for a delay, which doubles if the last step up did not hold. Pure; the caller passes the time. Call only in the
    event loop. */
 #ifndef SESSION_PACING_QUALITY_LADDER_H
 #define SESSION_PACING_QUALITY_LADDER_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Builds the texts that the server sends: JSON messages of PROTOCOL.md, and bodies of /api answers (HTTP.md). Each function
-   returns the message in its name; the caller frees the text with mem_free. Pure. Thread: the event loop. */
+   returns the message in its name; the caller frees the text with mem_free. Pure. Call only in the event loop. */
 #ifndef SESSION_REPLY_REPLY_H
 #define SESSION_REPLY_REPLY_H
 #include "session/session_context.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Helpers of the files that build the server's JSON messages. Private to reply*.c. Thread: the event loop. */
+/* Helpers of the files that build the server's JSON messages. Private to reply*.c. Call only in the event loop. */
 #ifndef SESSION_REPLY_REPLY_IMPL_H
 #define SESSION_REPLY_REPLY_IMPL_H
 #include <jansson.h>

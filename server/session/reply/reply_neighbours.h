@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares each sensor with the estimate from its neighbours, for the API (HTTP.md, /api/v1/neighbours). Thread: the event loop. */
+/* Compares each sensor with the estimate from its neighbours, for the API (HTTP.md, /api/v1/neighbours). Call only in the event loop. */
 #ifndef SESSION_REPLY_REPLY_NEIGHBOURS_H
 #define SESSION_REPLY_REPLY_NEIGHBOURS_H
 #include "field/neighbours.h"

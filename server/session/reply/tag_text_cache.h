@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of the last `tags` message. Many sessions are sent the same change at the same time, so the next session can reuse the
-   text. Thread: the event loop. */
+   text. Call only in the event loop. */
 #ifndef SESSION_REPLY_TAG_TEXT_CACHE_H
 #define SESSION_REPLY_TAG_TEXT_CACHE_H
 #include "session/session.h"

@@ -2,7 +2,7 @@
 /* Synchronises sessions that are tiles of one picture over many displays (`tile` of the plant file). One session leads and the
    others follow it. All request a picture together. It is drawn once, cut into tiles, and shown at one instant once every
    client has it, so no tile is ahead of the others. A tile that delays the rest is dropped for a while, and its client is
-   informed. Pure; the caller passes the time. Thread: the event loop. */
+   informed. Pure; the caller passes the time. Call only in the event loop. */
 #ifndef SESSION_TILES_TILE_SYNC_H
 #define SESSION_TILES_TILE_SYNC_H
 #include "session/session.h"

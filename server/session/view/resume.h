@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resumption: keeps the views of clients whose connection was lost, so that they can return with a secret from `welcome`. Each secret
-   works once. Pure: the caller passes the time. Thread: the event loop. */
+/* Resumption: keeps the views of clients whose connection was lost, so that they can return with a secret from `welcome`. Each
+   secret works once. Pure: the caller passes the time. Call only in the event loop. */
 #ifndef SESSION_VIEW_RESUME_H
 #define SESSION_VIEW_RESUME_H
 #include "message/message.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The view that a session shows: its own or its leader's, with readings of the present or of an instant. Thread: the event loop. */
+/* The view that a session shows: its own or its leader's, with readings of the present or of an instant. Call only in the event loop. */
 #ifndef SESSION_VIEW_SESSION_VIEW_H
 #define SESSION_VIEW_SESSION_VIEW_H
 #include "session/session_state.h"

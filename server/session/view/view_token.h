@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* View tokens: a session's view as a signed text kept by its client, so that any daemon with the key can restore the view. A
-   token is valid for a day, and only for the same user. It contains no secrets and grants no access. Thread: the event loop. */
+   token is valid for a day, and only for the same user. It contains no secrets and grants no access. Call only in the event
+   loop. */
 #ifndef SESSION_VIEW_VIEW_TOKEN_H
 #define SESSION_VIEW_VIEW_TOKEN_H
 #include "session/session_context.h"

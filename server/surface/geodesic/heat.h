@@ -9,8 +9,8 @@
 struct heat;
 
 /* Builds and factors the systems (M + t L) u = source and L d = div(grad u / |grad u|). M: areas, L: Laplacian, t = time_m2, u:
- * heat, d: distance. component[point]: connected component of the point. `in` must outlive the result. Returns NULL when out of
- * memory, logged. */
+ * heat, d: distance. component[point]: connected component of the point. `in` must outlive the result. Logs and returns NULL
+ * when out of memory. */
 struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint32_t *component, double time_m2);
 /* Frees the factored systems and sets *heat to NULL. *heat may be NULL. */
 void heat_destroy(struct heat **heat);
@@ -21,8 +21,9 @@ struct heat_source {
     double weights[3];
 };
 
-/* Computes the distance of each point from each source, up to an unknown constant per source: out[source * point_count + point]. Points
- * without a triangle get 0. Returns false if out of memory, logged. Thread: any number of calls at a time. */
+/* Computes the distance of each point from each source, up to an unknown constant per source: out[source * point_count +
+ * point]. Points without a triangle get 0. Logs and returns false if out of memory. Any number of threads may call at the same
+ * time. */
 bool heat_solve(const struct heat *heat, const struct heat_source *sources, size_t source_count, double *out);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Piecewise linear finite elements on an intrinsic triangulation: the cotangent Laplacian and lumped areas, as matrices for CHOLMOD. With
- * the edges of a Delaunay triangulation, no weight inside a patch (triangles connected by edges with two faces) is negative. Thread: any,
- * each with a cholmod_common of its own. */
+/* Piecewise linear finite elements on an intrinsic triangulation: the cotangent Laplacian and lumped areas, as matrices for
+ * CHOLMOD. With the edges of a Delaunay triangulation, no weight inside a patch (triangles connected by edges with two faces)
+ * is negative. Call from any thread, each with a cholmod_common of its own. */
 #ifndef SURFACE_GEODESIC_LAPLACIAN_H
 #define SURFACE_GEODESIC_LAPLACIAN_H
 #include <cholmod.h>

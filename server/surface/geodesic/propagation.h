@@ -59,8 +59,8 @@ struct propagation_source {
     const double *weights; /* of the triangle's corners */
 };
 /* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST). fronts[i] holds the state
- * for source i. Results do not depend on which sources are computed together. Returns false when out of memory. Thread: any,
- * with its own fronts. */
+ * for source i. Results do not depend on which sources are computed together. Returns false when out of memory. Call from any
+ * thread, with its own fronts. */
 bool propagation_run(const struct propagation *propagation, struct propagation_front *fronts, const struct propagation_source *sources,
                      size_t count);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves linear systems with CHOLMOD factors, a block of right-hand sides at a time; reuses the working memory from block to block. Thread:
-   one at a time per solver; several solvers may use one factor simultaneously. */
+/* Solves linear systems with CHOLMOD factors, a block of right-hand sides at a time; reuses the working memory from block to
+   block. Call from one thread at a time per solver; several solvers may use one factor simultaneously. */
 #ifndef SURFACE_GEODESIC_SOLVER_H
 #define SURFACE_GEODESIC_SOLVER_H
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bounding volume hierarchy over a mesh's triangles: nearest-point, overlap and ray queries. Immutable once built. Thread: any. */
+/* Bounding volume hierarchy over a mesh's triangles: nearest-point, overlap and ray queries. Immutable once built. Call from any thread. */
 #ifndef SURFACE_MESH_BVH_H
 #define SURFACE_MESH_BVH_H
 #include <stdbool.h>

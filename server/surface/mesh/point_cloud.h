@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds nearest neighbours in a point cloud with the FLANN library, which only this module includes. Thread: any. */
+/* Finds nearest neighbours in a point cloud with the FLANN library, which only this module includes. Call from any thread. */
 #ifndef SURFACE_MESH_POINT_CLOUD_H
 #define SURFACE_MESH_POINT_CLOUD_H
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The edges of triangles: the triangles that meet at each edge, and the direction of their sides along it. Thread: one; a const
- * object can be read from any. */
+/* The edges of triangles: the triangles that meet at each edge, and the direction of their sides along it. Call from one thread
+ * only; a const object can be read from any. */
 #ifndef SURFACE_MESH_TRI_EDGES_H
 #define SURFACE_MESH_TRI_EDGES_H
 #include <stdbool.h>

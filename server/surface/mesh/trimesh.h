@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangle mesh with shared points, whose edges may have any number of faces. All steps of building a surface (surface.h), from welding to
-   sampling, work on such a mesh. Thread: one; a const mesh can be read from any. */
+/* Triangle mesh with shared points, whose edges may have any number of faces. All steps of building a surface (surface.h), from
+   welding to sampling, work on such a mesh. Call from one thread only; a const mesh can be read from any. */
 #ifndef SURFACE_MESH_TRIMESH_H
 #define SURFACE_MESH_TRIMESH_H
 #include <stdbool.h>

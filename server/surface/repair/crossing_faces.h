@@ -11,7 +11,8 @@
 
 /* Returns by model triangle: 1 if an edge of one of its triangles in parts->solid (the surface before sampling) may pass
  * through another face, else 0. May flag a face that does not cross, but misses none that does. Faces of one part that only
- * share a corner or an edge do not cross. NULL: no face crosses. The caller frees the array (mem_free). Thread: any. */
+ * share a corner or an edge do not cross. NULL: no face crosses. The caller frees the array (mem_free). Call from any thread.
+ * */
 char *crossing_faces_find(const struct body_parts *parts);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the value that a path (plant/sources/json_path.h) selects in a JSON document. No side effects. Thread: any. */
+/* Finds the value that a path (plant/sources/json_path.h) selects in a JSON document. No side effects. Call from any thread. */
 #ifndef VALUE_MQTT_JSON_SELECT_H
 #define VALUE_MQTT_JSON_SELECT_H
 #include <jansson.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One connection to an MQTT broker through libmosquitto, which no other file includes. Each connection needs a new client. Thread: one.
-   Connecting runs on a thread of its own inside this module, because neither the resolver nor libmosquitto has a timeout for it. */
+/* One connection to an MQTT broker through libmosquitto, which no other file includes. Each connection needs a new client. Call
+   from one thread only. Connecting runs on a thread of its own inside this module, because neither the resolver nor
+   libmosquitto has a timeout for it. */
 #ifndef VALUE_MQTT_CLIENT_H
 #define VALUE_MQTT_CLIENT_H
 #include <stdbool.h>

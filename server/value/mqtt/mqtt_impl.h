@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of an MQTT source, which has one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
+/* State of an MQTT source, which has one thread with one connection. Private to value/mqtt/. Call only in the source's own thread. */
 #ifndef VALUE_MQTT_IMPL_H
 #define VALUE_MQTT_IMPL_H
 #include "base/log/log_pace.h"

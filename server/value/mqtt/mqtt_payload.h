@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads values from MQTT payloads, which are not trusted: plain text, and JSON. No side effects. Thread: any. */
+/* Reads values from MQTT payloads, which are not trusted: plain text, and JSON. No side effects. Call from any thread. */
 #ifndef VALUE_MQTT_PAYLOAD_H
 #define VALUE_MQTT_PAYLOAD_H
 #include <jansson.h>

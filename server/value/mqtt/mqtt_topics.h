@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The topics of an MQTT source, sorted, with the tags of each topic. Immutable once made. Thread: any. */
+/* The topics of an MQTT source, sorted, with the tags of each topic. Immutable once made. Call from any thread. */
 #ifndef VALUE_MQTT_TOPICS_H
 #define VALUE_MQTT_TOPICS_H
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes the messages of Sparkplug B nodes and devices, from birth to death certificate, with their aliases, types, session and
-   sequence numbers. Thread: one. */
+/* Decodes the messages of Sparkplug B nodes and devices, from birth to death certificate, with their aliases, types, session
+   and sequence numbers. Call from one thread only. */
 #ifndef VALUE_SPARKPLUG_H
 #define VALUE_SPARKPLUG_H
 #include "base/log/log.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes Sparkplug B payloads, which are not trusted. No side effects. Thread: any. */
+/* Decodes Sparkplug B payloads, which are not trusted. No side effects. Call from any thread. */
 #ifndef VALUE_SPARKPLUG_PAYLOAD_H
 #define VALUE_SPARKPLUG_PAYLOAD_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the numeric variables of an OPC UA server, as a starting point for a tag list. Thread: one. */
+/* Finds the numeric variables of an OPC UA server, as a starting point for a tag list. Call from one thread only. */
 #ifndef VALUE_OPCUA_BROWSE_H
 #define VALUE_OPCUA_BROWSE_H
 #include "value/opcua/opcua_client.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One session with an OPC UA server through open62541's client, which only this folder includes. Each session needs a new client,
-   because the library neither creates lost subscriptions again nor notices that they are gone. opcua_client.c, opcua_subscription.c and
-   opcua_browse.c contain all requests that can be sent: none writes to a node or calls a method. Thread: one. */
+/* One session with an OPC UA server through open62541's client, which only this folder includes. Each session needs a new
+   client, because the library neither creates lost subscriptions again nor notices that they are gone. opcua_client.c,
+   opcua_subscription.c and opcua_browse.c contain all requests that can be sent: none writes to a node or calls a method. Call
+   from one thread only. */
 #ifndef VALUE_OPCUA_CLIENT_H
 #define VALUE_OPCUA_CLIENT_H
 #include "value/opcua/opcua_nodes.h"

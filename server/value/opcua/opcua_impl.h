@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of the OPC UA client, shared by the files that send requests to the server. Private to value/opcua/. Thread: one. */
+/* State of the OPC UA client, shared by the files that send requests to the server. Private to value/opcua/. Call from one thread only. */
 #ifndef VALUE_OPCUA_IMPL_H
 #define VALUE_OPCUA_IMPL_H
 #include <open62541/client_subscriptions.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of an OPC UA source, with the tags of each node. A node is subscribed only once, even if several elements of its array are
-   tags. Immutable once made. Thread: any. */
+/* The nodes of an OPC UA source, with the tags of each node. A node is subscribed only once, even if several elements of its
+   array are tags. Immutable once made. Call from any thread. */
 #ifndef VALUE_OPCUA_NODES_H
 #define VALUE_OPCUA_NODES_H
 #include <stddef.h>

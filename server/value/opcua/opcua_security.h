@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Certificates and logins of an OPC UA client, and the check of server certificates. Thread: one. */
+/* Certificates and logins of an OPC UA client, and the check of server certificates. Call from one thread only. */
 #ifndef VALUE_OPCUA_SECURITY_H
 #define VALUE_OPCUA_SECURITY_H
 #include <open62541/client.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts an OPC UA DataValue to a value with quality and time; keeps the status code and source timestamp unchanged. No side effects.
-   Thread: any. */
+/* Converts an OPC UA DataValue to a value with quality and time; keeps the status code and source timestamp unchanged. No side
+   effects. Call from any thread. */
 #ifndef VALUE_OPCUA_VALUE_H
 #define VALUE_OPCUA_VALUE_H
 #include <open62541/types.h>
