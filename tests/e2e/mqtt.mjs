@@ -253,7 +253,7 @@ test('what cannot be is said of the plant file', options, async () => {
         return err;
     };
     assert.match(said('payload: json, value: "a..b"', TAGS.number), /plant\.yaml:9:\d+: error: value: 'a\.\.b': descendants/);
-    const refused = [['a[*].v', 'wildcards'], ['a[0:2].v', 'slices'], ['a..v', 'descendants'], ["a[?id!='x'].v", 'expected ==']];
+    const refused = [['a[*].v', 'a wildcard selects'], ['a[0:2].v', 'a slice selects'], ['a..v', 'descendants'], ["a[?id!='x'].v", 'expected ==']];
     for (const [path, why] of refused)
         assert.match(said('payload: json, topic: a', [`TI-1,#${path},,,,,,,,,,,,,`]),
             new RegExp(`tags\\.csv:2:6: error: Address: .*${why}`), path);
@@ -261,7 +261,7 @@ test('what cannot be is said of the plant file', options, async () => {
     assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*requires client_id/);
     assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': wildcards \(\+ and #\) match many topics/);
     assert.match(said('topic: "plant/{name}"', TAGS.number), /expected \{tag\}, \{asset\}, \{group\} or \{address\}/);
-    assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic here, or the key topic in the source/);
+    assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic here, or the key `topic` in the source/);
     assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path after # is not allowed with payload: number/);
     assert.match(said('topic: "a/{tag}", rebirth: yes', TAGS.number), /rebirth: allowed only with payload: sparkplug/);
     assert.match(said('payload: sparkplug', ['TI-1,U100#TI-1,,,,,,,,,,,,,']), /expected GROUP\/NODE#METRIC or GROUP\/NODE\/DEVICE#METRIC/);

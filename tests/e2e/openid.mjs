@@ -324,7 +324,7 @@ test("a provider's own faults, and people who change their mind, slow nobody: th
             assert.equal((await (await beginFrom('127.0.0.7'))('code=x')).statusCode, 403, JSON.stringify(fault));
     }
     provider.fault = null;
-    assert.match(plant.daemon.said, /the provider refused to renew/);
+    assert.match(plant.daemon.said, /the provider refuses the request/);
     for (let i = 0; i < 20; i++)
         assert.equal((await (await beginFrom('127.0.0.7'))(`error=${errors[i % 2]}`)).statusCode, 403);
     assert.equal((await askFrom('127.0.0.7', '/api/v1/me', { Authorization: `Bearer ${token}` })).statusCode, 200);

@@ -322,10 +322,11 @@ test('tables of another version are refused by name, and left alone', options, a
     server.ask(`CREATE SCHEMA plantcast AUTHORIZATION plantcast; SET ROLE plantcast; CREATE TABLE plantcast.version(version int);
         INSERT INTO plantcast.version VALUES (0)`);
     await plant.startDaemon();
-    await plant.daemon.line(/the tables in schema plantcast have version 0, older than version 1 of this program; the tables are not used/);
+    await plant.daemon.line(
+        /the tables in schema plantcast have version 0, which is older than version 1 of this program; the tables are not used/);
     assert.equal(await metric('postgres_up'), 0);
     server.ask('UPDATE plantcast.version SET version = 2');
-    await plant.daemon.line(/the tables in schema plantcast have version 2, newer than version 1 of this program/, 30000);
+    await plant.daemon.line(/the tables in schema plantcast have version 2, which is newer than version 1 of this program/, 30000);
     assert.deepEqual(server.ask("SELECT tablename FROM pg_tables WHERE schemaname = 'plantcast'"), [['version']]);
     server.ask('DROP SCHEMA plantcast CASCADE');
     await settled();

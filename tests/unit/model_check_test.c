@@ -94,7 +94,7 @@ TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_do
         if (memory_bytes > 1000000000)
             assert_int_equal(c->diag.errors, 0);
         else
-            FOUND(c, { "plant.yaml", 0, 0, "4.67 million triangles are too many: 1.00 GB of memory hold 4.22 million. Leave parts" });
+            FOUND(c, { "plant.yaml", 0, 0, "4.67 million triangles are too many: 1.00 GB of memory hold at most 4.22 million. Leave" });
     }
     memory_bytes = 0;
     mem_free(more);

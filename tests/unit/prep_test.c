@@ -449,7 +449,7 @@ CASE(what_is_wrong_is_said_with_its_place)
     assert_string_equal(state_of(report, 0), "unchanged");
     assert_string_equal(state_of(report, 3), "failed");
     prep_case_expect(s, "$PLANT --memory 100", 1);
-    prep_case_says(&s->err, "plant.yaml: error: 0.00 million triangles are too many: 0.10 GB of memory hold 0.00 million.");
+    prep_case_says(&s->err, "plant.yaml: error: 0.00 million triangles are too many: 0.10 GB of memory hold at most 0.00 million.");
     prep_case_expect(s, "$PLANT --output /proc/no/such/place", 1);
     prep_case_says(&s->err, "cannot be created");
 }

@@ -225,7 +225,7 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
     out[0] = 0;
     if (abi < 1)
         used = (size_t)snprintf(out, CONFINE_LACKS_BYTES,
-                                "no Landlock: programs that read uploaded files can read and write all files of the daemon's user");
+                                "no Landlock: programs that read uploaded files can read and write all files of this user");
     else if (abi < ABI_SCOPES)
         used = (size_t)snprintf(out, CONFINE_LACKS_BYTES, "only ABI %d of Landlock: commands under `convert` can ", abi);
     for (size_t i = 0, said = 0; i < sizeof(parts) / sizeof(parts[0]) && abi >= 1; i++)

@@ -134,7 +134,7 @@ test('on the command line: the same places, with a trial before and undo', optio
     assert.equal(accept('--undo', 'tags.csv.3').code, 0);
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
     assert.match(accept('--asset', 'E-101', '--tags', 'ta-1*', '--dry-run').out, /^\d+ accepted/m);
-    for (const [wrong, why, code] of [[['--asset', 'E-9'], /no asset 'E-9'/, 2], [['--within', 'far'], /--within: 0 to 1e\+06 expected/, 2],
+    for (const [wrong, why, code] of [[['--asset', 'E-9'], /no asset 'E-9'/, 2], [['--within', 'far'], /--within: expected 0 to 1e\+06/, 2],
         [['--undo', 'tags.csv.9'], /tags\.csv/, 1]]) {
         const refused = accept(...wrong);
         assert.equal(refused.code, code);

@@ -43,7 +43,7 @@ function patched(path, at, hex) {
 }
 
 const TRAK = 'moov/trak', STBL = `${TRAK}/mdia/minf/stbl`, AVC1 = `${STBL}/stsd/avc1`;
-const else_ = (type) => `box ${type} differs`, none = (type) => `unexpected box ${type}`;
+const else_ = (type) => `box ${type} has contents that`, none = (type) => `unexpected box ${type}`;
 
 // Returns [what, bytes, why] for each alteration. Sample offsets are not adjusted, because verification refuses the boxes
 // first.
