@@ -74,7 +74,7 @@ notify:
             assert.equal(first.subject, '[Two boxes] P3 TI-1 high, left');
             assert.match(first.body, /^P3 {2}[\d-]+ [\d:]+ {2}TI-1 high, left: raised at 55 °C \(limit 50 °C\); E-101, Tank farm\r$/m);
             assert.match(first.body, /https:\/\/p\.example\//);
-            await plant.daemon.line(/warn +notify: ops: the mail server refuses <gone@p\.example>: 550 5\.1\.1 no such mailbox/);
+            await plant.daemon.line(/warn +notify: ops: the mail server refused <gone@p\.example>: 550 5\.1\.1 no such mailbox/);
             await until('it is counted', async () => await plant.metric('plantcast_notify_sent_total{recipient="ops"}') === 1);
             await plant.daemon.stop('SIGKILL');
             await plant.startDaemon();
