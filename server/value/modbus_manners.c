@@ -173,7 +173,7 @@ static void log_one_per_connection(struct modbus_source *modbus, int status)
     int64_t wait_ns = modbus->manners.first_wait_ns;
     char found[200];
     snprintf(found, sizeof(found),
-             "takes %lld ms to answer, longer than `timeout_ms: %d`: reading one block per connection; set `timeout_ms: %lld`",
+             "answers only after %lld ms, later than `timeout_ms: %d`: reading one block per connection; set `timeout_ms: %lld`",
              (long long)(wait_ns / 2 / NS_PER_MS), modbus->base.config->timeout_ms, enough_ms(wait_ns / 2));
     log_found(modbus, status == -ETIMEDOUT && wait_ns > 0
                           ? found

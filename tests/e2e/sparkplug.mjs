@@ -18,7 +18,7 @@ const ROWS = ['TI-1,U100/edge#Inlet/Temperature,,°C,temperature,E-101,0.5,0,0,,
     'PI-1,U100/edge/skid#Raw,,bar,pressure,P-101A,3,0,0.5,,Linear,0,27648,0,10', 'XS-1,U100/edge/skid#Running,bool,,,,,,,,,,,,'];
 const good = { quality_name: 'Good' }, dead = { quality_name: 'Bad_CommunicationError', value: null };
 let broker, plant, nodes = [];
-const until = (...args) => plant.until(...args), metric = (name) => plant.metric(name);
+const until = (...args) => plant.until(...args), metric = (name) => plant.metric(`${name}{source="broker"}`);
 
 // Starts a node with one device; births: how often births were requested or sent.
 async function startNode(more = {}) {
