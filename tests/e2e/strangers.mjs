@@ -260,7 +260,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     await until('the gauge', async () => await metric('plantcast_logins_slowed_addresses') === 1);
     assert.equal(await metric('plantcast_logins_held_total'), 2);
     await plant.daemon.line(/too many wrong tokens; only one attempt/);
-    assert.equal(lines(/warn +login from 127\.0\.0\.1: limited/g).length, 1);
+    assert.equal(lines(/warn +login from 127\.0\.0\.1: too many wrong tokens/g).length, 1);
     for (const token of [wrong, ...Object.values(tokens)])
         assert.ok(!plant.daemon.said.includes(token.slice(3)), 'no token is in the log');
 });
