@@ -253,7 +253,8 @@ test('what cannot be is said of the plant file', options, async () => {
         return err;
     };
     assert.match(said('payload: json, value: "a..b"', TAGS.number), /plant\.yaml:9:\d+: error: value: 'a\.\.b': descendants/);
-    const refused = [['a[*].v', 'a wildcard selects'], ['a[0:2].v', 'a slice selects'], ['a..v', 'descendants'], ["a[?id!='x'].v", 'expected ==']];
+    const refused = [['a[*].v', 'a wildcard selects'], ['a[0:2].v', 'a slice selects'], ['a..v', 'descendants'],
+        ["a[?id!='x'].v", 'expected ==']];
     for (const [path, why] of refused)
         assert.match(said('payload: json, topic: a', [`TI-1,#${path},,,,,,,,,,,,,`]),
             new RegExp(`tags\\.csv:2:6: error: Address: .*${why}`), path);
