@@ -198,6 +198,13 @@ for (const [how, end] of sweep(ENDINGS, [ENDINGS[1], ENDINGS[2]]))
         const own = await simulatedPlant(), port = await freePort(), stamp = statSync(join(OUT, 'codecs')).mtimeMs;
         t.after(() => own.destroy());
         const make = spawn('make', ['run', `build=${BIN}`, `PLANT=${own.file}`, `PORT=${port}`], { detached: true });
+        t.after(() => {
+            try {
+                process.kill(-make.pid, 'SIGKILL'); // a run that did not end must not keep this program waiting
+            } catch {
+                // it has ended
+            }
+        });
         let said = '';
         await new Promise((ready, failed) => {
             make.stdout.on('data', (text) => /^plantcast: ready .*\n$/m.test(said += text) && ready());
