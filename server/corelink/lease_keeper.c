@@ -426,7 +426,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
         else if (keeper->link && !leads)
             bid(keeper);
     }
-    promise_itself(keeper); /* extends the lease once more in this turn, because connecting to the database may have taken a second */
+    promise_itself(keeper); /* renews again in this turn, because connecting to the database may have taken a second */
     tell(keeper);
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;

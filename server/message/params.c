@@ -18,16 +18,28 @@ static bool refuse_name(const char *field, const json_t *value, enum refusal_cod
     return false;
 }
 
-/* Reads the name of a thing of the plant; `bit` marks the field as given. */
-static bool parse_found(const struct plant *plant, const json_t *o, const char *field, int (*find)(const struct plant *, const char *),
-                        enum refusal_code code, unsigned bit, int *index, struct params_change *out, struct message_error *error)
+/* a field whose value names an item of the plant file */
+struct name_field {
+    const char *field;
+    int (*find)(const struct plant *plant, const char *name);
+    enum refusal_code unknown; /* refusal of a name that find() does not know */
+    unsigned bit;              /* marks the field as given */
+};
+
+static const struct name_field GROUP = { "group", plant_find_group, REFUSAL_NO_GROUP, GIVEN_GROUP };
+static const struct name_field COLORMAP = { "colormap", colormap_find, REFUSAL_UNKNOWN, GIVEN_COLORMAP };
+static const struct name_field ENVIRONMENT = { "environment", plant_find_environment, REFUSAL_UNKNOWN, GIVEN_ENVIRONMENT };
+
+/* Reads a field that names an item of the plant file. *index receives the item's index. */
+static bool parse_name(const struct plant *plant, const json_t *o, const struct name_field *name, int *index, struct params_change *out,
+                       struct message_error *error)
 {
-    const json_t *value = json_object_get(o, field);
+    const json_t *value = json_object_get(o, name->field);
     if (!value)
         return true;
-    if (!json_is_string(value) || (*index = find(plant, json_string_value(value))) < 0)
-        return refuse_name(field, value, code, error);
-    out->given |= bit;
+    if (!json_is_string(value) || (*index = name->find(plant, json_string_value(value))) < 0)
+        return refuse_name(name->field, value, name->unknown, error);
+    out->given |= name->bit;
     return true;
 }
 
@@ -159,13 +171,11 @@ static bool parse_light(const json_t *o, struct params_change *out, struct messa
 bool params_parse(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     *out = (struct params_change){ .selected_asset = -1 };
-    return parse_found(plant, o, "group", plant_find_group, REFUSAL_NO_GROUP, GIVEN_GROUP, &out->field.group, out, error) &&
-           parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) && parse_range(o, out, error) &&
-           parse_found(plant, o, "colormap", colormap_find, REFUSAL_UNKNOWN, GIVEN_COLORMAP, &out->colormap, out, error) &&
+    return parse_name(plant, o, &GROUP, &out->field.group, out, error) && parse_names(o, out, error) && parse_numbers(o, out, error) &&
+           parse_reach(o, out, error) && parse_range(o, out, error) && parse_name(plant, o, &COLORMAP, &out->colormap, out, error) &&
            parse_selected(plant, o, out, error) && parse_light(o, out, error) &&
-           parse_found(plant, o, "environment", plant_find_environment, REFUSAL_UNKNOWN, GIVEN_ENVIRONMENT, &out->environment, out,
-                       error) &&
-           params_parse_show(plant, o, out, error) && params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
+           parse_name(plant, o, &ENVIRONMENT, &out->environment, out, error) && params_parse_show(plant, o, out, error) &&
+           params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
 /* Changes the group (quantity) that a view shows, and sets that group's default parameters. A view of values relative to alarm

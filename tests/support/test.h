@@ -79,7 +79,7 @@ int test_end(CMFixtureFunction tear_down, void **state);
 /* Runs the tests of this program and prints TAP. Returns the number of failures. name: of the group, or NULL for the program's
    name. A program without main() gets one that calls this with NULL. */
 int tests_run(const char *name);
-/* What the main() of such a program calls instead of tests_run() if an object of the program defines it. */
+/* Optional: if a program without main() defines this function, its main() calls it instead of tests_run(). */
 int tests_main(void);
 
 #endif

@@ -65,7 +65,7 @@ static void check_asset(const json_t *asset, const char *plant)
     check_levels(asset);
     if (surface)
         check_surface(asset);
-    /* these plants' sensors were placed on vertices, and a hidden vertex lies off the surface in use */
+    /* the sensors of these plants were placed on vertices, and a hidden vertex does not lie on the asset's surface */
     for (size_t s = 0; s < json_array_size(sensors); s++)
         assert_true(of(json_array_get(sensors, s), "surface_distance_m") < off_m);
     print_message("# %-26s %-9s %6.0f triangles, split %6.0f; ", plant, json_string_value(json_object_get(asset, "id")),

@@ -651,7 +651,7 @@ CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
 }
 
 /* The render service answers that the client already has the refined frame, but that frame was lost: after a pause the session
-   requests it once more, in full. */
+   requests the whole frame again. */
 CASE(a_refined_picture_that_is_lost_is_asked_for_again)
 {
     struct frame_request refined;

@@ -46,7 +46,7 @@ export class Session {
         this.token = null;       // access token; null: none
         // secret that lets the server restore this session after a reconnect
         this.resume = null;
-        this.anew = false; // true: after a reconnect, restore only this session's id, by which others follow it, not its view
+        this.anew = false; // true: a reconnect restores only this session's id, which its followers use, but not its view
         // view parameters that the server last confirmed
         this.confirmed = null;
         this.size = { width: 640, height: 360 };

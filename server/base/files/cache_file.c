@@ -202,8 +202,10 @@ int cache_file_write_compressed(const char *path, const char *magic, uint64_t ke
     if (status == 0)
         status = compress_parts(parts, part_count, put_compressed, &writing);
     writing.head.checksum = XXH3_64bits_digest(&writing.state);
-    if (status == 0 && pwrite(writing.file.fd, &writing.head, sizeof(writing.head), 0) != sizeof(writing.head))
-        status = -EIO;
+    if (status == 0) {
+        ssize_t written = pwrite(writing.file.fd, &writing.head, sizeof(writing.head), 0);
+        status = written == sizeof(writing.head) ? 0 : written < 0 ? -errno : -EIO;
+    }
     if (status == 0)
         return atomic_file_commit(&writing.file, false);
     atomic_file_abandon(&writing.file);

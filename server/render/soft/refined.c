@@ -347,7 +347,7 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
     return refined->step == REFINED_DONE;
 }
 
-/* --- once more --------------------------------------------------------------------------------------------------------------- */
+/* --- reuse ------------------------------------------------------------------------------------------------------------------- */
 
 bool refined_keep(struct refined *refined, const struct frame_context *context, const struct isoline_points *points, struct frame *frame)
 {

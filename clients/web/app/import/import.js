@@ -230,8 +230,8 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    // Shows the settings with which the server read the present models. Choices that the user has not applied yet stay until
-    // these settings change.
+    // Shows the settings with which the server read the current models. Choices that the user has not applied yet stay until the
+    // server reads the models with other settings.
     takeUnits({ units, up, encoding, mesh_units }) {
         if (this.known?.encoding !== encoding) {
             if (encoding && ![...this.encoding.options].some(({ value }) => value === encoding))

@@ -271,11 +271,14 @@ export class Plot {
     // Writes the names of the alarm limits where they do not hide a curve.
     nameLimits(chart) {
         const { ctx, bbox, data, valToPos } = chart, px = toPixels(1), height = (textSize(11) + LABEL - 11) * px;
+        const limits = this.limitsOf(chart);
+        if (limits.length === 0)
+            return;
         const x = (s) => valToPos(s, 'x', true), y = (tag) => (value) => valToPos(value, this.view.unitOf(tag) || '–', true);
         const extents = this.rows.map(({ tag }, i) => extentOf(bbox, data[0], data[i + 1] ?? [], this.bands[i] ?? [], x, y(tag)));
         ctx.save();
         Object.assign(ctx, { font: `${textSize(11) * px}px ${FONT}`, textAlign: 'left', textBaseline: 'middle' });
-        const widthOf = (text) => ctx.measureText(text).width + 6 * px, limits = this.limitsOf(chart);
+        const widthOf = (text) => ctx.measureText(text).width + 6 * px;
         for (const { text, left, right, top, colour } of placeNames({ limits, bbox, extents, widthOf, height, gap: 5 * px })) {
             ctx.fillStyle = this.view.look.ground;
             ctx.fillRect(left, top, right - left, height);
