@@ -582,7 +582,7 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
         for (size_t i = 0; i < count && i < SHOWN; i++)
             printf("%s:%d: warning: model %s: left out: %s\n", plant->files.path, asset->line, asset->model, entry->left_out[i]);
         if (count > SHOWN)
-            printf("%s:%d: warning: model %s: %zu more textures or glTF extensions are left out and not listed\n", plant->files.path,
+            printf("%s:%d: warning: model %s: %zu more textures or glTF extensions are not drawn (not listed here)\n", plant->files.path,
                    asset->line, asset->model, count - SHOWN);
     }
     manifest_finish(&manifest);

@@ -29,7 +29,7 @@ static const char usage_text[] =
     "  --port N         TCP port of the first simulated device; further devices get the next ports\n"
     "                   (default: the port of the first source in the plant file)\n"
     "  --bind ADDRESS   IPv4 address of this machine to listen on (default: 127.0.0.1)\n"
-    "  --values FILE    CSV file of recorded series for tags to replay; may be repeated. FILE has one of three forms:\n"
+    "  --values FILE    CSV file of recorded tag values to replay; may be repeated. FILE has one of three forms:\n"
     "                   wide: a header line, a time column and one column for each series. The time column's name ends\n"
     "                   in _ms, _s, _min or _h, or its times look like 2026-11-20T10:00:00Z (without a zone:\n"
     "                   in the time zone of the plant).\n"

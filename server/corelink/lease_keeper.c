@@ -221,8 +221,9 @@ static void look_for_namesake(struct lease_keeper *keeper, const struct lease_ro
         keeper->namesake_beat = same ? row->beat : 0;
     } else if (keeper->namesake_beat > 0 && row->beat != keeper->namesake_beat) {
         log_err(keeper->params.log,
-                "lease: another core with the name %.*s leads: this core stays standby; give each core its own name with --node", own,
-                keeper->node);
+                "lease: the leading core has the same name as this core (%.*s), so this core stays on standby; give each core its own "
+                "name with --node",
+                own, keeper->node);
         keeper->namesake_beat = -1;
     }
 }

@@ -283,7 +283,7 @@ static bool parse_object(const struct plant *plant, const json_t *o, struct mess
         return false;
     }
     if (!type) {
-        message_fail(error, "no_type", "the message has no 'type', or its 'type' is not a text");
+        message_fail(error, "no_type", "the message has no 'type', or its 'type' is not a string");
         return false;
     }
     for (size_t i = 0; i < sizeof(types) / sizeof(types[0]); i++) {

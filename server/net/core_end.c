@@ -49,8 +49,8 @@ static void take_lists(struct server_context *server, const json_t *lists)
         !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()) ||
         (json_object_get(lists, "links") && !short_links_mirror(plant->short_links, json_object_get(lists, "links"))))
         log_err(server->params.log,
-                "core: the core sent an invalid list of views, notes, walls, devices or short links; it and the lists that follow in the "
-                "message are ignored");
+                "core: the core sent an invalid list of views, notes, walls, devices or short links; this daemon ignores the rest of the "
+                "message");
     server->core.listed = true;
     streams_on_alarms(server);
 }

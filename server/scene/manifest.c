@@ -69,8 +69,7 @@ bool manifest_read(struct log *log, const char *folder, struct manifest *manifes
     json_t *root = load(log, manifest->path);
     bool good = root;
     if (good && json_integer_value(json_object_get(root, "format")) != MANIFEST_FORMAT) {
-        log_err(log, "%s: the prepared files have another format than the format %d that this program needs", manifest->path,
-                MANIFEST_FORMAT);
+        log_err(log, "%s: the prepared files are not in format %d, which this program requires", manifest->path, MANIFEST_FORMAT);
         good = false;
     }
     const json_t *assets = json_object_get(root, "assets");

@@ -551,7 +551,7 @@ static void rebuild(struct render_thread *thread)
     /* bakes all lights completely, so that frames look the same as before the GL context was lost */
     renderer_bake_idle(thread->renderer, INT64_MAX);
     set_lost(service, false);
-    log_info(service->params.log, "gl: drawing continues with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
+    log_info(service->params.log, "gl: drawing resumed with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
 /* Continues the suspended long job (a frame drawn in steps) if no other one runs. Call it at the end of each turn, because

@@ -330,7 +330,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
 static bool in_order(const struct session *session, const struct message *message, struct message_error *error)
 {
     if (message->type == MESSAGE_HELLO && session->hello) {
-        message_fail(error, "hello_again", "hello was sent before; use resize, camera and params");
+        message_fail(error, "hello_again", "hello was already sent; send resize, camera or params to change settings");
         return false;
     }
     if (message->type != MESSAGE_HELLO && message->type != MESSAGE_PING && !session->hello) {

@@ -110,7 +110,8 @@ test('a leader reloads while the database does not answer and its standby keeps 
 test('others of the names of both are told, and take nobody\'s place while the leader has no way to the database', options, async (t) => {
     const core = await two.leader(), other = two.other(core);
     await two.followed(core);
-    const more = [['three', '127.0.0.4', core, /another core with the name/], ['four', '127.0.0.5', other, /is already the standby/]];
+    const more = [['three', '127.0.0.4', core, /the leading core has the same name as this core/],
+        ['four', '127.0.0.5', other, /is already the standby/]];
     const started = await Promise.all(more.map(async ([name, host, as, says]) => {
         const one = await two.makeCore(name, host);
         one.toOther = await two.network.link(core.port);

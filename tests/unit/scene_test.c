@@ -236,12 +236,12 @@ CASE(broken_manifests_are_refused)
 {
     static const char *const cases[][2] = {
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B is not in" },
-        { "{\"format\": 1, \"assets\": []}", "another format than the format 2 that this program needs" },
+        { "{\"format\": 1, \"assets\": []}", "not in format 2, which this program requires" },
         { "{\"format\": 2}", "expected a list of assets" },
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected the members id, file and recipe" },
         { "{\"format\": 2, \"assets\": [{\"file\": \"1.asset\"}]}", "expected the members id, file and recipe" },
         { "{\"format\": 2,\n \"assets\": [}", "manifest.json:2:" },
-        { "[]", "another format than the format 2 that this program needs" },
+        { "[]", "not in format 2, which this program requires" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_manifest(f, cases[i][0]);

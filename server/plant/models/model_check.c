@@ -196,7 +196,8 @@ static bool check_asset(struct plant_models_check *check, size_t index, double s
             check_node(check, asset, &plant->tags[i]);
     if (!(box.low[0] <= box.high[0])) {
         if (!check->header.partial)
-            diag_error(check->diag, plant->files.path, asset->line, 0, "asset %s: the selected nodes have no triangles", asset->id);
+            diag_error(check->diag, plant->files.path, asset->line, 0, "asset %s: the model nodes selected by `nodes` have no triangles",
+                       asset->id);
         return false;
     }
     check_places(check, index, &box);
