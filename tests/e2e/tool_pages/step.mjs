@@ -13,7 +13,9 @@ import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const LEAST_VIEWS = 10, LEAST_RUN_PX = 12, FRAME_MS = 1000 / 60;
-const MARK_PX = 1.5, PICTURE_PX = 5; // encoded edges bleed a little, more so while the picture moves
+// Encoded edges bleed a little, more so while the picture moves. On a loaded machine, pictures have fewer, larger pixels;
+// PICTURE_PX allows for up to two page pixels per picture pixel, and grows with larger ones.
+const MARK_PX = 1.5, PICTURE_PX = 5;
 // JPEG codes colour in blocks of 16 pixels, which in a few rows extend some pixels beyond the box. A mesh that stretches over a
 // step in depth would colour whole areas beyond the box.
 const WARPED_PX = 8, WARPED_SHARE = 0.002; // WARPED_SHARE: maximum share of coloured pixels that lie farther than WARPED_PX beyond the box
@@ -55,6 +57,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
     // Only runs of coloured pixels count: single ones are remains of earlier frames in the codec.
     const coloured = () => {
         const { width, height } = picture, { data } = picture.getContext('2d').getImageData(0, 0, width, height), ends = [];
+        const leastRun = (LEAST_RUN_PX * width) / viewport.width;
         for (let y = 0, run = 0; y < height; y++, run = 0)
             for (let x = 0, i = 4 * y * width; x <= width; x++, i += 4) {
                 const [r, g, b] = x < width ? [data[i], data[i + 1], data[i + 2]] : [0, 0, 0];
@@ -62,7 +65,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
                     run++;
                     continue;
                 }
-                if (run >= LEAST_RUN_PX)
+                if (run >= leastRun)
                     ends.push([x - run, y], [x, y + 1]);
                 run = 0;
             }
@@ -79,7 +82,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
             return;
         const shown = seenFrom(session.picture.camera), asked = seenFrom(session.camera);
         globalThis.frames.push({
-            eye: session.picture.camera.eye, coloured: coloured(),
+            eye: session.picture.camera.eye, coloured: coloured(), pixel: viewport.width / picture.width,
             box: bounds(corners.map((corner) => inPage(shown, corner)).map(([x, y]) => // the part of the box inside of the picture
                 [Math.max(0, Math.min(viewport.width, x)), Math.max(0, Math.min(viewport.height, y))])),
             markers: overlay.markers.filter(({ occluded }) => !occluded).map((marker) => {
@@ -119,8 +122,8 @@ async function judge(page, t) {
     const frames = await page.evaluate(() => globalThis.frames), seen = frames.flatMap(({ markers }) => markers);
     const views = new Set(frames.map(({ eye }) => eye.map((m) => m.toFixed(4)).join())).size;
     const [behind, worst] = ['behind', 'off'].map((name) => Math.max(...seen.map((marker) => marker[name])));
-    const edges = frames.filter(({ coloured }) => coloured).map(({ box, coloured }) =>
-        Math.max(...box.map((v, i) => Math.abs(v - coloured[i])))).sort((a, b) => a - b), edge = edges[edges.length >> 1];
+    const edges = frames.filter(({ coloured }) => coloured).map(({ box, coloured, pixel }) =>
+        Math.max(...box.map((v, i) => Math.abs(v - coloured[i]))) / Math.max(1, pixel / 2)).sort((a, b) => a - b), edge = edges[edges.length >> 1];
     t.diagnostic(`${frames.length} frames of ${views} cameras, up to ${behind.toFixed(0)} px behind the hand; ` +
         `markers ${worst.toFixed(2)} px, edges of the picture ${edge.toFixed(1)} px from where the frame's camera has them`);
     assert.ok(views >= LEAST_VIEWS, `${views} cameras`);
