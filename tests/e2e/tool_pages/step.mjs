@@ -123,7 +123,8 @@ async function judge(page, t) {
     const views = new Set(frames.map(({ eye }) => eye.map((m) => m.toFixed(4)).join())).size;
     const [behind, worst] = ['behind', 'off'].map((name) => Math.max(...seen.map((marker) => marker[name])));
     const edges = frames.filter(({ coloured }) => coloured).map(({ box, coloured, pixel }) =>
-        Math.max(...box.map((v, i) => Math.abs(v - coloured[i]))) / Math.max(1, pixel / 2)).sort((a, b) => a - b), edge = edges[edges.length >> 1];
+        Math.max(...box.map((v, i) => Math.abs(v - coloured[i]))) / Math.max(1, pixel / 2)).sort((a, b) => a - b);
+    const edge = edges[edges.length >> 1];
     t.diagnostic(`${frames.length} frames of ${views} cameras, up to ${behind.toFixed(0)} px behind the hand; ` +
         `markers ${worst.toFixed(2)} px, edges of the picture ${edge.toFixed(1)} px from where the frame's camera has them`);
     assert.ok(views >= LEAST_VIEWS, `${views} cameras`);
