@@ -60,7 +60,8 @@ char *pairings_text(const struct pairings *pairings);
 
 /* --- for a renderer, whose core approves devices --------------------------------------------------------------------------------- */
 
-/* Returns a number that increases with each change of paired or waiting devices, so that renderers know of new lists. */
+/* Returns a number that increases with each change of paired or waiting devices. The core compares it to decide whether to send
+   renderers the lists again. */
 uint64_t pairings_number(const struct pairings *pairings);
 /* Returns the paired and the waiting devices as JSON for renderers and a standby: { devices, waiting }, with the hashes of
    their secrets. The caller owns the JSON. */

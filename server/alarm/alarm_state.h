@@ -29,7 +29,8 @@ struct alarm_state {     /* state of one alarm; all zero: normal */
     bool active;         /* true: the alarm's cause is present */
     bool unacknowledged; /* true: an operator must still acknowledge the alarm */
     bool latched;
-    uint8_t aside; /* bit mask of ALARM_ASIDE_...: reasons why operators are not shown the alarm as active; 0: they are */
+    /* bit mask of ALARM_ASIDE_...: reasons why operators are not shown the alarm as active; 0: no reason, so they are shown it */
+    uint8_t aside;
 };
 
 struct alarm_rule {

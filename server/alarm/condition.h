@@ -22,7 +22,8 @@ struct condition_delays {
 
 enum condition_side { CONDITION_CLEAR, CONDITION_BETWEEN /* within the deadband of the limit */, CONDITION_BEYOND };
 
-/* Returns the side of the limit on which a value lies. */
+/* Compares a value with the limit of an alarm. Returns whether the value is beyond the limit, safely within the limit, or in between
+   (within the deadband of the limit). */
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value);
 /* Ends a delay that is over at now_ns. Returns true if one ended, so that the condition changed; *at_ns receives the time when
    it was over. */

@@ -20,7 +20,7 @@ struct alarm_device {
 struct devices {
     struct alarm_device *list;
     size_t count, capacity;
-    int *of_tag;       /* [tag]: index of the tag's device in `list`; -1: none */
+    int *of_tag;       /* [tag]: index of the tag's device in `list` (all devices); -1: the tag belongs to no device */
     uint8_t *statuses; /* [tag]: enum device_status that the tag gives its device */
 };
 

@@ -10,7 +10,7 @@ enum { JOURNAL_VERSION = 2, JOURNAL_UNIT_BYTES = 64 };
 
 struct journal_entry {
     struct alarm alarm; /* the alarm, with its state at utc_ns */
-    bool changed;       /* true: the entry is a change of the alarm; false: only its current state */
+    bool changed;       /* true: the alarm changed, so a journal row is written too; false: only the alarm's current state is written */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
@@ -21,16 +21,16 @@ struct journal_entry {
 
 struct journal_row {
     int64_t id, t_us;
-    const char *tag, *kind, *event, *before, *after, *who, *reason; /* texts of the row, valid until the next row is read */
+    const char *tag, *kind, *event, *before, *after, *who, *reason; /* texts of the journal row, valid until the next row is read */
     int priority;
     double limit, value; /* the alarm's limit and the value of the change; NaN: none */
     const char *unit;    /* unit of limit and value when the row was written; NULL: unknown, because version 1 wrote the row */
 };
 struct journal_query {
     int64_t from_us, to_us;
-    int64_t before_id; /* returns only rows with a smaller id, that is, the preceding page; INT64_MAX: all rows */
-    const char *tag;   /* name of the tag whose rows to return; NULL: all tags */
-    int limit;         /* maximum number of rows to return, newest first */
+    int64_t before_id; /* returns only journal rows with a smaller id, that is, the preceding page of the list; INT64_MAX: all rows */
+    const char *tag;   /* name of the tag whose journal rows to return; NULL: all tags */
+    int limit;         /* maximum number of journal rows to return, newest first */
 };
 
 struct journal_file;
@@ -42,7 +42,7 @@ struct journal_file *journal_file_read(struct log *log, const char *folder, int 
 void journal_file_close(struct journal_file **file); /* closes the file and sets *file to NULL; accepts a pointer to NULL */
 /* Writes all entries in one transaction, except changes already in the file. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
-int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows of changes older than before_us */
+int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes journal rows (changes of alarms) older than before_us */
 /* Calls each() for the stored state of every alarm that was not normal at the last write to the journal. unit: unit of the
    alarm's value; NULL: unknown. */
 int journal_file_states(struct journal_file *file,

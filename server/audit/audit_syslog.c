@@ -21,11 +21,12 @@ static const int64_t RETRY_NS = 2 * NS_PER_S, LAST_NS = 3 * NS_PER_S;
 /* A line counts as delivered if the connection is still open this long after sending it. Syslog has no acknowledgements, and
    with TLS 1.3 a server may refuse our certificate after our side has completed the handshake. */
 static const int64_t PROOF_NS = 5 * NS_PER_S;
-static const int64_t CHECK_NS = NS_PER_S / 4; /* how often the connection is checked while sent lines are not yet delivered */
+/* how often the connection to the syslog server is checked while lines sent over it are not yet delivered */
+static const int64_t CHECK_NS = NS_PER_S / 4;
 
 struct framed {
     struct text text;
-    int64_t sent_ns; /* monotonic time when the line was sent */
+    int64_t sent_ns; /* monotonic time when the audit line was sent to the syslog server */
     struct framed *next;
 };
 
@@ -38,19 +39,19 @@ struct audit_syslog {
     char *url, host[256];
     pthread_t thread;
     counter *good, *lost;
-    /* --- below: used only by the thread */
-    CURL *connection;          /* libcurl handle of the connection; NULL: not connected */
-    char why[CURL_ERROR_SIZE]; /* libcurl's last error on the connection */
+    /* --- below: members that only the syslog thread uses */
+    CURL *connection;          /* libcurl handle of the connection to the syslog server; NULL: not connected */
+    char why[CURL_ERROR_SIZE]; /* libcurl's text for the last error on the connection to the syslog server */
     struct lines sent;         /* lines sent over the connection but not yet delivered; requeued if the connection breaks */
-    bool proven;               /* true: a line was delivered over this connection */
-    int refusals;              /* number of consecutive connections that the server closed before a line was delivered */
-    bool failing;              /* true: the server is unreachable or accepts no lines */
+    bool proven;               /* true: at least one audit line was delivered over the present connection */
+    int refusals;              /* number of consecutive connections that the syslog server closed before an audit line was delivered */
+    bool failing;              /* true: the syslog server is unreachable or accepts no lines */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
-    struct lines queue; /* lines to be sent; only the thread removes lines */
-    size_t waiting;     /* number of lines in `queue` and `sent` */
-    int64_t stop_ns;    /* monotonic deadline by which the thread must end; 0: none */
+    struct lines queue; /* audit lines to be sent to the syslog server; only the syslog thread removes lines */
+    size_t waiting;     /* number of audit lines in `queue` and `sent` together */
+    int64_t stop_ns;    /* monotonic deadline by which the syslog thread must end; 0: it need not end */
 };
 
 /* --- lists of lines ------------------------------------------------------------------------------------------------------- */
@@ -71,7 +72,7 @@ static struct framed *lines_take(struct lines *lines)
     return first;
 }
 
-/* Moves all lines of `from` to the front of `lines`. */
+/* Moves all audit lines of the list `from` to the front of the list `lines`. */
 static void lines_put_back(struct lines *lines, struct lines *from)
 {
     if (!from->first)
@@ -114,7 +115,8 @@ static void disconnect(struct audit_syslog *syslog)
     pthread_mutex_unlock(&syslog->lock);
 }
 
-/* Logs the first failure after a success. what: for example "cannot be reached"; why: libcurl's error. */
+/* Logs the first failure to reach the syslog server after a success. what: for example "cannot be reached"; why: libcurl's
+   error. */
 static void report_failure(struct audit_syslog *syslog, const char *what, const char *why)
 {
     if (!syslog->failing)
@@ -179,7 +181,7 @@ static bool connect_now(struct audit_syslog *syslog)
     return false;
 }
 
-/* Returns why the connection ended; NULL: it is open. */
+/* Returns why the connection to the syslog server ended; NULL: it is open. */
 static const char *why_closed(struct audit_syslog *syslog)
 {
     char byte;
@@ -241,7 +243,7 @@ static bool send_all(struct audit_syslog *syslog, const struct text *text)
     return true;
 }
 
-/* Sends the first line of the queue, if any. */
+/* Sends the first audit line of the queue, if any, to the syslog server. */
 static bool send_next(struct audit_syslog *syslog)
 {
     pthread_mutex_lock(&syslog->lock);
@@ -251,7 +253,7 @@ static bool send_next(struct audit_syslog *syslog)
         return true;
     if (!syslog->connection && !connect_now(syslog))
         return false;
-    /* the line stays valid without the lock, because only this thread dequeues lines */
+    /* the audit line stays valid without the lock, because only this thread removes lines from the queue */
     if (!send_all(syslog, &first->text)) {
         disconnect(syslog);
         return false;
@@ -307,7 +309,7 @@ void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good
         struct framed *framed = mem_new(sizeof(*framed));
         const struct syslog_message message = { syslog->host, (int)getpid(), event, good, utc_us, line, count };
         audit_syslog_frame(&framed->text, &message);
-        /* while older lines wait, the thread needs no signal: it is sending, or waiting to reconnect */
+        /* the syslog thread needs no signal while older lines wait: it is sending, or waiting to reconnect */
         if (!syslog->queue.first)
             pthread_cond_signal(&syslog->wake);
         lines_add(&syslog->queue, framed);

@@ -26,8 +26,8 @@ static void set_fault(struct audit_report *report, char *text)
     report->good = false;
 }
 
-/* Reports a fault if the audit line read last has the sequence number of `with` but a different hash. whose: where `with` comes
-   from, for the message. */
+/* Reports a fault if the audit line read last has the sequence number of `with` but a different hash. whose: source of `with`
+   (such as PATH.head), for the message. */
 static void compare(struct audit_walk *walk, const struct audit_chain *with, const char *path, const char *whose)
 {
     const struct audit_chain *end = &walk->report->end;

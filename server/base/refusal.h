@@ -28,7 +28,7 @@ const char *refusal_words(enum refusal_code code);
 json_t *refusal_json(const struct refusal *refusal);
 /* Sets two members of a JSON answer: `why`, the English sentence ("" for REFUSAL_NONE), and `refusal`, unless the code is REFUSAL_NONE. */
 void refusal_add(json_t *answer, enum refusal_code code);
-void refusal_add_with(json_t *answer, const struct refusal *refusal); /* like refusal_add(), for a refusal with arguments */
+void refusal_add_with(json_t *answer, const struct refusal *refusal); /* like refusal_add(), for a refusal whose sentence has arguments */
 /* Sets two members of a JSON answer, `unaudited` and `unaudited_refusal`: why the audit trail does not record the action. */
 void refusal_add_unaudited(json_t *answer, enum refusal_code code);
 

@@ -88,7 +88,7 @@ int workers_count(const struct workers *workers)
 
 void workers_submit(struct workers *workers, void (*run)(void *arg), void *arg)
 {
-    if (workers->count == 0) { /* no thread could be started, so the caller runs the job */
+    if (workers->count == 0) { /* no thread could be started, so the calling thread runs the job itself */
         run(arg);
         return;
     }

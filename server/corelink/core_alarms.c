@@ -116,7 +116,8 @@ static bool read_row(const json_t *one, struct journal_entry *out)
                 get_number(one, "before", 0, ALARM_STATUSES - 1, &before) && get_number(one, "after", 0, ALARM_STATUSES - 1, &after) &&
                 get_number(one, "priority", 1, ALARM_PRIORITIES, &out->alarm.priority);
     if (good) {
-        out->has_unit = get_text(one, "unit", out->unit, sizeof(out->unit)); /* earlier versions of the program do not send the unit */
+        /* earlier versions of the program do not send the alarm's unit */
+        out->has_unit = get_text(one, "unit", out->unit, sizeof(out->unit));
         out->event = (enum alarm_event)event;
         out->before = (enum alarm_status)before;
         out->after = (enum alarm_status)after;

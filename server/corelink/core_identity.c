@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks that a core and its renderers have the same version, plant and configuration; otherwise tag indices would mean
-   different tags in these daemons. */
+/* Checks that a core and its renderers have the same version, plant and configuration: with different ones, the tag indices in
+   their messages would mean different tags. */
 #include "corelink/core_identity.h"
 
 #include <string.h>

@@ -33,7 +33,7 @@ static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* CLOC
                                                                             which a warning is logged */;
 /* smaller differences between this machine's clock and the core's are not corrected, so that the clock on the pages does not jump */
 static const int64_t STEP_NS = 500 * NS_PER_MS;
-/* messages delayed by the network for longer than this are not used to compare the clocks */
+/* limit on the network's delay: more delayed messages of the core are not used to compare the two machines' clocks */
 static const int64_t QUICK_NS = 100 * NS_PER_MS;
 
 struct pending_request {
@@ -42,10 +42,11 @@ struct pending_request {
 
 struct core_link {
     struct core_link_params params;
-    char authorization[TOKEN_BYTES + 16]; /* value of the HTTP header `Authorization`; empty: not sent */
+    /* value of the HTTP header `Authorization` that the link sends to the core; empty: the header is not sent */
+    char authorization[TOKEN_BYTES + 16];
     int stop_fd;
     counter *up[CORE_URLS], *connects, *refused, *behind;
-    /* --- below: used only by the link's thread */
+    /* --- below: members that only the link's thread uses */
     struct mirrored *readings; /* buffer with room for one reading of each tag, into which messages are parsed */
     struct text in;
     struct lws *wsi;
@@ -70,7 +71,7 @@ struct core_link {
     struct lws_context *context; /* libwebsockets context for the connection to the core; NULL: not connected */
     bool is_up;
     uint64_t session; /* number of the connection that delivers readings, unique among all links of this process */
-    int up_index;     /* index in params.urls of the core that is sending readings */
+    int up_index;     /* index in params.urls of the core that sends this daemon readings */
     struct text *out; /* messages queued for sending to the core */
     size_t out_count, out_capacity;
     struct pending_request waiting[CORE_ACTS];
@@ -343,7 +344,8 @@ static void on_text(struct core_link *link)
     json_decref(message);
 }
 
-/* Adjusts the clock on the pages to the core's clock. Readings are sent with their ages and need no common clock. */
+/* Adjusts the clock shown on the pages to the core's clock. Readings need no common clock, because the core sends them with
+   their ages. */
 static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t late_ns)
 {
     int64_t ahead_ns = core_utc_ns - clock_utc_ns();
@@ -689,7 +691,7 @@ static void answer_waiting(struct core_link *link)
     }
 }
 
-/* Makes all readings Bad because the core is lost. */
+/* Makes all readings Bad, because the connection to the core is lost. */
 static void lost(struct core_link *link)
 {
     const struct plant *plant = link->params.plant;
@@ -718,7 +720,8 @@ static int64_t take_turn(struct core_link *link)
     *index = count ? (link->address + 1) % count : 0;
     if (*index)
         return clock_mono_ns();
-    if (link->turn.backoff.failures > 1) /* limits the reconnect delay to about a second, because operators are waiting */
+    /* limits the delay before the next connection attempt to about a second, because operators are waiting for readings */
+    if (link->turn.backoff.failures > 1)
         link->turn.backoff.failures = 1;
     return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rules of the lease (lease.h) as a state machine: which core may lead until when, and which promise keeps which core from bidding. */
+/* The rules of the lease (lease.h) as a state machine: until when the leading core may act as leader, and when a promise to the
+   leader forbids another core to bid for the lease. */
 #include "corelink/lease.h"
 
 #include <stdio.h>
@@ -37,18 +38,18 @@ static void lead(struct lease *lease)
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
 {
     bool same = lease->known && is_same(row, &lease->row);
-    /* an offer of the lease to this node counts only in a row of the epoch that this node has seen: a row of another epoch may
-       be an old one from a restored database */
+    /* the last leader's offer of the lease to this node counts only if `epoch` in the database row equals that last seen by
+       this node: a row with another epoch may be an old one, from a restored database */
     if (!same)
         lease->offered = lease->known && row->epoch == lease->row.epoch && !row->leader[0] && !strcmp(row->standby, lease->node);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
         lease->lost = true;
-    /* the row names this node as leader, so its bid succeeded, although the database's answer got lost */
+    /* the lease's database row names this node as leader, so its bid succeeded, although the database's answer got lost */
     else if (!lease->leads && lease->bids && is_ours(lease, row))
         lead(lease);
     else if (!same)
-        /* the row has changed since this node sent its bid: even if the bid reaches the database late, it can no longer
-           succeed, so this node stops waiting for its outcome */
+        /* the lease's database row has changed since this node sent its bid: even if the bid reaches the database late, it can
+           no longer succeed, so this node stops waiting for its outcome */
         lease->bids = false;
     if (!same)
         lease->seen_ns = now_ns;
@@ -111,7 +112,8 @@ bool lease_promise(struct lease *lease, int64_t now_ns)
 
 void lease_renew(struct lease *lease, const char *standby)
 {
-    /* the renewal is about to name another standby in the row, so the previous standby's promises no longer count */
+    /* the renewal is about to name another standby in the lease's database row, so the previous standby's promises not to bid
+       no longer count */
     if (strcmp(lease->counts, standby) != 0)
         lease->counts[0] = 0;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reads and changes the lease's row in the database. The standby's promises arrive on other threads. */
+/* The thread that reads and changes the database row that says which core holds the lease, that is, leads (lease.h). The
+   standby's promises not to bid for the lease arrive on other threads. */
 #include "corelink/lease_keeper.h"
 
 #include <errno.h>
@@ -18,9 +19,11 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t MAX_TIMEOUT_NS = NS_PER_S, MIN_TIMEOUT_NS = 50 * NS_PER_MS;
-/* how long the row still names a standby after its connection ended: during a reload, the standby reconnects within this time */
+/* how long the lease's database row still names a standby after its connection to the leader ended: during a reload, the
+   standby reconnects within this time */
 static const int64_t STANDBY_GRACE_NS = 10 * NS_PER_S;
-/* time left for logging the reason and shutting down in order before the kernel kills the process */
+/* time in which a daemon that has lost the lease, or is about to, must log the reason and shut down in order; then the kernel
+   kills it */
 static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS;
 
 struct lease_keeper {
@@ -33,24 +36,26 @@ struct lease_keeper {
     struct {
         counter *active, *here, *epoch, *age, *database, *standby, *differs, *maintenance;
     } counters;
-    /* --- below: used by the keeper's thread only */
-    struct postgres_link *link; /* connection to the database with the lease's row; NULL: none */
-    bool looks;                 /* true: the current row is unknown and must be read from the database */
-    /* true: the last change of the row failed, so a successful read does not prove that the database works again */
+    /* --- below: members that only the keeper's thread uses */
+    struct postgres_link *link; /* connection to the database that has the lease's row; NULL: not connected */
+    bool looks;                 /* true: the present content of the lease's database row is unknown, so the row must be read */
+    /* true: the last change of the lease's database row failed, so reading the row successfully does not prove that the
+       database works again */
     bool refuses_changes;
     bool told_won, told_lost, told_alone, told_barred;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
-    /* version (`beat`) of the row when it first named another core with this core's name; -1: that core is alive, already
-       logged; 0: no such core seen */
+    /* version (`beat`) of the lease's database row when it first named another core with this core's name; -1: that core is
+       alive, which is logged already; 0: no such core was seen */
     int64_t namesake_beat;
     struct thread thread;
     /* --- below: under thread.lock */
     struct lease lease;
-    char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was until gone_ns */
+    char standby[LEASE_NODE_BYTES]; /* name of the standby core that is connected to this leader, or was until gone_ns */
     int64_t gone_ns;                /* time when the standby disconnected; 0: it is connected */
     bool follows;                   /* true: the standby has the same version and configuration as this core */
-    char *refusal;                  /* why the leader refused this node; NULL: not refused */
-    bool gives;                     /* true: the row has yet to be changed to give the lease to `standby` */
+    char *refusal;                  /* why the leader refused this node as its standby; NULL: not refused */
+    /* true: this leader has yet to change the lease's database row so that it gives the lease to `standby` */
+    bool gives;
     uint64_t asked;
     struct {
         uint64_t number;
@@ -66,8 +71,8 @@ static int64_t now_of_lease(void)
     return (int64_t)now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/* Sets the kernel timer to end this process when the lease ends: even if it is stopped, swapped out or in an endless loop. Call
-   with the lock held. */
+/* Sets the kernel timer that kills this process when its lease ends, even if the process is stopped, swapped out or in an
+   endless loop then. Call with the lock held. */
 static void set_timer(struct lease_keeper *keeper)
 {
     const struct lease *lease = &keeper->lease;
@@ -212,7 +217,7 @@ static int name_bytes(const char *node)
 }
 
 /* Logs an error if another core with this node's name is alive. A dead one (perhaps this node before its disk was replaced) no
-   longer changes the row and is not reported. */
+   longer changes the lease's database row and is not reported. */
 static void look_for_namesake(struct lease_keeper *keeper, const struct lease_row *row)
 {
     int own = name_bytes(keeper->node), bytes = name_bytes(row->leader);
@@ -289,7 +294,8 @@ static void bid(struct lease_keeper *keeper)
     }
 }
 
-/* Extends the lease without the database while the row names this core as its own standby, because no other core may bid then. */
+/* Extends this leader's lease without the database while the lease's database row names this core as its own standby, because
+   no other core may bid for the lease then. */
 static void promise_itself(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -308,7 +314,8 @@ static void tell_maintenance(struct lease_keeper *keeper, bool alone)
     keeper->told_alone = alone;
 }
 
-/* Sends a renewal that names `standby` in the row. Returns true if the database confirmed it. */
+/* Renews the lease in its database row, and names `standby` there as the standby core. Returns true if the database confirmed
+   it. */
 static bool renew_for(struct lease_keeper *keeper, const char *standby)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -339,9 +346,9 @@ static void renew(struct lease_keeper *keeper)
     snprintf(standby, sizeof(standby), "%s", alone ? keeper->node : keeper->standby);
     memcpy(counts, keeper->lease.counts, sizeof(counts));
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* Until the database confirms that the row names another standby, no promise extends the lease. So the row changes its
-       standby only right after the database has confirmed a renewal. Otherwise, the order to leave maintenance would end a
-       leader whose database refuses changes. */
+    /* Until the database confirms that the lease's row names another standby, no promise extends the lease. The row therefore
+       changes its standby only right after the database has confirmed a renewal. Otherwise, the order to leave maintenance
+       would end a leader whose database refuses changes. */
     if (counts[0] && strcmp(counts, standby) != 0 && !renew_for(keeper, counts))
         return;
     if (!renew_for(keeper, standby))
@@ -351,8 +358,8 @@ static void renew(struct lease_keeper *keeper)
     tell_maintenance(keeper, alone);
 }
 
-/* Changes the row to give the lease to another core. If that fails, the next turn reads the row and tries again, because a
-   renewal whose answer was lost may have changed the row. */
+/* Changes the lease's database row to give the lease to another core. If that fails, the next turn reads the row and tries
+   again, because a renewal whose answer was lost may have changed the row. */
 static void give(struct lease_keeper *keeper)
 {
     char standby[LEASE_NODE_BYTES];
@@ -409,7 +416,8 @@ static bool gives(struct lease_keeper *keeper)
     return gives;
 }
 
-/* Runs one turn of the keeper's work: connects, reads the row, renews the lease or bids for it. Returns the time of the next turn. */
+/* Runs one turn of the keeper's work: connects to the database, reads the lease's row, and renews the lease or bids for it.
+   Returns the time of the next turn. */
 static int64_t take_turn(struct lease_keeper *keeper)
 {
     int64_t began_ns = now_of_lease();
@@ -427,12 +435,12 @@ static int64_t take_turn(struct lease_keeper *keeper)
         else if (keeper->link && !leads)
             bid(keeper);
     }
-    promise_itself(keeper); /* renews again in this turn, because connecting to the database may have taken a second */
+    promise_itself(keeper); /* extends the lease again in this turn, because connecting to the database may have taken a second */
     tell(keeper);
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* a leader wakes no later than the end of its lease, because it must report it */
+    /* a leader wakes no later than the end of its lease, because it must report that it lost the lease */
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 

@@ -37,7 +37,8 @@ static struct encoder *h264_create(struct log *log, const char *library)
     return NULL;
 }
 
-/* H.264 needs even dimensions: repeats luma's last column or row if width or height is odd. */
+/* Extends planes to even width and height, which H.264 needs: repeats luma's last column or row if the width or the height is
+   odd. */
 static void extend(const struct h264_planes *to, int width_px, int height_px)
 {
     size_t pitch = (size_t)to->pitches[0];
@@ -75,7 +76,7 @@ static int h264_send(struct encoder *encoder, struct frame *frame, const struct 
     struct h264_access_unit unit;
     struct h264_planes planes;
     char why[H264_WHY_BYTES];
-    (void)rects; /* dirty rectangles are ignored, because the encoder skips unchanged blocks itself */
+    (void)rects; /* ignores the list of changed rectangles, because the encoder skips unchanged blocks itself */
     (void)count;
     int status = h264->functions->begin(h264->codec, frame->width_px, frame->height_px, &planes, why);
     if (status == 0) {

@@ -11,7 +11,7 @@
 struct jpeg_encoder {
     struct encoder base;
     struct jpeg_writer *writer;
-    unsigned char *out; /* output buffer, reused from frame to frame */
+    unsigned char *out; /* output buffer for the JPEG files, reused from frame to frame */
     size_t capacity;
     unsigned char *planes; /* planes of one rectangle: luma, then subsampled chroma */
     size_t planes_capacity;
@@ -62,7 +62,7 @@ static size_t max_bytes(const struct dirty_rect *part)
     return (size_t)padded(part->width_px) * (size_t)padded(part->height_px) * 6 + 2048;
 }
 
-/* Repeats the last column of each plane into the padding on its right. */
+/* Repeats the last column of pixels of each plane in the padding on the right. */
 static void extend(const struct yuv_planes *planes)
 {
     for (int c = 0; c < 3; c++) {

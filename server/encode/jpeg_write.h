@@ -12,7 +12,7 @@
 
 #include "encode/planes.h"
 
-enum { JPEG_READ_QUALITY = 75 }; /* below this JPEG quality, the standard quantization tables are used */
+enum { JPEG_READ_QUALITY = 75 }; /* JPEG quality below which the standard quantization tables are used */
 
 struct jpeg_writer;
 struct jpeg_writer *jpeg_writer_create(void);          /* creates a writer; returns NULL when out of memory */

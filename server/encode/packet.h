@@ -16,7 +16,7 @@ struct packet_part { /* a rectangle of the frame, and the range of the packet's 
 
 struct packet {
     _Atomic int refs;
-    struct frame *frame; /* metadata of the frame, without the pixels (frame->bgrx is NULL) */
+    struct frame *frame; /* metadata of the frame that this packet encodes, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
     bool key;       /* true: the packet can be decoded without earlier packets */
     bool is_signed; /* true: the bytes are a signed PNG file (provenance/signed_picture.h) */

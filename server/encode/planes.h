@@ -10,11 +10,12 @@
 struct yuv_planes {
     const uint8_t *bgrx;
     int stride_bytes, width_px, height_px;
-    uint8_t *plane[3]; /* luma, then two chroma planes of half the width and height, rounded up */
+    uint8_t *plane[3]; /* luma plane, then two chroma planes of half its width and height, rounded up */
     int pitch[3];
 };
 
-enum { PLANES_BAND_PX = 16 };                                                   /* height of a band in pixel rows */
+/* height in pixel rows of a band, that is, of the part of a frame that one worker converts */
+enum { PLANES_BAND_PX = 16 };
 size_t planes_bands(int height_px);                                             /* returns the number of bands */
 void planes_convert(const struct yuv_planes *planes, size_t begin, size_t end); /* converts the bands [begin, end) */
 

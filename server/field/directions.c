@@ -11,7 +11,8 @@
 #include "value/quality.h"
 
 #define AT_ONE_PLACE 1e-6 /* metres; a point nearer than this to a sensor counts as being at the sensor */
-/* smallest fraction of a vector's length that must lie in the surface; a steeper vector has no known direction */
+/* smallest component of a sensor's vector along the surface, as a fraction of its length: a vector more perpendicular to the
+   surface has no known direction there */
 #define MIN_TANGENT_PART 0.1
 
 static const float *angles_of(const struct field_layout *layout)

@@ -16,19 +16,22 @@
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-#define MAX_POWER 2.0f /* for interpolation shepard: largest power (exponent of the distance) for which STEP samples finely enough */
+/* largest power (exponent of the distance) of the interpolation shepard for which samples spaced by STEP find the error */
+#define MAX_POWER 2.0f
 /* For shepard, the error in a triangle is at most L^2 K / (6 d^2). L is its longest side, d its distance to the nearest sensor,
    and K / d^2 a bound on the second derivative of the weights. */
 #define SHEPARD_ACCEPTED 6.0f
 /* for interpolation paper: longest side of a triangle that needs no samples, as a fraction of the distance to the nearest
    sensor and of the radius R */
 #define PAPER_ACCEPTED 0.015f
-/* smallest power of shepard for which errors of distances are measured; below it, they changed no value by a colour step */
+/* smallest power (exponent of the distance) of the interpolation shepard for which the effect of wrong distances is measured:
+   with smaller powers, it changed no value by a colour step */
 #define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
-/* how far, in steps of the byte scalar.lacking, the border between data and no data may be displaced in the picture */
+/* tolerated displacement, in the picture, of the border between data and no data, in steps of the byte scalar.lacking */
 #define BORDER_SLACK 4
-#define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, all its vertices are given an error */
+/* if interpolation errors affect at least this fraction of the area of a level of detail, all its vertices are given an error */
+#define MARK_ALL 0.75
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the midpoint of the piece's longest side */
@@ -46,7 +49,7 @@ struct sampler { /* working memory of one thread that samples triangles */
     double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
     float *corners;        /* weights at the triangles' corners: [member of the sum (sensor)][3 corners of each of GROUP triangles] */
     uint32_t *tris[GROUP]; /* vertex numbers of each triangle */
-    float *errors[GROUP];  /* where each triangle's measured error is stored */
+    float *errors[GROUP];  /* pointer for each triangle of the group to the element that receives its measured error */
     int pieces[GROUP];
     size_t tri_count;
     struct triangle_piece *queue;
@@ -60,7 +63,7 @@ struct drawn_error_job {
     float radius_m, accepted, error_m;
     const uint32_t *members;
     const double *ones;
-    uint32_t first;       /* index of the first triangle to measure */
+    uint32_t first;       /* index of the first triangle whose interpolation error to measure */
     float *errors;        /* error of each triangle */
     float *vertex_errors; /* error of each vertex's value due to errors of geodesic distances; NULL: not measured */
 };
@@ -245,10 +248,10 @@ double drawn_error_of_distances(const struct weights *weights)
     return (most - least) / (2 * least);
 }
 
-/* Writes each vertex's error due to errors of distances, for the worst possible readings, for some blocks. If one sensor has
-   the fraction `a` of the weights, the mean deviation of the readings is at most 2 a (1 - a) times their spread. The worst `a`
-   is the nearest sensor's if that is at least 1/2, else 1/2. Errors below half a colour step are ignored: added to
-   interpolation errors just below a step, they would mark most of the surface. */
+/* Writes each vertex's error due to errors of distances, for the worst possible readings, for the blocks of vertices
+   begin..end-1. If one sensor has the fraction `a` of the weights, the mean deviation of the readings is at most 2 a (1 - a)
+   times their spread. The worst `a` is the nearest sensor's if that is at least 1/2, else 1/2. Errors below half a colour step
+   are ignored: added to interpolation errors just below a step, they would mark most of the surface. */
 static void amplify_some(void *arg, size_t begin, size_t end)
 {
     const struct drawn_error_job *job = arg;
@@ -258,7 +261,9 @@ static void amplify_some(void *arg, size_t begin, size_t end)
         double values[KERNEL_BLOCK] = { 0 }, total[KERNEL_BLOCK] = { 0 };
         size_t at = block * KERNEL_BLOCK, left = job->weights->layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
         weights_add(job->weights, at, count, &terms, &(struct weights_sums){ values, total, NULL });
-        for (size_t j = 0; j < count; j++) { /* the weight of the nearest sensor is 1 (kernels.h) */
+        /* the nearest sensor's share of the weights is 1 / total, because weights are relative to the nearest sensor's, which
+           is 1 (kernels.h) */
+        for (size_t j = 0; j < count; j++) {
             double share = total[j] > 0 ? fmax(1 / total[j], 0.5) : 1;
             double error = 2 * e * share * (1 - share);
             job->vertex_errors[at + j] = error > 0.5 * (double)STEP_OF_COLOR ? (float)error : 0;

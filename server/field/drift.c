@@ -14,7 +14,7 @@ enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS =
 /* The plant's rate of change at an hour is the mean change of the prediction per hour, from CHANGE_BEFORE hours before to
    CHANGE_AFTER hours after that hour. */
 enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 };
-/* an hour in which the plant changes this many times as fast as usual gets half the weight in the fit */
+/* an hour in which the plant changes this many times as fast as usual gets half the normal weight in the fit */
 static const double FAST_FACTOR = 2;
 static const double STILL_PART = 0.1; /* the plant counts as unchanged if it changes per hour by less than this multiple of the noise */
 static const double MEAN_PART = 0.25; /* noise of an hourly mean, relative to that of a single reading: 1/4 if the mean has at least
@@ -41,7 +41,7 @@ struct week { /* hourly data of one sensor */
    square root of the hour's weight. */
 struct drift_rows {
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
-    double counted; /* sum of the weights of the hours */
+    double counted; /* sum of the weights in the fit of all hours in these rows */
     int hour[DRIFT_HOURS], count, columns;
 };
 
@@ -53,7 +53,7 @@ static double dot(const double *a, const double *b, int count)
     return sum;
 }
 
-/* Subtracts from the vector `of` its component along the unit vector `unit`. */
+/* Subtracts from the vector `of` its component along the unit vector `unit`, so that the two become orthogonal. */
 static void take_out(double *of, const double *unit, int count)
 {
     double part = dot(of, unit, count);

@@ -19,7 +19,9 @@ struct field {
     struct trial_layout {                   /* layouts with trial positions */
         const struct trial *trial;          /* reference to the trial */
         int asset, group;
-        struct field_layout *layout; /* layout with sensors at the trial's positions; NULL: the asset then has no sensor of the group */
+        /* layout (sensors and their distances) with the sensors at the positions that a user tries out; NULL: the asset then
+           has no sensor of the group */
+        struct field_layout *layout;
         struct trial_layout *next;
     } * tried;
     size_t bytes, bound;
@@ -54,7 +56,8 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
 /* Starts caching the columns of these weights (each sensor's weights at all vertices) if they have been summed before.
    previous: tick of their previous use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);
-/* Frees every state and weights object made from this trial's layout. */
+/* Frees every state (computed field) and weights object made from this layout, whose sensors are at positions that a user tries
+   out. */
 void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);
 
 #endif

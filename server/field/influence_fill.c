@@ -8,8 +8,8 @@
 
 #include "base/mem.h"
 
-/* Smallest valid pivot of the factorisation, as a fraction of the sensor's precision. Below it, no used sensor determines the
-   lost sensor, whose value is then set to 0. */
+/* Smallest valid pivot of the Cholesky factorisation, as a fraction of the lost sensor's precision. With a smaller pivot, no
+   used sensor determines the lost sensor, whose value is then set to 0. */
 #define MIN_PIVOT_PART 1e-9
 
 struct influence_fill {

@@ -17,7 +17,8 @@
 /* lets the compiler evaluate both sides of a conditional expression, as SIMD code must; floating-point exceptions do not matter here */
 #pragma GCC optimize("no-trapping-math")
 #endif
-#include "field/weight_formula.h" /* included after the pragma, which this header also needs to become SIMD code */
+/* this header is included after the pragma, so that the pragma also makes SIMD code of the header's functions */
+#include "field/weight_formula.h"
 
 static inline void fade(const struct kernel_column *column, float *restrict weight)
 {
@@ -143,7 +144,8 @@ KERNEL static void add_one(double *restrict sum, const float *restrict a, double
         sum[j] += (double)a[j] * factor;
 }
 
-/* Adds KERNEL_COLUMNS columns, each multiplied by its factor, to vertices begin..end-1 of `sum`. */
+/* Adds the weights of KERNEL_COLUMNS sensors (columns), each multiplied by its sensor's factor, to vertices begin..end-1 of
+   `sum`. */
 SIMD_BODY void add_eight(double *restrict sum, const float *const *columns, const double *factors, size_t begin, size_t end)
 {
     const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
@@ -250,7 +252,8 @@ struct few {
     double factor[KERNEL_COLUMNS - 1];
 };
 
-/* Does the work of kernel_few() for a block. column_count is a constant after inlining, so that the compiler unrolls the loops. */
+/* Does the work of kernel_few() for one block of vertices. column_count is a constant after inlining, so that the compiler
+   unrolls the loops. */
 SIMD_BODY int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight, size_t count,
                           struct scalar *restrict at)
 {

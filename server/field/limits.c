@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-#define MAX_ALONE 1.999 /* largest position above H for a tag without HH: just below +2, which is HH's position */
+#define MAX_ALONE 1.999 /* position of a reading far above H if its tag has no HH limit: just below +2, because HH has position 2 */
 
 /* The limits of one side (high or low); the low side is mirrored, so that larger values are always closer to an alarm. */
 struct limit_side {
-    double inner, outer; /* inner: H or L; outer: HH or LL; NaN: the tag has no such limit */
+    double inner, outer; /* inner: the limit nearer to the normal range, H or L; outer: HH or LL; NaN: the tag has no such limit */
 };
 
 static double middle_of(const struct plant_group *group, const struct limit_side *low, const struct limit_side *high)

@@ -105,7 +105,8 @@ static void predict_by_distance(const struct neighbours *neighbours, const uint8
             if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
                 continue;
             away_m = fmax(away_m, AT_ONE_PLACE);
-            double near = least_m / away_m; /* weights are relative to that of the nearest sensor so far, so that powers cannot overflow */
+            /* powers cannot overflow, because each sensor's weight is relative to that of the nearest sensor so far */
+            double near = least_m / away_m;
             if (away_m < least_m) {
                 double scale = isfinite(least_m) ? pow(away_m / least_m, layout->group->power) : 0;
                 sum *= scale;

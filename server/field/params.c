@@ -12,7 +12,8 @@
 #include "field/limits.h"
 #include "plant/influence.h"
 
-static const double DIFFERENCE_PART = 0.25; /* colour range of differences on either side of 0, as a fraction of the group's range */
+/* end of the colour scale in views of differences: from minus to plus this fraction of the group's range */
+static const double DIFFERENCE_PART = 0.25;
 
 void field_params_default(const struct plant *plant, int group, struct field_params *params)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Evaluates a field based on straight-line distances (pixel_field.h) at one point, as a sum over all its sensors. */
+/* Evaluates a field (values interpolated between sensors) at one point, as a sum over all its sensors, from straight-line
+   distances (pixel_field.h). */
 #include "field/pixel_field.h"
 
 #include <math.h>

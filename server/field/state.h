@@ -10,7 +10,7 @@
 
 struct update; /* defined in update.h */
 
-struct state_input {           /* a sensor's contribution to the sums from which the field is computed */
+struct state_input {           /* contribution of one sensor to the sums from which the field (interpolated values) is computed */
     double value;              /* the sensor's reading in engineering units; for interpolation paper scaled to 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
@@ -21,16 +21,19 @@ struct field_state {
     struct weights *weights; /* counted in weights->users */
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
-    double *sums;            /* [vertex]: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
+    /* [vertex]: numerator of the vertex's value, a sum over all sensors; NULL: not stored, because few sensors are summed again
+       as quickly */
+    double *sums;
     size_t room;             /* number of vertices for which `at` (scalars) and `sums` have room */
-    double error_limit;      /* vertices whose weights->errors exceed this are marked uncertain; initially 0 */
-    unsigned errors_version; /* value of weights->errors_version when vertices were last marked for their errors */
+    double error_limit;      /* error above which a vertex is marked uncertain; compared with weights->errors; initially 0 */
+    unsigned errors_version; /* value of weights->errors_version when vertices were last marked uncertain */
     double error_scale;      /* factor that converts an element of weights->errors to the error of a drawn value */
     /* number of updates that added changes to the sums since the sums were last computed in full; the rounding errors accumulate */
     unsigned added;
-    /* [sensor of the layout]. now: inputs from the newest snapshot; shown: inputs from which the scalars were computed */
+    /* [sensor of the layout]. now: readings from the newest snapshot; shown: readings from which the scalars (values at the
+       vertices) were computed */
     struct state_input *now, *shown;
-    uint8_t *usable; /* [sensor of the layout]: whether the input in `now` is used (enum sensor_use) */
+    uint8_t *usable; /* [sensor of the layout]: whether the sensor's reading in `now` is used (enum sensor_use) */
     /* memory for the lists of sensors to sum (struct weights_terms). Element 0: sensors whose input changed; element 1: all sensors */
     struct state_list {
         uint32_t *members;
@@ -60,11 +63,13 @@ void state_read(struct field_state *state, const struct snapshot *snapshot, cons
 /* For prepared interpolations: sets the values of lost sensors in state->now to those that follow from the other sensors. The
    state's weights must match the qualities in state->now. */
 void state_fill(struct field_state *state);
-/* Returns true if state->weights must be replaced, because other sensors are usable in state->now than for these weights. */
+/* Returns true if state->weights must be replaced, because they were computed for another set of usable sensors than that in
+   state->now. */
 bool state_needs_weights(const struct field_state *state);
 /* Returns true if the state's scalars are out of date: they were computed from inputs that differ from state->now. */
 bool state_is_behind(const struct field_state *state);
-/* For SHOW_DISTANCE, in place of state_read() and an update: fills the scalars once with the distances from one sensor of the layout. */
+/* For views of distances (SHOW_DISTANCE), instead of state_read() and an update: fills the scalars once with each vertex's
+   distance from one sensor of the layout. */
 void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);
 
 #endif

@@ -17,12 +17,13 @@ struct trial_reach *trial_reach_create(float *distance_m);
 void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
-    int tag, asset;            /* tag of the sensor, and the only asset that it is on */
-    float surface_m[3];        /* position of the sensor in metres, in the coordinates of the asset file */
-    double place_m[3];         /* position of the sensor in plant coordinates */
-    uint32_t vertex;           /* vertex nearest to the position */
-    struct trial_reach *reach; /* geodesic distances; NULL: not known yet, straight-line distances are used meanwhile */
-    uint32_t number;           /* unique number of this position and its distances, set by trials_put(); distinguishes cached
+    int tag, asset;     /* tag of the sensor, and the only asset that it is on */
+    float surface_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
+    double place_m[3];  /* position of the sensor in plant coordinates */
+    uint32_t vertex;    /* vertex nearest to the position */
+    /* geodesic distances from the trial position; NULL: not known yet, straight-line distances are used meanwhile */
+    struct trial_reach *reach;
+    uint32_t number; /* unique number of this position and its distances, set by trials_put(); distinguishes cached
                                   weights of different positions */
 };
 

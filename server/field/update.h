@@ -24,7 +24,8 @@ bool update_is_in_range(const struct field_state *state);
 /* Abandons the state's update in progress, if any. */
 void update_forget(struct field_state *state);
 
-/* Writes the rule for converting sums over sensors to field values to *rule. inputs: [sensor of the layout]. */
+/* Writes the rule by which sums over sensors become field values to *rule. inputs: the sensors' readings, in the order of the
+   layout. */
 void update_rule(const struct field_state *state, const struct state_input *inputs, struct kernel_value *rule);
 /* Sets all members of *at except its value, for a prepared vertex of `weights`, which must match the state's parameters and
    sensors. total: sum of the vertex's weights; marked: sum of the weights of Uncertain sensors, 0 if there are none. */

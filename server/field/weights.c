@@ -33,8 +33,8 @@ struct key_sensor {
     float strength, decay;
 };
 
-/* Returns a sensor's strength; for interpolation paper, multiplied by the user's factor. In shepard's sum such a common factor
-   would cancel out. */
+/* Returns a sensor's strength (factor of its weight). For the interpolation paper it is multiplied by the user's factor for all
+   sensors; in shepard's sum such a common factor would cancel out. */
 static float strength_of(const struct layout_sensor *sensor, const struct field_params *params)
 {
     const struct field_override *override = field_params_override_of(params, sensor->tag);
@@ -238,8 +238,9 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    /* If the strengths are equal, only power and decay can differ. The array `top`, which scales weights, depends on neither;
-       nor do the sums of weights (`total`) of the interpolation paper. */
+    /* Copies only those results of `from` that are also valid here. If all strengths are equal, only power
+       and decay can differ. The array `top`, which scales weights, depends on neither; nor do the sums of weights (`total`) of
+       the interpolation paper. */
     if (same_strengths(weights, from))
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
@@ -294,7 +295,7 @@ size_t weights_bytes(const struct field_layout *layout)
            layout->sensor_count * each_sensor;
 }
 
-/* Returns the size in bytes of one block's columns (the weights of all sensors at KERNEL_BLOCK vertices). */
+/* Returns the size in bytes of the weights of all sensors at one block of KERNEL_BLOCK vertices. */
 static size_t block_bytes(const struct weights *weights)
 {
     return weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
@@ -383,7 +384,8 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
-/* Classifies a vertex by its distances from the nearest used sensor, the nearest lost sensor, and the nearest sensor without limits. */
+/* Returns whether a vertex has data, by its distances from the nearest usable sensor, the nearest sensor without a usable
+   reading, and the nearest sensor without alarm limits. */
 static enum place place_of(float near_m, float lost_m, float no_limits_m, float reach_m)
 {
     if (no_limits_m < near_m && no_limits_m <= lost_m && no_limits_m <= reach_m)
@@ -528,7 +530,8 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
     bool paper = weights->interpolation == INTERPOLATION_PAPER, keeps = begin / KERNEL_BLOCK < weights->kept_blocks;
-    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* number of columns (one for each sensor) in all previous blocks */
+    /* number of columns (weights of one sensor at one block of vertices) in all previous blocks */
+    size_t before = begin / KERNEL_BLOCK * weights->member_count;
     struct workroom room;
     if (!paper && !weights->prepared && weights->power != 2.0f)
         kernel_log2(weights->near_m + begin, count, room.near_log2);
@@ -560,7 +563,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         for (size_t k = 0; sums->marked && k < number; k++) {
             if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
-            /* weights of interpolation gp may be negative: adds absolute values, so that weights do not cancel */
+            /* adds absolute values, because weights of the interpolation gp may be negative and would cancel */
             for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++)
                 sums->marked[j] += fabs((double)heavy[k][j]);
         }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates vertex and index buffers, and describes their memory layout to shaders. */
+/* Creates the vertex and index buffers of a triangle mesh, and describes their memory layout to shaders. */
 #include "gpu/mesh.h"
 
 #include <math.h>

@@ -50,7 +50,7 @@ static void osmesa_destroy(struct gl *gl)
     struct osmesa *osmesa = (struct osmesa *)gl;
     if (osmesa->context)
         osmesa->destroy(osmesa->context);
-    mem_free(osmesa); /* does not unload the library, because its threads may still be ending */
+    mem_free(osmesa); /* does not unload the OSMesa library, because its threads may still be ending */
 }
 
 static bool osmesa_load(struct osmesa *osmesa)

@@ -9,7 +9,7 @@
 struct program_params {
     const char *vertex, *fragment; /* names of embedded shader files; NULL if `compute` is set */
     const char *compute;
-    const char *defines; /* lines to insert before the source; NULL: none */
+    const char *defines; /* source lines such as #define to insert before the shader's source; NULL: none */
 };
 #define program_params(...) (&(struct program_params){ __VA_ARGS__ })
 

@@ -10,7 +10,7 @@
 /* marker file in the history folder; its modification time is that of the last `plantcast backup` */
 #define HISTORY_BACKUP_STAMP "last-backup"
 
-enum { COPY_HASH_BYTES = 33 }; /* size of a file's hash as text: 32 hexadecimal digits and a terminating 0 */
+enum { COPY_HASH_BYTES = 33 }; /* size in bytes of a file's hash as text: 32 hexadecimal digits and a terminating 0 */
 
 /* Copies a consistent state of the database `from` to a single file, checks it and syncs it to disk. Returns false on failure
    (logged); `to` is then removed. This function and copy_file() follow no symbolic links, and read only files that belong to

@@ -18,7 +18,9 @@ struct historian_params {
     const char *folder;  /* folder of the history files; created if it is missing */
     /* true: until historian_lead() is called, samples come from the leading daemon (historian_mirror()) instead of the store */
     bool stands_by;
-    bool follows; /* true: this historian continues the lines of one that ended with historian_end(), and no gap is recorded */
+    /* true: this historian continues the recording of one that ended with historian_end(), so no gap between the two is
+       recorded */
+    bool follows;
     /* time spans whose points must still be read from PostgreSQL, as returned by historian_end(); copied; NULL: none */
     const struct postgres_owed *owed;
 };

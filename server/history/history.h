@@ -7,7 +7,7 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* points younger than this many microseconds may not be in the file yet */
+static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* age in microseconds below which points may not be in the history file yet */
 
 /* Returns an array that describes the plant's tags for history files; free with mem_free(). The names belong to the plant. */
 struct history_tag *history_tags(const struct plant *plant);
@@ -16,8 +16,7 @@ struct history_reader;
 /* Creates a reader of the history files in a folder, which need not exist yet. Never returns NULL. */
 struct history_reader *history_reader_create(struct log *log, const char *folder);
 /* Makes the reader convert all series to the units in which `plant` shows its tags; without this call, values keep the units in
-   which they were recorded. history_at() always converts to the units in its argument `tags`. `plant` must outlive the reader.
-   */
+   which they were recorded. history_at() always converts to the units in its argument `tags`. `plant` must outlive the reader. */
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
 void history_reader_destroy(struct history_reader **reader); /* Frees the reader and sets *reader to NULL; accepts a pointer to NULL. */
 

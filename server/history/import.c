@@ -33,11 +33,13 @@ enum {
 /* The samples of a tag in the imported file. */
 struct import_series {
     bool has_row;   /* true: the current pass over the CSV file has already read a row of this tag */
-    int64_t row_us; /* time of this tag's last row in the current pass */
+    int64_t row_us; /* time of this tag's last row in the current pass over the CSV file */
     bool seen;      /* true: the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
-    int64_t longest_us; /* a longer time in microseconds between two samples of this tag is a gap, which interrupts the recorded line */
+    /* longest time in microseconds between two samples of this tag that is not a gap; after a gap the tag's value is unknown
+       until the next sample */
+    int64_t longest_us;
     /* true: `pending` holds the newest sample of the tag in the second pass. It is recorded once a later sample was read,
        because another row with the same time would replace it */
     bool has_pending;
@@ -53,7 +55,8 @@ struct history_import {
     int time, tag, value, quality, unit;
     int *tags;                    /* wide form: tag index of each column; -1: not a tag's column, ignored */
     struct import_series *series; /* [tag]: state of the tag's series */
-    int64_t row_us;               /* wide form: time of the last row read; long form (one value per line): INT64_MIN */
+    /* wide form (one column per tag): time of the last row read; long form (one value per line): INT64_MIN */
+    int64_t row_us;
     struct import_counts *counts;
 };
 
@@ -67,7 +70,7 @@ static int find_time(struct history_import *import)
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    /* if no column has such a name, the first column contains the times, unless it is named after a tag */
+    /* if no column has a name for times, the first column contains the times, unless it is named after a tag */
     return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1;
 }
 
@@ -399,14 +402,15 @@ static void add_row(struct filling *filling, int tag, int64_t t_us, double value
     rows->at[rows->count++] = (struct history_row){ tag, { t_us, value, quality } };
 }
 
-/* Returns true if a point ends a recorded line: it has no value, because values after the preceding sample are unknown. */
+/* Returns true if a point in history has no value because recording ended there: the tag's values are unknown until the next
+   point. */
 static bool is_end_of_line(const struct history_point *point)
 {
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
 }
 
-/* Returns true if the existing history has a point without a value at t_us, by which an earlier import or a stopped daemon
-   ended the line. Call it with ascending times. */
+/* Returns true if the existing history has at t_us a point without a value, with which an earlier import or a stopped daemon
+   ended its recording. Call it with ascending times. */
 static bool was_end_of_line(struct import_series *series, int64_t t_us)
 {
     while (series->next < series->before.count && series->before.at[series->next].t_us < t_us)
@@ -416,7 +420,7 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
 }
 
 /* Records the tag's pending sample. If the next sample, at next_us, follows only after a gap, also records a point without a
-   value, which ends the line. next_us INT64_MAX: there is no next sample. */
+   value, so that the sample's value does not seem to continue through the gap. next_us INT64_MAX: there is no next sample. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];
@@ -428,7 +432,8 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-        /* the line continues here: the sample overwrites the point without a value that ended the line in the existing history */
+        /* recording continues here: the sample's value replaces the point without a value with which the existing history ended
+           its recording */
     } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
@@ -450,8 +455,8 @@ static bool fill_sample(struct history_import *import, void *arg, int tag, const
 
 /* --- joining existing history -------------------------------------------------------------------------------------------------------- */
 
-/* Connects the first imported sample of a series to the preceding point in history. If the time between the two is a gap, ends
-   the existing line with a point without a value; otherwise removes such a point. */
+/* Connects the first imported sample of a series to the preceding point in history. If the time between the two is a gap,
+   records a point without a value after the preceding point; otherwise removes such a point. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
     struct import_series *series = &filling->series[tag];

@@ -155,7 +155,8 @@ static int delete_block(struct month_file *file, int64_t id, int64_t t_us)
 
 /* --- the blocks of a tag ------------------------------------------------------------------------------------------------------ */
 
-/* Returns true if more points after from_us have been read than `points` may hold. */
+/* Returns true if `points`, as a result of a query from from_us on, holds more points than its maximum, so that reading can
+   stop. */
 static bool exceeds(const struct history_points *points, int64_t from_us)
 {
     return history_points_full(points) && points->at[points->count - 1 - points->max].t_us > from_us;

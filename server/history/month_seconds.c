@@ -73,7 +73,8 @@ int month_seconds_write(struct month_file *file, struct month_row *rows, size_t 
     int error = read_mark(file, &mark);
     if (error || count + held_count == 0)
         return error;
-    /* the points of all rows were moved to blocks, perhaps through another handle: writing restarts at the table's first row */
+    /* the points of all rows of the table `second` were moved to blocks, perhaps through another handle: writing restarts at
+       the table's first row */
     if (mark >= file->stamp) {
         file->stamp = mark;
         file->slot = 0;
@@ -115,7 +116,8 @@ static void add_held(struct month_seconds *seconds, const struct month_row *row)
 
 static void add_rows(struct month_seconds *seconds, const uint64_t *packed, size_t count)
 {
-    /* ids and times of the previous row; index 0: for recorded rows, index 1: for held rows (newest samples) */
+    /* tag and time of the previous row; index 0: among recorded points, index 1: among held ones (newest samples, not recorded
+       yet) */
     uint64_t tag[2] = { 0 }, t[2] = { 0 };
     mem_grow(&seconds->rows, &seconds->capacity, seconds->count + count + 1, sizeof(*seconds->rows));
     for (const uint64_t *at = packed; at < packed + count * SECOND_COLUMNS; at += SECOND_COLUMNS) {
@@ -166,7 +168,9 @@ int month_seconds_read(struct month_file *file)
     sqlite3_bind_int64(next, 1, seconds->slot);
     while ((code = database_step(&file->db, next)) == SQLITE_ROW && !error) {
         if (sqlite3_column_int64(next, 1) <= seconds->stamp)
-            break; /* rows are overwritten in order, so this row and all that follow are older, and their points are already in blocks */
+            /* stops here: rows of the table `second` are overwritten in order, so this row and all that follow are older, and
+               their points are already in blocks */
+            break;
         error = take_second(file, next);
     }
     sqlite3_reset(next);

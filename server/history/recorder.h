@@ -11,9 +11,9 @@ struct recorder_rows { /* rows to be recorded; zero-initialise; free `at` with m
 };
 
 struct recorder;
-/* Creates a recorder. begin_us: time from which samples are recorded. Earlier recordings end before it with a point without a
-   value, so a sample with an earlier time does not tell the quality from begin_us on. INT64_MIN: the samples are imported, and
-   values do not count as unchanged between samples. */
+/* Creates a recorder. begin_us: time from which samples are recorded. Recordings of earlier runs end before it with a point
+   without a value, so a sample with an earlier time does not tell a tag's quality from begin_us on. INT64_MIN: the samples are
+   imported; between samples, values do not count as unchanged. */
 struct recorder *recorder_create(const struct plant *plant, int64_t begin_us);
 void recorder_destroy(struct recorder **recorder); /* Frees the recorder and sets *recorder to NULL; accepts a pointer to NULL. */
 /* Passes a sample to its tag's filter, and appends to `kept` the rows that must now be recorded. If the previous sample had
@@ -22,8 +22,8 @@ void recorder_destroy(struct recorder **recorder); /* Frees the recorder and set
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept);
 /* Sets *out to a tag's newest sample. Returns false if the tag has none yet. */
 bool recorder_newest(const struct recorder *recorder, int tag, struct history_point *out);
-/* Returns the quality of the recorded line from now on: that of the sample with the latest time; Bad_WaitingForInitialData if
-   there is none yet. */
+/* Returns the quality that the tag's recording has from now on: that of the sample with the latest time;
+   Bad_WaitingForInitialData if there is none yet. */
 uint32_t recorder_quality(const struct recorder *recorder, int tag);
 /* Sets the time and quality for recorder_quality(), even if a sample with a later time exists, because the clock was set back. */
 void recorder_set_quality(struct recorder *recorder, int tag, int64_t t_us, uint32_t quality);

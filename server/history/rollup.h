@@ -10,7 +10,8 @@
 
 struct history_bucket {
     int64_t t_us; /* start time of the bucket; a multiple of its length */
-    /* minimum and maximum of the line within the bucket, including its ends; NaN: no usable value */
+    /* smallest and largest value within the bucket, including its ends, on the line that joins the tag's points; NaN: no usable
+       value */
     double low, high;
     double mean; /* mean over the part of the bucket's time that has a value */
     /* first: value at the bucket's start (before any step there) or, if no line leads into the bucket, of its first point;
@@ -37,8 +38,8 @@ bool rollup_put(struct rollup *rollup, const struct history_point *point, struct
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
 /* Merges bucket `b` into bucket `a`. `b` must come later, and both must lie within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
-/* Adds part of the line from the end of bucket `a` (at end_us) to the start of bucket `b` to the bucket `into`: the part
-   between from_us and to_us. Neither `a` nor `b` includes that line. */
+/* Adds to the bucket `into` a part of the straight line that leads from the end of bucket `a` (at end_us) to the start of
+   bucket `b`: the part between from_us and to_us. Neither `a` nor `b` includes that line. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,
                    int64_t from_us, int64_t to_us);
 

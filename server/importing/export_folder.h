@@ -40,7 +40,8 @@ const char *export_folder_choice(void);
 const char *export_folder_report(void);
 /* Removes the hidden files left by unfinished uploads. */
 void export_folder_sweep(const char *folder);
-/* Removes all tag lists from the exports folder except the one named `except` (NULL: removes all), because an import needs exactly one. */
+/* Removes all tag lists from the exports folder except the file named `except`, because an import needs exactly one. except
+   NULL: removes all tag lists. */
 void export_folder_remove_tag_lists(const char *folder, const char *except);
 /* Removes a file from the exports folder. Returns 0 or -errno. The name must be valid (export_name_good()). */
 int export_folder_remove(const char *folder, const char *name);

@@ -247,7 +247,7 @@ char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *p
 struct paging {
     const struct plant *plant;
     json_t *rows;
-    struct text *csv; /* receives the rows as CSV; NULL: the output is JSON */
+    struct text *csv; /* receives the journal rows as CSV; NULL: the rows are written as JSON */
     int64_t last_id;
     int count;
 };

@@ -14,7 +14,8 @@ const char *quoted(const char *text, char out[48])
     while (at < left) {
         const unsigned char *c = (const unsigned char *)text + at;
         size_t step = utf8_length(text + at, left - at);
-        bool control = c[0] < 32 || c[0] == 127 || (c[0] == 0xC2 && c[1] < 0xA0); /* control characters (C0, DEL and C1) */
+        /* true: a control character (C0, DEL or C1), which the quoted text shows as ? */
+        bool control = c[0] < 32 || c[0] == 127 || (c[0] == 0xC2 && c[1] < 0xA0);
         if (n + (step && !control ? step : 1) > MOST_BYTES)
             break;
         if (step && !control)

@@ -9,7 +9,7 @@
 
 static const double NUMBER_MAX = 1e12, RANGE_LEAST = 1e-9;
 
-/* Refuses the member `field` because the plant has nothing named like its value. Always returns false. */
+/* Refuses a message's member `field` because the plant has no item with the name in its value. Always returns false. */
 static bool refuse_name(const char *field, const json_t *value, enum refusal_code code, struct message_error *error)
 {
     char name[48];
@@ -18,11 +18,11 @@ static bool refuse_name(const char *field, const json_t *value, enum refusal_cod
     return false;
 }
 
-/* a field whose value names an item of the plant file */
+/* a member of the message `params` whose value is the name of an item of the plant file, such as a group */
 struct name_field {
     const char *field;
     int (*find)(const struct plant *plant, const char *name);
-    enum refusal_code unknown; /* refusal of a name that find() does not know */
+    enum refusal_code unknown; /* code of the refusal if find() does not know the name */
     unsigned bit;              /* marks the field as given */
 };
 
@@ -30,7 +30,7 @@ static const struct name_field GROUP = { "group", plant_find_group, REFUSAL_NO_G
 static const struct name_field COLORMAP = { "colormap", colormap_find, REFUSAL_UNKNOWN, GIVEN_COLORMAP };
 static const struct name_field ENVIRONMENT = { "environment", plant_find_environment, REFUSAL_UNKNOWN, GIVEN_ENVIRONMENT };
 
-/* Reads a field that names an item of the plant file. *index receives the item's index. */
+/* Reads a member of the message whose value is the name of an item of the plant file. *index receives the item's index. */
 static bool parse_name(const struct plant *plant, const json_t *o, const struct name_field *name, int *index, struct params_change *out,
                        struct message_error *error)
 {

@@ -13,8 +13,8 @@
 enum { CAMERA_NUMBERS = 11 };
 
 static const struct {
-    /* name: field in the page's URL; of_query: argument of an HTTP query with the same meaning, NULL: there is none, so the
-       field is dropped */
+    /* name: field in the page's URL; of_query: argument of an HTTP query with the same meaning; NULL: no argument corresponds,
+       so the field is dropped */
     const char *name, *of_query;
 } names[] = {
     { "group", "group" },

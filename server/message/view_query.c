@@ -153,7 +153,8 @@ static json_t *lines(const char *text)
 
 static bool add_argument(json_t *o, const char *arg, struct message_error *error);
 
-/* Reads the arguments for the right half of a split view: NAME=VALUE;... */
+/* Reads the argument `split` of a query: parameters of the right half of a split view (two pictures side by side), as
+   NAME=VALUE;... */
 static json_t *split(const char *text, struct message_error *error)
 {
     json_t *all = json_object();

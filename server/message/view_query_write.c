@@ -58,7 +58,7 @@ static bool put_list(struct view_address *out, const char *name, const double *v
     return count > 0 ? put_numbers(out, name, values, (size_t)count) : view_address_add(out, name, "none");
 }
 
-/* --- parameters of one half of a split view ------------------------------------------------------------------------------------- */
+/* --- parameters of one half of a split view (two pictures side by side) --------------------------------------------------- */
 
 static bool put_overrides(struct view_address *out, const struct plant *plant, const struct field_params *field)
 {
@@ -115,7 +115,7 @@ static bool put_half(struct view_address *out, const struct params_context *cont
            view_address_add(out, "look", name_of(names_look, (int)half->look));
 }
 
-/* Adds the right half of a split view as one argument NAME=VALUE;... */
+/* Adds the parameters of the right half of a split view (two pictures side by side) as one argument, NAME=VALUE;... */
 static bool put_split(struct view_address *out, const struct params_context *context, const struct view *view, struct message_error *error)
 {
     struct view_address right = { .count = 0 };
@@ -133,7 +133,7 @@ static bool put_split(struct view_address *out, const struct params_context *con
     return good;
 }
 
-/* --- parameters that both halves of a split view share --------------------------------------------------------------------------- */
+/* --- parameters that both halves of a split view (two pictures side by side) share ---------------------------------------- */
 
 static bool put_camera(struct view_address *out, const struct camera *camera)
 {

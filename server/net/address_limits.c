@@ -10,7 +10,8 @@
 
 struct address_limits {
     const struct quotas *quotas;
-    /* usage of each known address; a few thousand at most, because each new connection searches the list linearly */
+    /* usage of quotas by each known client address; a few thousand addresses at most, because each new connection searches the
+       array linearly */
     struct address_usage **all;
     size_t count, capacity;
     uint64_t payers; /* last id assigned to an address (address_share.account); ids count up from 1 */

@@ -11,7 +11,7 @@
 static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit for the standby to receive all state */
 static const int64_t TAKE_NS = NS_PER_S;     /* time limit for the standby to take the lease */
 
-/* Returns the next step of the handover to the standby, or `step` itself while that step is not finished. */
+/* Returns the next step of the handover of the lead to the standby core, or `step` itself while that step is not finished. */
 static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
 {
     struct server_context *server = &net->server;
@@ -27,7 +27,8 @@ static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
         return HAND_OVER_ENDS_POLLING;
     case HAND_OVER_ENDS_POLLING:
         if (!lease_keeper_leads(keeper))
-            return HAND_OVER_DONE; /* the leadership lease is lost to another core: this process must end */
+            /* the leadership lease is lost to another core, so there is nothing to hand over: this process must end */
+            return HAND_OVER_DONE;
         if (!atomic_load(&net->lead_ended))
             return step;
         server->life.lead_ended_ns = now_ns;

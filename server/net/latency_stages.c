@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Latency stages: measures how long frames spend in each stage between an input and the client. */
+/* Measures latency: how long frames spend in each stage (such as drawing, encoding and sending) between a user's input and the
+   client. */
 #include "net/latency_stages.h"
 
 #include "base/mem.h"

@@ -8,7 +8,8 @@
 
 struct signing {
     struct encoded_frame *encoded; /* the frame to sign; NULL: the receiver has taken it */
-    /* facts for the signed statement: plant, arguments of the request and overlay; this struct owns the arguments */
+    /* content of the signed statement besides the readings: plant, arguments of the request and overlay; this struct owns the
+       arguments */
     struct picture_origin origin;
     bool good;                     /* true: the frame's packet is now the signed file; false: it could not be signed */
     struct signing *next;

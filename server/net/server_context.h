@@ -42,7 +42,7 @@ struct wall_displays {
 
 /* Picture that spans the displays of a wall; one entry for each wall (tile_walls.c). */
 struct tile_wall {
-    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this entry is not used */
+    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this element of the array is not used */
     uint64_t leader;                /* id of the session that leads the wall; 0: none */
     uint64_t asked, presented;      /* ids of the wall's picture that was requested last, and of the one that was presented last */
     /* size of the wall's picture, adapted to how long the server takes to draw and encode the picture */
@@ -114,7 +114,8 @@ struct server_context {
         char *notice;      /* text that the page shows before users sign in; NULL: none */
         /* number of tokens left unchecked because their address had sent too many wrong ones, and not yet listed in the audit trail */
         int64_t held;
-        int64_t held_ns;   /* monotonic time when the audit trail last got a line about unchecked tokens */
+        /* monotonic time when the audit trail last got a line about tokens left unchecked because their address is throttled */
+        int64_t held_ns;
         /* number of the identity provider's answers that failed or belonged to no sign-in, and are not yet listed in the audit trail */
         int64_t unasked;
         int64_t looked_ns; /* monotonic time when the files of tokens and certificate were last checked */
@@ -145,11 +146,11 @@ struct server_context {
     struct {
         struct log_pace pace; /* rate limit of log lines about stream requests without the header Upgrade */
         struct upgrade_refusal {
-            char address[64]; /* address of the client whose handshake was refused */
-            int64_t at_ns;    /* monotonic time when the handshake was refused */
+            char address[64]; /* address of the client whose WebSocket handshake was refused */
+            int64_t at_ns;    /* monotonic time when the WebSocket handshake was refused */
             char why[120];
         } refused[UPGRADE_REFUSALS]; /* ring buffer of refused handshakes */
-        unsigned count;              /* number of handshakes refused since the start */
+        unsigned count;              /* number of WebSocket handshakes refused since the start */
     } upgrade;
     struct latency_stages latency;
     struct wall_displays displays;

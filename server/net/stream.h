@@ -11,16 +11,19 @@ struct stream {
     struct stream *next;
     struct address_usage *usage; /* quota usage of the client's address; the connection holds the reference */
     int64_t in_begin_ns;         /* monotonic time when the first bytes of the message being received arrived */
-    struct text in;              /* part of the current message that has been received */
-    size_t in_count;             /* bytes of the current message received so far, stored or dropped */
+    struct text in;              /* bytes of the client's current WebSocket message that have arrived so far */
+    /* number of bytes of the client's current message received so far, whether stored in `in` or dropped because there are too
+       many */
+    size_t in_count;
     struct encoded_frame *sending;
     uint32_t seq;
     enum session_depth depth; /* SESSION_DEPTH_...: whether the frame comes with depth grids, and whether the client lacks these */
-    int half;                 /* index of the depth grid being sent: 0; 1: that of the right half of a split view */
+    /* index of the depth grid being sent: 0: the only one, or that of the left half of a split view; 1: that of the right half */
+    int half;
     enum { SEND_MARKERS, SEND_DEPTH, SEND_HEADER, SEND_PAYLOAD } step;
     int packet, part;      /* indices of the packet being sent in its frame, and of the part being sent in its packet */
-    size_t sent, sent_all; /* bytes sent so far: sent: of the part; sent_all: of the whole frame */
-    bool cut;              /* true: the frame was cut short, so only the end of its message is still to be sent */
+    size_t sent, sent_all; /* number of bytes sent so far: sent: of the part in progress; sent_all: of the whole frame */
+    bool cut;              /* true: the rest of the frame is not sent; only the end of its WebSocket message must still be written */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic time when the last ping was sent */
     /* progress of the first bandwidth measurement, which times the first texts from sending to the pong that follows them */
@@ -42,11 +45,12 @@ struct stream {
 
 /* Adds a stream; its session's id must be larger than all earlier ones. */
 void stream_table_add(struct server_context *server, struct stream *stream);
-/* Removes a stream, which must be in the table. */
+/* Removes a stream (connection to /stream), which must be in the table. */
 void stream_table_remove(struct server_context *server, const struct stream *stream);
 /* Returns the stream of the session with that id; NULL: not connected. */
 struct stream *stream_find(const struct server_context *server, uint64_t client);
-/* Returns the stream of the session that other clients know by that number; NULL: not connected. */
+/* Returns the stream of the session with that session number, which other clients use to follow the session; NULL: not
+   connected. */
 struct stream *stream_called(const struct server_context *server, uint64_t number);
 
 /* --- stream_send.c --- */
@@ -54,14 +58,14 @@ struct stream *stream_called(const struct server_context *server, uint64_t numbe
 /* Makes at most one write: a text, a part of a frame, the end of a frame that was cut short, or a ping. Does nothing if nothing
    is due. Returns false if the connection is gone; the caller then makes libwebsockets close it, which frees the stream. */
 bool stream_send(struct server_context *server, struct stream *stream);
-/* Returns whether there is anything to send now. */
+/* Returns whether there is anything to send to the stream's client now. */
 bool stream_has_output(const struct stream *stream, int64_t now_ns);
-/* Cuts a half-sent frame short if its remaining bytes are not worth sending. */
+/* Stops sending a half-sent frame if its remaining bytes are not worth sending any more. */
 void stream_give_up(struct server_context *server, struct stream *stream, int64_t now_ns);
 /* Handles a pong: measures the round trip and, at the start, the bandwidth. */
 void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
-/* --- tile_walls.c: sessions that are tiles of one picture over many displays --- */
+/* --- tile_walls.c: sessions that are tiles, that is, displays that together show one picture --- */
 
 /* Requests the next picture of a tile's wall. (A tile is one display's part of a wall's picture.) Also presents a picture that
    all tiles have received, if its time has come. */
@@ -69,7 +73,8 @@ void tiles_pump(struct server_context *server, const struct stream *stream);
 /* Chooses the leading tile of a wall and informs all tiles. Call it when tiles connected, disconnected or were dropped.
    leaving: a stream that is being closed, or NULL. */
 void tiles_gather(struct server_context *server, const char *wall, const struct stream *leaving);
-/* Drops tiles that delay their wall, and readmits them once they keep up. Call it every tick. */
+/* Drops tiles (displays that together show one picture) that delay the others of their wall, and readmits them once they keep
+   up. Call it every tick. */
 void tiles_on_tick(struct server_context *server);
 
 /* --- stream_follow.c: sessions that are shown another session's view --- */
@@ -78,12 +83,13 @@ void tiles_on_tick(struct server_context *server);
 void follow_resolve(struct server_context *server, struct stream *stream);
 /* Tells all followers of `leader` that the leader's view changed. Returns false if there are none. */
 bool follow_spread(struct server_context *server, const struct stream *leader);
-/* Gives all viewers of one view the same step of the quality ladder. Call it every tick. */
+/* Chooses one step of the quality ladder (picture quality and size) for all viewers of one view, so that a frame is encoded
+   once for all. Call it every tick. */
 void follow_share_steps(struct server_context *server);
 /* Call it when a stream is being closed. If another connection has resumed the session's view, its followers then follow the
    resuming session; otherwise they follow nobody. */
 void follow_forget(struct server_context *server, const struct stream *leader);
-/* Sends leaders the list of their followers if it changed. Call it every tick. */
+/* Sends each session that others follow (leader) the list of its followers if it changed. Call it every tick. */
 void follow_tell(struct server_context *server, int64_t now_ns);
 
 #endif

@@ -227,7 +227,7 @@ static bool write_frame(struct server_context *server, struct stream *stream)
     return write_slice(server, stream);
 }
 
-/* --- frames that are cut short ---------------------------------------------------------------------------------------- */
+/* --- frames whose remaining bytes are not sent ------------------------------------------------------------------------ */
 
 void stream_give_up(struct server_context *server, struct stream *stream, int64_t now_ns)
 {

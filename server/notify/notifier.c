@@ -32,7 +32,7 @@ struct notifier {
     pthread_mutex_t kept_lock;
     char *kept; /* content of notify.json (pending messages), protected by kept_lock; NULL: none yet */
     struct delivery *delivery;
-    /* --- below: used by the notifier's thread only */
+    /* --- below: members that only the notifier's thread uses */
     struct outbox *outbox;
     struct recipient_counters *counters; /* by recipient: its counters */
     counter *lost, *spool_good;

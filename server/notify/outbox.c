@@ -99,7 +99,8 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    /* true: the alarm is sent again or escalated, so it is queued only if the queue does not have it already */
+    /* true: the alarm was announced before and is now sent again or escalated, so it is queued only if the queue does not have
+       it already */
     bool may_wait = step > 0 || episode->told_us;
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)
@@ -143,7 +144,8 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
-    if (episode->began_us > now_us + OUTBOX_REPEAT_US) /* the wall clock was set back: the start of the episode would be in the future */
+    /* the start of the alarm's episode would be in the future: the wall clock was set back since */
+    if (episode->began_us > now_us + OUTBOX_REPEAT_US)
         episode->began_us = now_us;
     for (size_t i = 0; i < notify->rule_count; i++) {
         const struct notify_rule *rule = &notify->rules[i];

@@ -18,7 +18,7 @@ struct episode { /* an episode: the time during which an alarm needs attention; 
     int64_t told_us;             /* UTC microseconds of the newest notification; 0: no notification since the alarm was last acknowledged */
     uint32_t rules;              /* bit mask of the notification rules that applied to the alarm when the episode began */
     uint32_t told;               /* bit mask of the recipients that were notified of the alarm */
-    uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps carried out */
+    uint8_t steps[NOTIFY_RULES]; /* by notification rule: number of escalation steps carried out for this alarm */
     bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is notified */
     /* true: outbox_put() was called for the alarm since the daemon started; false: the episode is known only from the saved state */
     bool seen;
@@ -34,9 +34,9 @@ struct queue {
     size_t count, capacity;
 };
 
-struct recipient_box { /* messages and queued alarms for one recipient */
+struct recipient_box { /* messages to one recipient, and the alarms queued for it */
     struct queue waiting;
-    struct outbox_item *batch; /* alarms of the message that is being sent, or is sent again after a failure */
+    struct outbox_item *batch; /* alarms of the message that is being sent to the recipient, or is sent again after a failure */
     size_t batch_count;
     char id[OUTBOX_ID_BYTES];
     int64_t batch_us;
@@ -46,7 +46,7 @@ struct recipient_box { /* messages and queued alarms for one recipient */
     int last_priority; /* most urgent alarm priority in the last message to the recipient */
     int attempts;
     int64_t left_out; /* number of alarms since the last message that were not queued, because the queue was full */
-    bool changed;     /* only for Alertmanager: true: alarms have changed since the last message */
+    bool changed;     /* only if the recipient is Alertmanager: true: alarms have changed since the last message */
 };
 
 struct outbox {

@@ -38,7 +38,7 @@ struct publisher {
     int stop_fd; /* eventfd that becomes readable when the thread must end */
     char *client_id;
     counter *up, *messages;
-    /* --- below: used by the publisher's thread only */
+    /* --- below: members that only the publisher's thread uses */
     struct mqtt_client *client;
     struct snapshot *snapshot;
     struct topic *topics; /* by tag: its MQTT topic */

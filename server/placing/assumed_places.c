@@ -52,7 +52,7 @@ static double *confidences(const struct plant *plant)
     return confidence;
 }
 
-/* --- choosing positions to accept --------------------------------------------------------------------------------------------- */
+/* --- choosing which assumed positions of sensors to accept ----------------------------------------------------------------- */
 
 static bool is_like(const char *pattern, const struct plant_tag *tag)
 {

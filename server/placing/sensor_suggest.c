@@ -21,7 +21,9 @@
 #define MAX_CANDIDATES 1500
 /* maximum number of candidates per suggestion, those with the highest bounds, for which geodesic distances are computed */
 #define MAX_MEASURED 40
-#define MIN_GAIN 1e-6 /* minimum reduction of the measure (sensor_suggest.h) for which a sensor is suggested */
+/* minimum gain for which a new sensor is suggested: reduction of the measure of how hard hot spots are to detect
+   (sensor_suggest.h) */
+#define MIN_GAIN 1e-6
 
 struct suggest_asset { /* an asset on which sensors may be suggested */
     int asset;
@@ -35,7 +37,8 @@ struct suggest_asset { /* an asset on which sensors may be suggested */
 struct candidate {
     size_t part;
     uint32_t vertex;
-    /* upper bound of the gain of a sensor at this vertex: reduction of the measure (sensor_suggest.h) times the area in square metres */
+    /* upper bound of the gain of a sensor at this vertex: reduction of the measure of how hard hot spots are to detect
+       (sensor_suggest.h) times the area in square metres */
     double bound;
 };
 

@@ -17,9 +17,11 @@
 
 struct plant_folder_params {
     const char *folder;
-    const char *own; /* path of this program's own work folder in the plant's folder, which must be kept; NULL: none */
-    int lent;        /* open descriptor of the folder, inherited from the parent process, which holds the lock; 0: none */
-    int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
+    /* path of the work folder that this program has made in the plant's folder, so that it is not removed as left by a killed
+       program; NULL: none */
+    const char *own;
+    int lent;    /* open descriptor of the folder, inherited from the parent process, which holds the lock; 0: none */
+    int wait_ms; /* milliseconds to wait for another program to finish; 0: no waiting */
     /* receives what this program finished on behalf of a killed one: "an import", "the undoing of an import"; NULL: not wanted */
     const char **finished;
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds assets on which a group has a single sensor. */
+/* Finds assets on which a group (sensors of one quantity) has a single sensor. */
 #include "plant/singles.h"
 
 #include "base/mem.h"

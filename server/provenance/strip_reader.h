@@ -16,7 +16,7 @@ struct strip_picture {
 struct strip_found {
     struct strip strip;
     double left_px, top_px, cell_px, row_px; /* position of the strip in the picture, and width and height of its cells */
-    int mended;                              /* number of bytes of the strip's code that error correction repaired */
+    int mended;                              /* number of bytes of the strip's machine-readable code that error correction repaired */
     /* CIELAB values of the legend's colours as they appear in this picture: below range, MIN to MAX, above range */
     double ramp[STRIP_SHADES][STRIP_INNER][3];
     double noise; /* CIELAB deviation, caused by compression, among pixels that should have the same colour */
@@ -34,7 +34,7 @@ struct strip_value {
 
 /* Finds the legend strip in a picture. Returns false, with the reason in *why (static text), if the picture has no readable strip. */
 bool strip_find(const struct strip_picture *picture, struct strip_found *found, const char **why);
-/* Reads the value that a pixel's colour represents. Returns false if the pixel is outside the picture, or on the strip. */
+/* Reads the value that a pixel's colour represents. Returns false if the pixel is outside the picture, or on the legend strip. */
 bool strip_read(const struct strip_picture *picture, const struct strip_found *found, int x_px, int y_px, struct strip_value *out);
 
 #endif

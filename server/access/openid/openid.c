@@ -77,8 +77,8 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
 }
 
 /* Classifies a log-in that the provider ended with an error: the user was refused, or the provider failed. The error does not
-   count as a wrong token. Anyone can send such errors, so at most one per ERROR_EVERY_NS is recorded in the audit trail
-   (OPENID_REFUSED); the others give OPENID_AWAY. The caller holds the lock. */
+   count as a wrong token. Anyone can send such errors, so the audit trail records at most one per ERROR_EVERY_NS: the result is
+   then OPENID_REFUSED. For the others it is OPENID_AWAY, which is not recorded. The caller holds the lock. */
 static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
 {
     if (openid->error_ns && now_ns - openid->error_ns < ERROR_EVERY_NS)

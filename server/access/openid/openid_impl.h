@@ -15,8 +15,8 @@ enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 };
 struct openid_job { /* a queued request to the provider: exchange the authorization code that a browser brought back, or revoke a token */
     uint64_t request;
     struct sign_in sign_in;
-    /* code: authorization code; from: address of the client as text; revoke: refresh token to revoke, NULL: the job exchanges `code` for
-       tokens */
+    /* code: authorization code to exchange for tokens; from: address of the client as text; revoke: refresh token to revoke;
+       NULL: the job exchanges `code` */
     char *code, *from, *revoke;
     struct openid_job *next;
 };

@@ -12,17 +12,17 @@
 
 #define CHUNK ((size_t)1 << 18)  /* uncompressed bytes of each chunk except the last one; larger chunks save less than 1 % more */
 #define SAMPLE ((size_t)1 << 15) /* bytes at the start of a chunk that are compressed in each layout, to choose the best one */
-#define LEVEL 1                  /* zstd level; level 3 takes twice the time and saves 2 % */
+#define LEVEL 1                  /* zstd compression level; level 3 would take twice the time for files 2 % smaller */
 
 enum layout {
     LAYOUT_PLAIN,       /* bytes as they are */
     LAYOUT_PLANES,      /* the first bytes of all 32-bit words, then the second bytes of all words, and so on */
-    LAYOUT_DIFFERENCES, /* as LAYOUT_PLANES, for the differences between successive words, with the sign in the lowest bit */
+    LAYOUT_DIFFERENCES, /* as LAYOUT_PLANES, but for the differences between successive 32-bit words, with the sign in the lowest bit */
     LAYOUTS
 };
 
 struct chunk_head {
-    uint32_t bytes;  /* size of the zstd frame, which follows */
+    uint32_t bytes;  /* size in bytes of the chunk's zstd frame, which follows this header */
     uint32_t layout; /* enum layout */
 };
 
@@ -52,7 +52,8 @@ static void to_planes(const uint8_t *from, size_t bytes, bool differences, uint8
     memcpy(to + 4 * words, from + 4 * words, bytes % 4);
 }
 
-/* Two loops, because the compiler vectorises the first one. */
+/* Restores words from their byte planes. Reassembling the words and adding up differences are two loops, because the compiler
+   can vectorise only the first one. */
 static void from_planes(const uint8_t *from, size_t bytes, bool differences, uint8_t *to)
 {
     const size_t words = bytes / 4;
@@ -75,7 +76,7 @@ static void from_planes(const uint8_t *from, size_t bytes, bool differences, uin
 
 struct compressor {
     ZSTD_CCtx *zstd;
-    uint8_t *chunk, *laid_out; /* an uncompressed chunk, and the same bytes in the layout being compressed */
+    uint8_t *chunk, *laid_out; /* the chunk before compression, and the same bytes rearranged in the layout being compressed */
     uint8_t *out;              /* header and frame of a compressed chunk */
     size_t out_capacity;
 };
@@ -187,12 +188,12 @@ size_t decompressed_size(const void *compressed, size_t bytes)
 
 struct decompressor {
     const uint8_t *bytes; /* compressed bytes */
-    size_t size, at;      /* number of compressed bytes, and position of the next chunk */
-    size_t left;          /* uncompressed bytes of the chunks from `at` on */
+    size_t size, at;      /* number of compressed bytes in `bytes`, and position of the next chunk among them */
+    size_t left;          /* number of uncompressed bytes in the chunks from position `at` on */
     ZSTD_DCtx *zstd;
     uint8_t *planes;        /* a chunk in its layout */
-    uint8_t *chunk;         /* a decompressed chunk that was read only partially */
-    size_t filled, read_to; /* number of bytes in `chunk`, and number of bytes read from it */
+    uint8_t *chunk;         /* bytes of a decompressed chunk of which the caller has read only a part so far */
+    size_t filled, read_to; /* number of bytes in `chunk`, and number of these that the caller has read */
 };
 
 struct decompressor *decompressor_create(const void *compressed, size_t bytes)
@@ -253,7 +254,8 @@ bool decompressor_read(struct decompressor *d, void *to, size_t count)
             d->read_to += kept;
             out += kept;
             count -= kept;
-        } else if (count >= next) { /* the whole chunk is wanted: no need to copy it */
+            /* the caller wants the whole chunk: decompresses it directly into the caller's memory, without a copy */
+        } else if (count >= next) {
             if (!decompress_chunk(d, out, next))
                 return false;
             out += next;

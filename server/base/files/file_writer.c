@@ -128,7 +128,7 @@ int file_writer_queue(struct file_writer *writer, struct file_job *job)
     pthread_mutex_lock(&writer->thread.lock);
     error = failed_before(writer, job->owner);
     if (!error && writer->queued_count == MAX_QUEUED)
-        error = -ETIMEDOUT; /* the queue is full because the disk hangs */
+        error = -ETIMEDOUT; /* the queue of jobs is full because the disk hangs */
     if (!error) {
         job->number = ++writer->count;
         writer->results[job->number % RESULTS] = -EINPROGRESS;

@@ -54,7 +54,8 @@ static size_t read_head(struct unpack *from, size_t bytes_each)
     return from->bad ? 0 : head.count;
 }
 
-/* Reads the elements of an array, and the padding after them, which may be missing at the end of the data. */
+/* Reads the elements of an array, and the padding to a multiple of eight bytes after them, which may be missing at the end of
+   the data. */
 static void read_elements(struct unpack *from, void *to, size_t count, size_t bytes_each)
 {
     char padding[ALIGN];

@@ -9,14 +9,15 @@
 #include "base/clock.h"
 
 struct settling {
-    uint64_t queued, done; /* number of rows queued since the start; number of rows written or dropped since the start */
-    uint64_t lost;         /* sequence number of the newest dropped row; 0: none was dropped */
+    uint64_t queued, done; /* number of rows queued for the disk since the start; number of these written or dropped since the start */
+    uint64_t lost;         /* sequence number of the newest row that was dropped instead of written; 0: none was dropped */
     uint64_t failures;     /* number of failed write attempts */
-    int error;             /* -errno of the newest failed attempt. A later success does not clear it, because tickets
-                              (settling_ticket) from before the success need it */
+    /* -errno of the newest failed attempt to write rows. A later success does not clear it, because tickets (settling_ticket)
+       from before the success need it */
+    int error;
 };
 
-/* The rows queued between settling_begin() and settling_end(). All zero: no rows. */
+/* The rows queued for the disk between settling_begin() and settling_end(). All zero: no rows. */
 struct settling_ticket {
     uint64_t first, last, failures;
     int64_t until_ns; /* monotonic time after which a row that is not on disk counts as not saved */
@@ -33,14 +34,14 @@ static inline void settling_end(const struct settling *settling, struct settling
     ticket->until_ns = now_ns + NS_PER_S;
 }
 
-/* Counts a row that is dropped because the queue is full. */
+/* Counts a row that is dropped instead of written, because the queue for the disk is full. */
 static inline void settling_drop(struct settling *settling)
 {
     settling->lost = ++settling->queued;
     settling->done++;
 }
 
-/* Counts a write attempt that put `rows` more rows on disk. error: 0, or -errno if the attempt failed. */
+/* Counts an attempt to write queued rows, which put `rows` more rows on disk. error: 0, or -errno if the attempt failed. */
 static inline void settling_wrote(struct settling *settling, uint64_t rows, int error)
 {
     settling->done += rows;

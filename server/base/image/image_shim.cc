@@ -121,7 +121,8 @@ bool size_good(const OIIO::ImageSpec &spec, int max_channels, char *why)
 bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
 {
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
-    /* WebP files are exempt, because WebP stores single-colour images in a few bytes */
+    /* refuses files too short for the size that they state; not WebP files, which store even large single-colour images in a
+       few bytes */
     if (strcmp(format, "webp") != 0 && values > IMAGE_FREE_VALUES + uint64_t{ IMAGE_VALUES_PER_BYTE } * size)
         return refuse(why, "%zu bytes cannot hold a picture of %d x %d pixels", size, spec.width, spec.height);
     return true;

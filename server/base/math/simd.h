@@ -46,7 +46,7 @@ static inline bool simd_has_avx2(void)
 #endif
 
 /* Polynomials for 2^x and log2(x), for floats and for vectors of floats. Each macro assigns the polynomial's value at x to p. */
-#define LOG2_SPLIT_BITS 0x3f3504f3 /* bits of sqrt(1/2); the log2 polynomial is valid from there to sqrt(2) */
+#define LOG2_SPLIT_BITS 0x3f3504f3 /* bit pattern of the float sqrt(1/2): LOG2_POLYNOMIAL is valid for mantissas from there to sqrt(2) */
 
 /* Minimax polynomial of log2(1 + x)/x over [sqrt(1/2) - 1, sqrt(2) - 1]. */
 #define LOG2_POLYNOMIAL(p, x) \

@@ -40,13 +40,13 @@ static int by_place(const void *pa, const void *pb)
     if (order == 0)
         order = (a->column > b->column) - (a->column < b->column);
     if (order == 0)
-        order = (a > b) - (a < b); /* equal positions: keep the order of insertion */
+        order = (a > b) - (a < b); /* findings at equal positions keep the order in which they were added */
     return order;
 }
 
 enum { PLACES_BYTES = 100 };
-/* number of similar findings that are printed on a line each. If there are more errors, only the first 20 are printed; more
-   warnings are merged into one line with all positions */
+/* maximum number of similar findings that get a line each. Of more errors, only the first 20 are printed; more warnings are
+   merged into one line that lists all positions */
 static const size_t most_alike[] = { [DIAG_ERROR] = 20, [DIAG_WARNING] = 3 };
 
 static bool is_alike(const struct diag_item *a, const struct diag_item *b)

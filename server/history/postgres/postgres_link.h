@@ -24,7 +24,7 @@ void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns)
 void postgres_link_close(struct postgres_link **link); /* Closes the connection and sets *link to NULL; accepts a pointer to NULL. */
 const char *postgres_link_why(const struct postgres_link *link); /* Returns the reason for the last failure as text. */
 
-/* Runs SQL statements and discards any rows. Returns false on failure. */
+/* Runs SQL statements and ignores any result rows. Returns false on failure. */
 bool postgres_link_run(struct postgres_link *link, const char *sql);
 /* Runs SQL statements given as a printf() format. Returns false on failure. */
 bool postgres_link_runf(struct postgres_link *link, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
@@ -41,7 +41,8 @@ void postgres_copy_time(struct postgres_link *link, int64_t t_us);   /* adds a c
 void postgres_copy_double(struct postgres_link *link, double value); /* adds a column with a number; NaN is sent as NULL */
 void postgres_copy_text(struct postgres_link *link, const char *text);
 void postgres_copy_bool(struct postgres_link *link, bool value);
-bool postgres_copy_end(struct postgres_link *link); /* Sends all rows of the COPY. Returns false on failure. */
+/* Ends the COPY that postgres_copy_begin() began, so that the server stores all its rows. Returns false on failure. */
+bool postgres_copy_end(struct postgres_link *link);
 
 /* The four functions below return one column of a result row in binary format. */
 int32_t postgres_int32(const PGresult *result, int row, int column);

@@ -14,26 +14,28 @@ struct postgres_restore {
     bool wanted;    /* true: points are being restored from PostgreSQL */
     int next_month; /* next month to restore (months since January 1970); INT_MAX: the restore has not begun */
     int64_t points; /* number of points restored so far */
-    /* true: points may be sent to the database: earlier lines there are ended, or another daemon continues them */
+    /* true: points may be sent to the database, because earlier recordings there were ended with points without a value, or
+       another daemon continues them */
     bool begins;
 };
 
 /* Sets restore->wanted if the folder needs a restore: it has no monthly files, or an earlier restore is unfinished. Creates the folder. */
 void postgres_restore_init(struct postgres_restore *restore, struct log *log, const struct plant *plant, const struct history_tag *tags,
                            const char *folder);
-/* Ends the recorded lines of all tags in the database at their last points. Returns false if the server fails. */
+/* Ends the recording of all tags in the database: writes a point without a value after each tag's last point, because its
+   values are unknown from then on. Returns false if the server fails. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us);
-/* Corrects the ends of recorded lines in the database between the last sample received from the former leader and our own first
-   sample. Lines that the former leader continued after the connection was lost then end at their true last points. Returns
-   false if the server fails. */
+/* Corrects where recordings end in the database (a point without a value) between the last sample received from the former
+   leader and our own first sample. If the former leader recorded a tag after the connection was lost, the tag's recording then
+   ends at its true last point. Returns false if the server fails. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us);
 /* Copies the points of all tags between two times from the database to the files, in place of the gap there. Returns false if
    the server fails or the files cannot be written (logged, reason in `why`). */
 bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tables *tables, int64_t from_us, int64_t to_us,
                            int64_t *points, char why[POSTGRES_WHY_BYTES]);
 /* Restores one more month from the database, and sets *points to the number of its points. Returns false if the server fails,
-   or the files cannot be written (logged, reason in `why`). The first call ends the lines of earlier recordings in the
-   database; make it before anything is written there. */
+   or the files cannot be written (logged, reason in `why`). The first call ends earlier recordings in the database with points
+   without a value; make it before anything is written there. */
 bool postgres_restore_step(struct postgres_restore *restore, struct postgres_tables *tables, int64_t now_us, int64_t *points,
                            char why[POSTGRES_WHY_BYTES]);
 

@@ -279,7 +279,7 @@ int import_take_body(struct server_context *server, struct http_exchange *reques
     (void)server;
     struct upload_body *body = request->body_in;
     if (!body)
-        return 0; /* ignore the body of an upload that was refused */
+        return 0; /* ignores the body of an upload that was refused */
     body->left -= (int64_t)count;
     int error = body->left < 0 ? -EFBIG : export_upload_write(body->upload, bytes, count);
     bool slow = drips(body);
@@ -334,7 +334,7 @@ void import_abandon_body(struct http_exchange *request)
 static const struct {
     const char *path;
     int (*take)(struct server_context *server, struct http_exchange *request, const struct args *args);
-    bool always; /* true: the path may be used even while an import runs */
+    bool always; /* true: the path of the API may be used even while an import runs */
 } posts[] = {
     { "/api/v1/import/upload", begin_upload, false }, { "/api/v1/import/remove", remove_file, false },
     { "/api/v1/import/run", order_all, false },       { "/api/v1/import/decide", begin_decisions, false },

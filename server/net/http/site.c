@@ -136,7 +136,7 @@ static struct site_form compressed(const struct site_form *plain)
 
 struct web_site {
     char *folder;
-    struct site_file *files; /* files of the web client, sorted by path */
+    struct site_file *files; /* files of the web client, sorted by path within the site */
     size_t count, capacity;
 };
 

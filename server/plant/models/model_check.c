@@ -81,7 +81,7 @@ static bool find_better(const struct plant_asset *asset, const struct model_box 
         /* ascending, so that the smallest unit that fits is chosen */
     } units[] = { { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { "m", 1 } };
     size_t best = within, placed;
-    for (int pass = 0; pass < 3; pass++) /* pass 0: another axis; 1: other units; 2: both */
+    for (int pass = 0; pass < 3; pass++) /* pass 0: tries the other upward axis; 1: other units; 2: both */
         for (int u = pass ? 0 : -1; u < (pass ? 5 : 0); u++) {
             bool turn = pass != 1;
             enum axis up = turn ? (asset->up == AXIS_Y ? AXIS_Z : AXIS_Y) : asset->up;

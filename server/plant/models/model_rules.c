@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum rule_kind { OBJECT, LIST, TEXT, FLAG, NUMBER, NUMBERS, SIZE, COUNT, INDEX, INDICES, ATTRIBUTES };
-enum rule_need { MAY, MUST }; /* MUST: it is an error if an object of the list lacks the property */
+enum rule_need { MAY, MUST }; /* MUST: it is an error if a glTF object lacks the property; MAY: the property is optional */
 
 struct model_rule {
     /* list: name of the glTF array that contains the object; path: name of the property; dots separate nested objects, which have rules of

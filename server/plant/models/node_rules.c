@@ -7,7 +7,8 @@
 
 #include "plant/models/transform.h"
 
-/* MAX_COORDINATE: limit of a matrix's numbers; LEAST_ROTATION: of a quaternion's length; MATRIX_SLACK: tolerance of the last row */
+/* MAX_COORDINATE: largest magnitude of a number in a matrix; LEAST_ROTATION: smallest length of a rotation's quaternion;
+   MATRIX_SLACK: tolerated deviation of a matrix's last row from 0, 0, 0, 1 */
 static const double MAX_COORDINATE = 1e15, LEAST_ROTATION = 1e-6, MATRIX_SLACK = 1e-6;
 
 const char *node_rules_local(const double t[3], const double q[4], const double s[3], const double *matrix, double out[16])

@@ -181,7 +181,7 @@ static void say_none(const struct pattern *pattern, const char *text, const stru
 
 /* --- applying patterns -------------------------------------------------------------------------------------------------------- */
 
-/* Sets marks[i] to `value` for each node i that a pattern matches. Returns false if no node matches. */
+/* Sets marks[i] to `value` for each node i of the model that matches the pattern. Returns false if no node matches. */
 static bool mark(const struct pattern *pattern, const struct node_list *model, bool *marks, bool value)
 {
     bool any = false;

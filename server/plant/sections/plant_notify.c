@@ -98,7 +98,8 @@ static void read_mail(struct yaml_reader *reader, yaml_node_t *node, void *recor
 }
 
 struct recipient_record {
-    struct notify_recipient recipient; /* must be first: read_email() gets a pointer to it */
+    /* must be first: read_email() gets a pointer to the struct and converts it to a pointer to this member */
+    struct notify_recipient recipient;
     char *webhook, *alertmanager;
 };
 
@@ -159,7 +160,7 @@ static void read_recipients(struct yaml_reader *reader, yaml_node_t *node, void 
 /* --- rules ------------------------------------------------------------------------------------------------------------------ */
 
 struct rule_record {
-    struct notify_rule rule; /* must be first: read_areas() gets a pointer to it */
+    struct notify_rule rule; /* must be first: read_areas() gets a pointer to the struct and converts it to a pointer to this member */
     const struct plant_notify *notify;
 };
 

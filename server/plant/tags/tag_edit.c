@@ -21,14 +21,14 @@ struct cell_span { /* part of the tag list's text that is one cell, including qu
 struct tag_row {
     struct cell_span *cells;
     size_t count, capacity;
-    const char *end; /* end of the row's text, before the line end */
+    const char *end; /* end of the text of the tag list's current row, before the line end */
 };
 
 struct tag_text {
     char separator;
     const char *at;
     struct tag_row row;
-    int column[EDIT_COLUMNS]; /* index of the column in the file; -1: the header lacks the column */
+    int column[EDIT_COLUMNS]; /* index of each edited column in the file; -1: the file's header lacks the column */
     size_t width;             /* number of columns in the header of the tag list */
 };
 
