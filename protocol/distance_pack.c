@@ -65,7 +65,8 @@ static bool all_reached(const uint16_t *codes)
     return reached;
 }
 
-/* Writes how much the sensor's distance changes over LANES vertices, at SAMPLES vertices; similar changes mean similar sensors. */
+/* For each of SAMPLES vertices, writes how much the sensor's distance changes from that vertex to the one LANES further.
+   Sensors with similar changes predict each other well. */
 static void sample_slopes(const uint16_t *codes, float slope_m[SAMPLES])
 {
     for (size_t i = 0; i < SAMPLES; i++) {
@@ -123,8 +124,8 @@ static uint8_t width_of(const uint16_t *group)
     return width;
 }
 
-/* Packs a group of differences with `width` bits each. The values of one lane (every LANES-th) follow one another in that lane's column of
-   16-bit words. */
+/* Packs a group of differences with `width` bits each. The words of the LANES lanes are interleaved; lane k contains the values
+   k, k + LANES, k + 2 LANES, ... */
 static uint8_t *pack_group(const uint16_t *group, unsigned width, uint8_t *out)
 {
     uint16_t words[17 * LANES] = { 0 };

@@ -20,7 +20,8 @@ static bool entry_good(const struct influence_view *view, const struct influence
         return false;
     const double *precision = influence_array(view, entry->precision);
     const float *shares = influence_array(view, entry->shares);
-    /* distances and transport angles may be INFINITY; weights must be finite */
+    /* open: values may be INFINITY. Distances by the heat method and transport angles may (no path to the vertex); weights must
+       be finite */
     bool good = true, open = entry->interpolation >= INFLUENCE_HEAT;
     for (uint64_t i = 0; i < sensors * sensors; i++)
         good &= isfinite(precision[i]);

@@ -33,14 +33,14 @@ struct influence_entry {
     /* for interpolation gp: offset of float[2][vertex], the standard deviations of the interpolated values, with all sensors and without
        any; other interpolations: 0 */
     uint64_t deviations;
-    /* offset of float[vertex]: largest interpolation error in the triangles at the vertex, as a fraction of the spread of readings;
-       offset 0: unknown */
+    /* offset of float[vertex]: largest error in the triangles at the vertex, compared with the exact solution. Unit: difference
+       between the largest and the smallest reading; 1 means unknown. Offset 0: the entry has no such array */
     uint64_t errors;
-    /* disc_m: radius in metres of the disc on the surface that has the sensor's value; decay_m: decay length in metres for interpolation
-       fin, other interpolations 0 */
+    /* disc_m: radius in metres of the disc on the surface that represents a sensor; decay_m: for interpolation fin, decay
+       length in metres of the temperature along the metal; other interpolations: 0 */
     double disc_m, decay_m;
-    /* parameters of interpolation gp (range, noise, standard deviation), from the plant file or determined from readings; other
-       interpolations: 0 */
+    /* for interpolation gp, from the plant file or fitted to readings: range_m: correlation length in metres; noise, deviation:
+       standard deviations in the unit of the readings. Other interpolations: 0 */
     double range_m, noise, deviation;
 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes and decodes the legend strip's description of the colour scale, with Reed-Solomon over GF(256) (polynomial 0x11d,
-   first root alpha^0). */
+/* Encodes and decodes the description of the colour scale that the legend strip contains as a code of dark and light cells,
+   with Reed-Solomon over GF(256) (polynomial 0x11d, first root alpha^0). */
 #include "protocol/strip_format.h"
 
 #include <math.h>

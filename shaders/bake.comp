@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
     mat4 map_from_plant[32];
-    vec4 direction[32]; // unit vector towards this part of the sky; w: its brightness
+    vec4 direction[32]; // unit vector towards the sky direction that sky map i covers; w: brightness of the sky there
 };
 // matrix from the coordinates of the vertices to plant axes, relative to the centre of the scene
 layout(location = 0) uniform mat4 plant_from_here;
@@ -32,7 +32,8 @@ layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // pack
 // four bytes per vertex: light, ambient, openness (visible part of the sky), cosine to the sun
 layout(std430, binding = 4) buffer Light { uint baked[]; };
 layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // vertex indices of the corners of large triangles (bake_faces.h)
-// three sums per vertex over the samples in large triangles: weight, openness, visible sun
+// three sums per vertex over the samples that look_within() takes in the adjoining large triangles: weights, openness times
+// weight, visible fraction of the sun times weight
 layout(std430, binding = 6) buffer Sums { uint sums[]; };
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;

@@ -12,7 +12,8 @@
 #define SUN_LIGHT 0.78
 // Reflectance of a dielectric at normal incidence.
 #define CLEAR_F0 0.04
-// Parameters of the Khronos PBR Neutral tone mapper.
+// Parameters of the Khronos PBR Neutral tone mapper: brightness above which it compresses, and rate at which compressed colours
+// turn white.
 #define TONE_START 0.76
 #define TONE_DESATURATION 0.15
 // Assets without a field are muted: their colour is mixed with this grey, whose share is MUTED_PART.
@@ -25,9 +26,12 @@
 // A normal is flipped towards the viewer if its cosine to the viewer is less than this. At smoothed rims, slightly negative cosines are
 // expected.
 #define MOST_AWAY -0.3
-// Minimum openness of surfaces seen from behind, because the baked openness applies to the front.
+// Minimum openness (visible fraction of the sky, 0..1) of surfaces seen from behind, because the baked openness applies to the
+// front.
 #define OPEN_BEHIND 0.7
-// Frames in the glossy look use softer light, so that colours of the field stay recognisable in shadow.
+// Light in the glossy look, softer than usual so that colours of the field stay recognisable in shadow. GLOSSY_OPEN: minimum
+// openness; GLOSSY_SKY, GLOSSY_SUN: factors on the light of sky and sun in refined frames; GLOSSY_DARKEST: added to the
+// brightness in previews.
 #define GLOSSY_OPEN 0.3
 #define GLOSSY_SKY 1.45
 #define GLOSSY_SUN 0.75
@@ -68,8 +72,10 @@
 #define ISOLINE_DARK_RGB 0.07, 0.09, 0.12
 #define ISOLINE_LIGHT 0.93
 #define ISOLINE_MOST 0.8
-// Ghosted assets, over a light and a dark backdrop: lines at relative steps of depth (FALL) and at creases (BEND), and thin horizontal
-// lines every GHOST_LEVEL_PX pixels.
+// Ghosted (transparent) assets are drawn as lines, in one colour over a light backdrop and another over a dark one. FALL: lines
+// where depth has a step, BEND: lines at creases. MOST: maximum opacity; FROM, TO: relative change of depth at which a line
+// begins and reaches that opacity. GHOST_LEAST: fainter lines are not drawn. GHOST_LEVEL: opacity of thin horizontal lines
+// every GHOST_LEVEL_PX pixels.
 #define GHOST_ON_LIGHT_RGB 0.20, 0.26, 0.33
 #define GHOST_ON_DARK_RGB 0.56, 0.64, 0.72
 #define GHOST_FALL_MOST 0.9
@@ -81,10 +87,11 @@
 #define GHOST_LEAST 0.05
 #define GHOST_LEVEL 0.4
 #define GHOST_LEVEL_PX 10
-// Outline of the selected asset: a dark line inside a white one.
+// Outline of the selected asset: colour of the dark line, and opacity of the white line around it.
 #define RIM_RGB 0.05, 0.09, 0.16
 #define RIM_WHITE 0.9
-// Section cuts: a surface's inner side, brighter towards the viewer and upwards; and section caps with darker stripes.
+// Section cuts. INSIDE: colour of a surface's inner side, its minimum brightness, and how much brighter it is towards the
+// viewer and upwards. CAP: colour of section caps (cut faces), and how much darker their stripes are.
 #define INSIDE_RGB 0.40, 0.41, 0.43
 #define INSIDE_LEAST 0.72
 #define INSIDE_TOWARDS 0.28

@@ -8,7 +8,7 @@ struct Cell {
 };
 layout(std430, binding = 0) buffer Cells { Cell cells[]; };
 layout(location = 0) uniform ivec2 grid; // columns and rows of the depth grid
-layout(location = 1) uniform vec2 steps; // x, y: a difference of depth larger than x * depth + y counts as a step
+layout(location = 1) uniform vec2 steps; // x, y: a cell is divided into two surfaces if its depths differ by more than x * depth + y
 layout(binding = 0) uniform sampler2D depth;
 const int SIDE = 8;
 const float LEAST_GAP = 0.25;

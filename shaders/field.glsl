@@ -5,7 +5,8 @@
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
-layout(binding = 15) uniform sampler2D lines; // lookup table by position on the scale: position of the nearest isoline
+// lookup table: for each position on the scale (0 at MIN, 1 at MAX), the position of the nearest isoline
+layout(binding = 15) uniform sampler2D lines;
 #endif
 
 const int PLACES = COLORMAP_PLACES, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,

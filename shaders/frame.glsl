@@ -9,8 +9,9 @@ layout(std140, binding = 0) uniform Frame {
     // colour scale: x: MIN, y: 1/(MAX - MIN); z: 1 if the scale is logarithmic (x and y are then computed from binary logarithms), else 0;
     // w: cell size of patterns in pixels
     vec4 scale;
-    vec4 shade;          // row of the colour map = min(surface brightness * x + y, z)
-    vec4 lines;          // x: width of isolines in pixels, 0: none; y: index of the first row of the backdrop
+    vec4 shade;          // row of the colour map for a surface's brightness b: min(b * x + y, z)
+    // x: width of isolines in pixels, 0: none; y: index of the first row of this backdrop's colours in the texture of backdrops
+    vec4 lines;
     // orthographic: unit vector towards the viewer; w: distance from near to far plane / viewing distance. Perspective: all 0
     vec4 back;
     vec4 clip[6];        // section planes in clip space

@@ -13,8 +13,9 @@ float at(ivec2 pixel)
     return texelFetch(ghosts, clamp(pixel, ivec2(0), textureSize(ghosts, 0) - 1), 0).r;
 }
 
-// Measures edges of a ghost between the pixels on both sides. x: drop of depth to one side, minus its rise to the other side (0 on a plane,
-// however steep); y: curvature. Both are relative to distance.
+// Detects edges of a ghosted asset at a pixel from its two neighbours at +side and -side. x: step: drop of depth to the farther
+// neighbour, minus rise to the nearer one (0 on a plane, however steep); y: crease: curvature of the depth. Both are relative
+// to distance.
 vec2 shape(ivec2 pixel, float here, float scale, ivec2 side)
 {
     float a = at(pixel - side), b = at(pixel + side);

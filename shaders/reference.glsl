@@ -5,10 +5,13 @@
 struct Sensor {
     vec4 place_m;  // position in file coordinates; w: strength
     float decay, value;
-    uint column, state; // bits: 1: configured, 2: usable, 4: uncertain, 8: without limits
+    // column: index of the sensor in `distances`; state, as bits: 1: configured, 2: usable, 4: uncertain, 8: without limits
+    uint column, state;
 };
 layout(std430, binding = 5) readonly buffer Sensors {
-    vec4 numbers; // power, radius, reach, MIN of the group's range
+    // x: exponent of interpolation shepard; y: radius in metres of Algorithm 1; z: reach in metres, beyond which a sensor has
+    // no influence; w: MIN of the group's range
+    vec4 numbers;
     // x: factor MAX - MIN of the range, which scales Algorithm 1's sum to a value, or 0; y: vertex count of the asset; z, w
     // (only if the smallest visible hot spot is shown): size of a hot spot and the value at which it is seen
     vec4 more;

@@ -24,7 +24,7 @@ struct film {
     struct view view;
     struct daemon_url url;
     struct text query;
-    const char *said;                   /* text to draw into the pictures of the tour's current stop; empty: none */
+    const char *said;                   /* text that is drawn into the pictures of the tour's current stop; empty: none */
     long count;                         /* pictures made so far */
     struct film_statements *statements; /* the server's signed statements about the pictures of a signed film; NULL: the film is not
                                            signed */

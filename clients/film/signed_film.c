@@ -23,7 +23,7 @@ static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */
 
 struct film_statements {
-    struct text list; /* JSON array without its closing bracket */
+    struct text list; /* JSON array of all statements added so far, without its closing bracket */
 };
 
 struct film_statements *film_statements_create(void)
@@ -182,8 +182,8 @@ static bool next_picture(struct film_reader *reader)
     }
 }
 
-/* Returns true if the stream describes the picture's colours and shape exactly as film/video.c writes them. Checked for each picture,
-   because a stream may change the description later. */
+/* Returns true if the stream describes the picture's colours and pixels exactly as film/video.c writes them: RGB, not cropped,
+   square pixels. Checked for each picture, because a stream may change the description later. */
 static bool is_plain_picture(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
@@ -200,8 +200,8 @@ static bool is_plain_picture(struct film_reader *reader)
            FAIL("the size in box avc1 differs from the frames' size");
 }
 
-/* Returns the picture's pixels as red, green, blue (mem_free), or NULL if its colours or shape are not described as film/video.c writes
-   them. */
+/* Returns the picture's pixels as red, green, blue (mem_free), or NULL if its colours or pixels are not described as
+   film/video.c writes them. */
 static uint8_t *pixels_of(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;

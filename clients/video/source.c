@@ -34,8 +34,9 @@ struct video_source {
     gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, except asked_utc_us */
 
     GTimeZone *zone;
-    char *view, *view_query, *view_title; /* the saved view to show: view as stored, view_query as a query, and its title; NULL: not known
-                                             yet, or the video shows no saved view */
+    /* the saved view to show: view: its text as the daemon stores it; view_query: the same as a query of /snapshot.png;
+       view_title: its title. NULL: not known yet, or the video shows no saved view */
+    char *view, *view_query, *view_title;
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
     bool valued; /* true: the picture shows values, so the strip shows their age */
@@ -253,7 +254,8 @@ static void on_answer(struct video_source *source)
         return;
     }
     if (status != 200) {
-        if (source->asked == ASK_PLANT && status != 401 && status != 403) /* the picture request handles token errors */
+        /* errors of this request do not hide the picture, unless the daemon refused the token (401, 403) */
+        if (source->asked == ASK_PLANT && status != 401 && status != 403)
             return;
         refuse(source, status);
         return;

@@ -138,7 +138,7 @@ static int read_options(struct sim_options *options, int argc, char **argv)
     return status;
 }
 
-/* Reads PLANT.map next to PLANT.yaml, if there is one. */
+/* Reads the map file PLANT.map (which recorded series belongs to which tag) next to PLANT.yaml, if there is one. */
 static void read_map_file(struct sim_options *options, struct diag *diag)
 {
     const char *dot = strrchr(options->plant, '.'), *slash = strrchr(options->plant, '/');

@@ -30,7 +30,7 @@ bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *val
 void sim_finish(struct sim *sim);
 /* Writes the present values of all tags to the registers. */
 void sim_update(struct sim *sim);
-/* Returns the device of a tag, and its unit; NULL if the tag is not on Modbus. */
+/* Returns the simulated device of a tag, and its Modbus unit identifier in *unit; NULL if the tag's source is not Modbus TCP. */
 struct sim_device *sim_device_of(const struct sim *sim, const struct plant_tag *tag, int *unit);
 
 /* Executes a line from the control port; arg: struct sim. */

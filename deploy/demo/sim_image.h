@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The registers of one simulated device, in each of its units. Only registers used by a tag exist. Call from one thread only. */
+/* The registers of one simulated device, for each of its Modbus unit identifiers. Only registers used by a tag exist. Call from
+   one thread only. */
 #ifndef DEMO_SIM_IMAGE_H
 #define DEMO_SIM_IMAGE_H
 #include <modbus.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses the mapping from series to tags. */
+/* Parses --map arguments and map files, which say which recorded series gives the value of which tag. */
 #include "sim_map.h"
 
 #include <ctype.h>

@@ -28,7 +28,8 @@ struct sim_map { /* zero-initialise */
 /* Adds an entry: `TAG=SERIES`, `TAG=SERIES*SCALE`, `TAG=SERIES*SCALE+OFFSET` (or -OFFSET). Errors go to diag. */
 void sim_map_add(struct sim_map *map, const char *text, const char *file, int line, struct diag *diag);
 void sim_map_add_file(struct sim_map *map, const char *path);
-/* Reads a map file: lines with entries, `values PATH` (relative to the map file), `speed X`, `loop`, and # comments. */
+/* Reads a map file: lines with entries as in sim_map_add(), `values PATH` (CSV file with series, relative to the map file),
+   `speed X` (replay speed), `loop` (replay without end), and # comments. */
 void sim_map_read(struct sim_map *map, const char *path, struct diag *diag);
 void sim_map_finish(struct sim_map *map);
 

@@ -97,7 +97,8 @@ size_t sim_mqtt_tag_count(const struct sim_mqtt *mqtt)
 
 /* --- publishing ------------------------------------------------------------------------------------------------------------- */
 
-/* Returns an object that passes a filter's comparisons, such as {"id": "A.T2"}; NULL if a path in them has several steps. */
+/* Returns a JSON object that passes all comparisons of a filter in a JSON path, such as {"id": "A.T2"}; NULL if the path on the
+   left of a comparison has several steps. */
 static json_t *described(const struct json_path_step *filter)
 {
     json_t *object = json_object();
@@ -140,8 +141,8 @@ static long selected_index(json_t *array, const struct json_path_step *filter)
     return found == SIZE_MAX ? -1 : (long)found;
 }
 
-/* Returns the member or item of *root that a step leads to, creating what is missing; *at: the index of an item. The caller owns a
-   reference (json_decref()). NULL: it cannot be made. */
+/* Returns the member or item of *root that a step of a JSON path leads to, creating what is missing; *at: the index of an item.
+   The caller owns a reference (json_decref()). NULL: it cannot be made. */
 static json_t *slot_of(json_t **root, const struct json_path_step *step, long *at)
 {
     if (!*root)

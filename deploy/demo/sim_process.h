@@ -13,7 +13,7 @@ struct process_tag {
     enum process_kind kind;
     double normal;    /* operating value of the tag, around which it drifts */
     double span;      /* width of the tag's range; drifts and upsets are given as fractions of this width */
-    const char *name; /* name and loop may be freed after the call */
+    const char *name; /* name of the tag; only process_create() reads name and loop, so the caller may free both afterwards */
     const char *loop; /* any word: upsets affect the loops listed by --help; other loops drift with a phase derived from the word */
 };
 

@@ -11,7 +11,7 @@
 struct rvm_counts {
     size_t primitives;
     size_t covered_faces; /* number of faces left out because a face of a neighbouring primitive covers them */
-    double covered_m2;    /* total area of these faces, square metres */
+    double covered_m2;    /* total area of the covered faces that were left out, square metres */
     /* number of primitives left out because they have no extent or contain numbers that are not finite */
     size_t empty;
     size_t unknown_chunks, unknown_kinds; /* number of unknown chunks, and of primitives of unknown kinds; all are skipped */

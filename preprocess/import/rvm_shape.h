@@ -6,7 +6,7 @@
 #define PREPROCESS_IMPORT_RVM_SHAPE_H
 #include "preprocess/import/cad_model.h"
 
-enum rvm_kind { /* with the numbers used in RVM files */
+enum rvm_kind { /* kinds of primitives; the values are the numbers used in RVM files */
                 RVM_PYRAMID = 1,
                 RVM_BOX,
                 RVM_RECTANGULAR_TORUS,

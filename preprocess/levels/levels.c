@@ -21,7 +21,7 @@
 /* a far level (for assets drawn small) must have at most this share of the previous level's triangles, otherwise it is not made */
 #define FAR_WORTH 0.9
 #define STEP 1.4       /* minimum factor by which the error grows from one level to the next coarser one */
-#define STEP_SMALL 1.7 /* the same factor after a level whose error is above LEVELS_SMALL */
+#define STEP_SMALL 1.7 /* minimum factor by which the error grows after a level whose error is above LEVELS_SMALL */
 /* factor on a level's error. Events (changes of parts) with errors up to this product are included in a near level too, so that
  * the next level differs more. After a rejected level, the next attempt has at least this error. */
 #define WAIT 1.1

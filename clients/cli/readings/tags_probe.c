@@ -78,7 +78,8 @@ static int read_most(struct modbus_link *link, int unit, const struct modbus_add
     for (int count = bits ? 1 : MAX_REGISTERS; count > 0; count /= 2) {
         *status = at->index + count > 65536 ? MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS
                                             : modbus_link_read(link, unit, at->table, at->index, count, words);
-        if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0) /* reconnects: the device closes after an error */
+        /* reconnects and reads again, because some devices close the connection after an error */
+        if (*status < 0 && modbus_link_answers(link) > 0 && modbus_link_open(link) == 0)
             *status = modbus_link_read(link, unit, at->table, at->index, count, words);
         if (*status == 0)
             return count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Receiving half of a viewer: handles the daemon's messages and records measurements. */
+/* Receiving half of a probe's viewer (viewer_impl.h): handles the daemon's messages and records measurements. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>

@@ -36,7 +36,7 @@ struct viewer_params {
     double start_deg;   /* start angle of the camera's orbit in degrees; in a still view, rotation from the plant's initial camera (0: that
                             camera) */
     unsigned seed;      /* seed of random motion */
-    bool blind;         /* whether to acknowledge frames without decoding them */
+    bool blind;         /* true: the viewer acknowledges frames without decoding them */
     const char *signs;  /* which frames the daemon is asked to sign: `refined`, `all`; NULL: none */
     const char *folder; /* folder to save signed frames in; NULL: they are not saved */
     int number;         /* index of this viewer, used in names of saved files */

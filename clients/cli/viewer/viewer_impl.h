@@ -27,7 +27,8 @@ struct viewer {
     int64_t sent_ns[SENT_RING], begin_ns, next_ns;
     int64_t ping_ns, rtt_ns, offset_us; /* ping_ns: send time of the newest ping; rtt_ns: shortest round trip so far; offset_us: server's
                                            clock minus ours, measured in that round trip */
-    double angle_deg, speed_deg;        /* random motion: angle at leg_ns, and speed since then */
+    /* random motion of the camera: angle of its orbit in degrees at the time leg_ns, and speed since then in degrees per second */
+    double angle_deg, speed_deg;
     int64_t leg_ns, leg_end_ns;
     struct {
         uint32_t seq;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sending half of a viewer: hello, cameras, acknowledgements. */
+/* Sending half of a probe's viewer (viewer_impl.h): sends hello, cameras and acknowledgements. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

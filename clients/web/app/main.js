@@ -26,7 +26,7 @@ const modules = new LazyModules(page, tell);
 const does = (name) => (...given) => modules.use('commands', (commands) => commands[name](...given));
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
-// one legend suffices if both halves of a split view would have the same
+// Returns true if both halves of a split view have the same legend, so that one legend is enough.
 const isShared = (params, right) => right && legend.contents(params) === legend.contents(right);
 const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
     paramsOf: (params) => !isShared(params, rightOf(params)) && params });

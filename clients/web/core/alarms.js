@@ -27,10 +27,9 @@ export class Alarms {
         this.times = null;
         this.rows = new Map(); // "tag index/kind" -> alarm
         this.then = null; // readings of the past instant shown, which then determine each tag's alarm; null: the present is shown
-        // tag index or device name -> its most urgent annunciated alarm. Its member `waiting` is true if any alarm of the tag is
-        // unacknowledged,
+        // tag index or device name -> its most urgent annunciated alarm, with two more members: `waiting` (true: any alarm of
+        // the tag is unacknowledged) and `others` (the tag's other alarms)
         this.byTag = new Map();
-        // and `others` (its other alarms)
     }
 
     hear({ mode, all, alarms }) {

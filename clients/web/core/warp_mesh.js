@@ -14,7 +14,9 @@ const BLOCK = 16; // maximum side of a block of merged cells, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
 export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the depth step, those behind it
 const ORDER = [0, 2, 1, 1, 2, 3]; // corners of a quad's two triangles, by index of the vertex
-export const FLOATS = 4; // number of floats per vertex: x and y in pixels of the half of the picture, depth, kind (WHOLE, NEAR or FAR)
+// number of floats per vertex: x and y in pixels of the picture (in a split view: of one half of the picture), depth, and which
+// pixels of its cells the quad shows (WHOLE, NEAR or FAR)
+export const FLOATS = 4;
 
 class Sheets {
     constructor(grid, camera) {
@@ -203,7 +205,7 @@ export function meshOf(grid, camera) {
     return { vertices: vertices.subarray(0, count * 4 * FLOATS), indices: indices.subarray(0, count * 6), count };
 }
 
-// Returns the grid's depth at a pixel of its half of the picture; null outside.
+// Returns the depth at a pixel of the picture to which the grid belongs (in a split view: of one half of the picture); null outside.
 export function depthAt(grid, px, py) {
     const { columns, rows, cellPx, maskSide, masks, near, far, base, unit, parallel } = grid;
     const x = Math.floor(px / cellPx), y = Math.floor(py / cellPx), i = y * columns + x, bit = cellPx / maskSide;

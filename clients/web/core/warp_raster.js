@@ -120,8 +120,8 @@ export class Raster {
         this.nearness.fill(0);
     }
 
-    // Draws the mesh of a half of the picture. matrix: from warpMatrix(); layers: the picture's Layers; box: { left, top,
-    // width, height } of the half in drawn pixels.
+    // Draws the mesh of one half of a split view, or of the whole picture. matrix: from warpMatrix(); layers: the picture's
+    // Layers; box: { left, top, width, height } of that half in drawn pixels.
     draw({ grid, mesh: { vertices, count } }, matrix, layers, box) {
         Object.assign(this, { grid, matrix: Float64Array.from(matrix), box, stride: layers.width });
         const picked = [layers.all, layers.near, layers.far], most = 4 * FLOATS;
@@ -208,8 +208,8 @@ export class Raster {
         }
     }
 
-    // Fills undrawn pixels with a grey as light as their surroundings, and draws a lattice over wide undrawn places. period: of
-    // the lattice, in pixels.
+    // Fills the pixels that no surface of the source picture covers with a grey as light as their surroundings, and draws a
+    // lattice over wide areas of such pixels. period: distance between the lines of the lattice, in pixels.
     fillUndrawn(period) {
         const { pixels, width, height, levels } = this, first = this.greys(), { light } = first;
         const wideAt = levels[Math.min(WIDE_LEVEL, levels.length - 1)], share = wideAt.width / first.width / REDUCED;
@@ -243,8 +243,8 @@ export class Raster {
             }
     }
 
-    // Returns the first reduced picture, with a brightness for undrawn places, too: that of the nearest coarser reduced picture
-    // that shows something there.
+    // Returns the first reduced picture, completed: where it shows nothing, it gets the brightness of the nearest coarser
+    // reduced picture that shows something there.
     greys() {
         const { levels } = this, top = levels.at(-1);
         this.reduce(levels[0]);

@@ -29,7 +29,7 @@ const timeOf = (us) => {
     const { date, time } = clock(us / 1000);
     return `${date} ${time.slice(0, 5)}`;
 };
-const dayTimeOf = (us) => { // without the year, which is in the page's heading
+const dayTimeOf = (us) => { // returns an instant as text without the year, which is in the page's heading
     const { day, time } = clock(us / 1000);
     return `${day} ${time.slice(0, 5)}`;
 };

@@ -190,7 +190,7 @@ function addTree(glb, model, { shown, geometries }, root) {
     for (const id of model.ofType(webIfc.IFCPROJECT))
         add(id, root, '', 0);
     for (const id of shown.keys())
-        add(id, root, '', 0); // add the elements outside the spatial tree below the root
+        add(id, root, '', 0); // add the elements that are outside the spatial tree as children of the root node
     return { drawn, storeys };
 }
 

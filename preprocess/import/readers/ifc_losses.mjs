@@ -2,7 +2,8 @@
 // Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc prints.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
 const REFERENCE = 5; // web-ifc's type code for a value that refers to a statement
-// Formats values as a tab-separated line of the reader's output (format: findings.h).
+// Formats values as a line of the reader's output: a record of fields separated by tabs, as preprocess/import/findings.h
+// describes.
 export const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const GRID = 'IfcGridPlacement';
 const MAX_IDS = 20; // maximum number of IFC statement ids listed per kind of error
@@ -34,7 +35,9 @@ export function collectErrors() {
                 found.set(text, (found.get(text) ?? []).concat(id ? [Number(id)] : []));
         }
     };
-    const lines = (model, solids) => { // returns the lines to print, in the format of findings.h
+    // returns the lines that the reader prints about these errors: records in the format that preprocess/import/findings.h
+    // describes
+    const lines = (model, solids) => {
         const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>
             [text, ids.filter((id) => !instead.has(id)), ids.length > 0]);
@@ -104,8 +107,8 @@ export function findLosses(model, product, isShown, failed) {
     return { lost, lines, ids, drawn };
 }
 
-// Returns findings.h lines that name the misplaced elements: their position depends on a grid placement that could not be
-// computed.
+// Returns lines of the reader's output that name the misplaced elements, whose grid placement could not be computed. Format:
+// error records of preprocess/import/findings.h.
 export function misplacedLines(model, { product, grid }, isShown, failed) {
     const found = new Map(); // names of the misplaced elements, by reason
     for (const id of model.ofType(grid).next().done ? [] : model.ofType(product)) {

@@ -80,6 +80,7 @@ export function uncutOpenings(model, voids, geometry, solids) {
     return out;
 }
 
-// Returns a findings.h line for each opening that is not cut.
+// Returns one line of the reader's output for each opening that web-ifc did not cut out of its element. Format: error record of
+// preprocess/import/findings.h.
 export const openingLines = (model, uncut) => uncut.map(({ opening, host, why }) => fields('error', 1, `the opening #${opening} ${
     model.nameOf(opening)} is not cut from #${host} ${model.nameOf(host)}${why ? `: ${why}` : ''}`));

@@ -22,7 +22,9 @@
 #include "preprocess/match/plant_trial.h"
 #include "preprocess/report/text_table.h"
 
-enum { ROWS_PRINTED = 40, MAX_OWN_FILES = 4 }; /* MAX_OWN_FILES: number of files besides the models */
+/* MAX_OWN_FILES: maximum number of files besides the models that a revision replaces: review.csv, tag list, matches.csv,
+   plant.yaml */
+enum { ROWS_PRINTED = 40, MAX_OWN_FILES = 4 };
 
 static const char program[] = "plantcast import";
 static const char *const kinds[] = { [REVISION_ASSET] = "asset", [REVISION_NODE] = "node", [REVISION_TAG] = "tag" };

@@ -12,7 +12,8 @@ import { Source } from './source.js';
 import { TagTable } from './tag_table.js';
 
 const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
-// Encodings of `plantcast match --encoding` that the panel offers; others can be chosen on the command line.
+// Character encodings of model and tag files that the import panel offers. The command line accepts others, too (`plantcast
+// match --encoding`).
 const ENCODINGS = ['UTF-8', 'GB18030', 'Big5', 'Shift-JIS', 'EUC-JP', 'EUC-KR', 'Windows-1250', 'Windows-1251', 'Windows-1252',
     'Windows-1253', 'Windows-1254', 'KOI8-R', 'CP866', 'CP850', 'UTF-16LE', 'UTF-16BE'];
 const PLACEHOLDER = 'person'; // id of the only asset of a new plant, before the user has imported a model

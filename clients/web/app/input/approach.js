@@ -17,7 +17,7 @@ const MOST_COVERED = 9; // number of cameras to compare if the tag's own asset h
 // MOST_WALLS: maximum number of walls the eye passes through; CLEAR: how far the eye moves towards the last wall, as a fraction
 // of the distance to it
 const MOST_WALLS = 6, CLEAR = 0.95;
-const ROOMY = 0.4; // a room is large enough to look at a tag from inside if the eye can be at this fraction of its distance outside
+const ROOMY = 0.4; // minimum distance from which a tag is looked at from inside its room, as a fraction of the camera's distance outside
 
 const has = (list, id) => (list ?? []).includes(id);
 const without = (list, id) => (list ?? []).filter((other) => other !== id);

@@ -146,7 +146,7 @@ export class CameraController {
 
     keydown(event) {
         if (event.defaultPrevented || document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
-            return; // a control, such as the time slider, has already handled this key
+            return; // ignores the key: a control such as the time slider has handled it, a dialog is open, or the user types into a field
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset, [type="range"]')))
             return; // leaves arrow keys to the browser within radio buttons and sliders

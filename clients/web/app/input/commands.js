@@ -10,7 +10,7 @@ import { bandsOf } from '../toolbar/toolbar.js';
 
 const ARRIVAL_MARGIN = 1.7; // distance factor that leaves a margin around an asset after a flight to it
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
-const HELD_US = 3.5e6;      // microseconds; an instant less than this ago counts as now
+const HELD_US = 3.5e6;      // microseconds; an instant less than this long ago counts as the present
 
 // Returns the tags of the shown group from which distances along the surface can be shown: those with a position and distances to the other
 // points of the asset's surface. A single sensor on an asset whose surface was not subdivided has no distances.

@@ -13,7 +13,8 @@ import { GlPainter } from './painters/gl_painter.js';
 const KEPT = 8; // maximum number of stored depth grids: a grid may be decoded before its picture
 // distance from the eye to the near clipping plane, as a fraction of the nearest depth that the picture's depth grid can express
 const NEAREST = 0.05;
-// If frames are drawn more than SLOW_MS apart, as without a GPU, the warped picture is drawn with fewer pixels.
+// If the median interval of SLOW_COUNT drawn frames is longer than SLOW_MS, as without a GPU, the warped picture is drawn with
+// half as many pixels, but at least LEAST_PX. Intervals of PAUSE_MS or more are pauses and do not count.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
 const FADE_MS = 80; // time in which the warped picture fades to the server's picture

@@ -12,7 +12,9 @@ import { fillSelect } from '../common/choices.js';
 
 const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
-// NOW_US: an instant less than this many microseconds ago counts as now
+// MARKS_MS: milliseconds after which the marks are requested again; MARKS_MOST: alarm journal rows per request, MARK_PAGES:
+// maximum number of such requests; HAND_MS: time after a drag in which the slider is not moved by the page; NOW_US: an instant
+// less than this many microseconds ago counts as now
 const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_US = 3.5e6;
 // LOST_POINTS: history points per tag when searching for periods of lost sources. BARS: position of the bars that show how many
 // alarms were raised; `full`: number of alarms at full height.

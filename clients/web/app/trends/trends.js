@@ -62,8 +62,8 @@ export class Trends {
         Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
         this.unread = null; // the text in the range field, if it was not understood
         this.isChosen = false; // whether a user or a wall has chosen the time range
-        this.unknown = []; // names without a tag in the plant
-        this.undrawn = []; // names beyond the maximum number of tags
+        this.unknown = []; // names in the trend's list that are not tags of this plant
+        this.undrawn = []; // names of tags that are not drawn, because the trend already has its maximum number of tags
         this.series = new Map(); // tag name -> its series, once the server has answered
         this.alarms = new Map(); // tag name -> its alarms in the time range
         this.element = byId('trends');

@@ -64,8 +64,8 @@ function at(element, place) {
 // Legend texts by the value of the parameter `show`: functions of the quantity's name and the view's parameters that return
 // [title, suffix, note]. coverage.js has those for rarely used values.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// Values of `show` that do not depend on readings, and thus are never uncertain: lowest value as a fraction of the range
-// (blind: 5 %, plus rounding).
+// Lowest value that a picture of this kind (parameter `show`) can have, as a fraction of the group's range. These kinds do not
+// depend on readings, so nothing in their pictures is uncertain. blind: 5 %, plus rounding.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 

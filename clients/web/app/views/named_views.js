@@ -72,7 +72,7 @@ export class NamedViews {
     // id: the saved view that supplies the session's engineer-only parameters; null: none.
     remember(id) {
         this.session.named = id;
-        this.own = null; // the engineer-only parameters as text, once the server has taken them from the saved view
+        this.own = null; // the engineer-only parameters as text, once the server has applied those of the saved view; null before that
     }
 
     // Forgets the saved view when its engineer-only parameters change, for example because the user shows another sensor group.

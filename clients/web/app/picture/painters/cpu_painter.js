@@ -26,7 +26,7 @@ export class CpuPainter {
         return this.copy;
     }
 
-    // Reads the pixels of a picture. parts: depth grid and mesh of each half of the picture.
+    // Reads the pixels of a picture. parts: depth grid and mesh of each half of a split view, or of the whole picture.
     load(picture, parts) {
         const width = picture.displayWidth ?? picture.width, height = picture.displayHeight ?? picture.height;
         const copy = this.copyOf(width, height);

@@ -100,8 +100,9 @@ export class GlPainter {
     // Throws if a shader program does not compile.
     constructor(gl) {
         this.gl = gl;
-        this.loaded = null; // halves of the picture whose meshes and masks are loaded into WebGL
-        // for each half in `loaded`: { buffers (its mesh), masks (texture: which pixels belong to the nearer of two surfaces) }
+        // the parts of the picture (halves of a split view, or the whole picture) whose meshes and masks are loaded into WebGL
+        this.loaded = null;
+        // for each part in `loaded`: { buffers (its mesh), masks (texture: which pixels belong to the nearer of two surfaces) }
         this.uploaded = [];
         this.mesh = programOf(gl, MESH, PICTURE);
         this.around = programOf(gl, BEHIND, AROUND);
@@ -146,7 +147,7 @@ export class GlPainter {
         gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     }
 
-    // Uploads a picture and the meshes of its halves.
+    // Uploads a picture and the meshes of its parts (halves of a split view, or the whole picture).
     load(pixels, parts) {
         const { gl } = this;
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
@@ -175,10 +176,10 @@ export class GlPainter {
         return { buffers, masks: texture };
     }
 
-    // Draws the loaded picture from another camera. matrices, boxes: for each half, the result of warpMatrix(), and { left,
-    // top, width, height } in drawn pixels. period: distance in drawn pixels between the lines of the lattice that marks places
-    // that the picture does not show. gone: fraction of the pixels left out while the picture fades; there the canvas below
-    // shows through.
+    // Draws the loaded picture from another camera. matrices, boxes: for each half of a split view (or for the whole picture),
+    // the result of warpMatrix(), and { left, top, width, height } in drawn pixels. period: distance in drawn pixels between
+    // the lines of the lattice that marks places that the picture does not show. gone: fraction of the pixels left out while
+    // the picture fades; there the canvas below shows through.
     paint(matrices, boxes, period, gone) {
         const { gl, mesh } = this;
         gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
