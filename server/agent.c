@@ -42,13 +42,16 @@ static void answer(struct agent *agent)
 {
     char line[64];
     int fd = accept4(agent->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0) { /* accept() failed, for example because no descriptors are left: wait PAUSE_MS instead of spinning */
+    /* accept() failed, for example because no descriptors are left: waits PAUSE_MS before the next try, which would fail
+       immediately */
+    if (fd < 0) {
         poll(&(struct pollfd){ .fd = agent->stop_fd, .events = POLLIN }, 1, PAUSE_MS);
         return;
     }
     pthread_mutex_lock(&agent->thread.lock);
     struct agent_state state = agent->state;
-    if (clock_mono_ns() - agent->told_ns > STATE_TIMEOUT_NS) /* the event loop is stuck, so its state is stale */
+    /* the event loop has not called agent_tell() for STATE_TIMEOUT_NS: it is stuck, so the state that it reported is stale */
+    if (clock_mono_ns() - agent->told_ns > STATE_TIMEOUT_NS)
         state.has_core = false;
     pthread_mutex_unlock(&agent->thread.lock);
     int count = print_line(&state, line, sizeof(line));

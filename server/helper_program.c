@@ -43,7 +43,7 @@ static void close_end(int *fd)
     *fd = -1;
 }
 
-/* Applies priority and memory limits, within a millisecond of the start, before the program has read any input. */
+/* Limits the child's priority and memory. Called within a millisecond of the child's start, before it has read any input. */
 static void limit(struct helper *helper)
 {
     size_t bytes = helper->params->memory_bytes;
@@ -109,7 +109,8 @@ static void read_end(struct helper *helper, int which)
         text_add(&helper->written, "%s", piece);
 }
 
-/* Tells the program to end when the caller wants that or the time limit is over, and kills the program if it does not end. */
+/* Asks the program to end (SIGTERM) when the caller wants that or the time limit is over, and kills the program if it does not
+   end. */
 static void end_in_time(struct helper *helper)
 {
     int64_t now_ns = clock_mono_ns();

@@ -118,8 +118,8 @@ static void arguments_finish(struct arguments *list)
     mem_free(list->at);
 }
 
-/* Adds an exported file to the program's arguments. A symlink is resolved, because the files that a model refers to are in the folder of
-   the real file. */
+/* Adds the path of an uploaded file to the program's arguments. A symlink is resolved, because the files to which a model
+   refers are in the folder of the real file. */
 static void add_export(struct arguments *list, const struct import_job *job, const char *name)
 {
     char real[PATH_MAX], *path = mem_printf("%s/%s", plant_import_exports(job->params.import), name);
@@ -278,8 +278,8 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
     char *why = NULL, *unread = NULL;
-    /* refuses a new plant file without a tag list: only plantcast match, which needs a tag list, writes the data source into the new
-       file */
+    /* A new plant file without a tag list is refused if the user gave a data source: only plantcast match, which needs a tag
+       list, writes the data source into the new file. */
     if (order->anew && *order->source.host && !find_tags(&exports))
         why = mem_printf("upload a tag list first: without one, the plant would lose its data source %s", order->source.host);
     else if (order->models)
@@ -309,7 +309,8 @@ static bool same(const char *a, const char *b)
     return a && b ? !strcmp(a, b) : a == b;
 }
 
-/* Restores the earlier contents of the files. Leaves out files that another program changed after the programs of this import. */
+/* Restores the earlier contents of the files. Skips files that another program has changed since the programs of this import
+   wrote them. */
 static void put_texts(const struct import_job *job, const struct texts *texts)
 {
     struct texts now = { 0 };

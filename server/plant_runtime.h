@@ -35,17 +35,18 @@ struct plant_runtime {
     struct plant *plant;
     struct plant_services services; /* services of the plant; on a daemon that follows a core, core_link takes the place of `sources` */
     struct publisher *publisher;    /* publishes readings over MQTT; NULL: nothing is published */
-    struct source **sources;        /* by index in plant->sources: the sources */
+    struct source **sources;        /* sources of readings, with the same indices as plant->sources */
     struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */
-    /* time spans whose points were not yet read from PostgreSQL when a reload replaces the plant; the next runtime's historian
-       reads them */
+    /* time spans whose points were not yet read from PostgreSQL when a reload begins; the historian of the next runtime reads
+       them */
     struct postgres_owed owed;
 };
 
 /* Reads plant and scene from disk and creates the store; starts nothing. Adds findings to diag. Returns NULL on failure, with
    the error in diag or in the log. */
 struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *context, struct diag *diag);
-/* Ends the running parts, consumers before producers, and frees everything. Accepts a pointer to NULL; sets *runtime to NULL. */
+/* Ends all threads of the runtime, those that use data before those that produce it, and frees everything. Accepts a pointer to
+   NULL; sets *runtime to NULL. */
 void plant_runtime_destroy(struct plant_runtime **runtime);
 
 /* Opens the files that users change: named views, notes, and messages from desks to walls. After a reload, call it in the event
@@ -63,8 +64,8 @@ void plant_runtime_stop_following(struct plant_runtime *runtime);
 /* Makes this daemon poll the devices and own the alarms, in place of the core that it followed. Returns false on failure, already
    logged. */
 bool plant_runtime_lead(struct plant_runtime *runtime);
-/* Starts the render service. first: views to draw in advance, so that their first frames come quickly. Returns false on
-   failure, already logged. */
+/* Starts the render service. first: views to draw in advance, so that the sessions that show them get their first frames
+   quickly. Returns false on failure, already logged. */
 bool plant_runtime_start_render_service(struct plant_runtime *runtime, const struct view *first, size_t first_count);
 /* Ends polling, recording and evaluating, so that the runtime of the plant `next` can take over. The render service continues
    to draw, with the readings from before the call. */

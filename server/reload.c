@@ -23,7 +23,7 @@
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views drawn with the new plant before the switch */
 /* time limit for writing a user's action to disk; when it expires, the user is told that the action is not kept */
 static const int64_t SETTLE_NS = NS_PER_S;
-/* FOLLOW_NS: how long to wait for the core to switch to its new plant; LOOK_NS: interval of the checks for this */
+/* FOLLOW_NS: how long a renderer waits for its core to switch to the new plant; LOOK_NS: interval at which it checks this */
 static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
 enum { WAIT_MS = 3000 };       /* how long to wait for another program to finish changing the plant's folder, in milliseconds */
 
@@ -40,16 +40,19 @@ struct reload {
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path of the tag list's previous version, which is kept */
     struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
-    /* held while the runtime is replaced, and while it takes the lead (becomes the one that polls devices), so that these never overlap */
+    /* held while a reload replaces the runtime, and while this core becomes the leader (which polls devices), so that these
+       never overlap */
     pthread_mutex_t put_lock;
     bool ended; /* true: this core's lead has ended, so no new plant may be activated; protected by put_lock */
-    /* thread that makes this core the leader and ends its lead; separate, so that neither waits for a running reload */
+    /* thread that starts and ends this core's work as the leader; separate from the reload thread, so that neither waits for
+       the other */
     struct thread leader;
     bool leads, ends; /* orders for that thread: take the lead; end the lead; protected by leader.lock */
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports;
-    /* connection to this daemon's core, which the core ends once it has loaded the plant too; 0: the reload does not wait for the core */
+    /* number of the connection to this daemon's core. The core ends that connection once it has loaded the plant too, and only
+       then the reload continues; 0: the reload does not wait for the core */
     uint64_t follows;
     char expects[17];           /* hash that the new configuration must have; empty: any */
     char who[TOKEN_NAME_BYTES]; /* user who requested the next reload */
@@ -248,8 +251,8 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
 
 /* --- the plant's folder ------------------------------------------------------------------------------------------------- */
 
-/* Locks the plant's folder against other programs. Returns a descriptor of the lock, or a negative number with the reason in *why
-   (mem_free). */
+/* Locks the plant's folder, so that no other program changes it. Returns the descriptor that holds the lock, or a negative
+   number with the reason in *why (mem_free). */
 static int lock_folder(const struct reload *reload, char **why)
 {
     char *folder = plant_folder_of(reload->context->params->plant_path), *cause = NULL;
@@ -293,7 +296,8 @@ static bool wait_for_core(struct reload *reload)
     return !must_wait(reload);
 }
 
-/* Reloads the plant. Returns false if an error, already reported, left everything unchanged. */
+/* Reloads the plant. Returns false if an error, already reported, prevented that; the daemon then continues with the old plant.
+   */
 static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };
@@ -366,7 +370,7 @@ static void put_back(struct reload *reload, const struct tag_save *save, const c
     if (!tag_file_put_back(save, kept, &why))
         log_err(reload->context->log, "tag list: %s", why);
     else
-        prepare(reload); /* prepares again for the restored tag list; quick, because the earlier prepared files still exist */
+        prepare(reload); /* makes prepared files for the restored tag list; quick, because those from before the save still exist */
     mem_free(why);
 }
 
@@ -415,7 +419,7 @@ static char *undo_import(struct reload *reload, struct import_job *job, char *wh
 {
     char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and the import cannot be undone: %s", why, worse) : NULL;
     if (!worse && import_job_prepares(job))
-        prepare(reload); /* prepares again for the restored files; quick, because the earlier prepared files still exist */
+        prepare(reload); /* makes prepared files for the restored plant files; quick, because those from before the import still exist */
     if (both)
         mem_free(why);
     mem_free(worse);
@@ -664,7 +668,8 @@ void reload_end_leading(struct reload *reload)
 void reload_save(struct reload *reload, struct tag_save *save)
 {
     pthread_mutex_lock(&reload->thread.lock);
-    /* normally frees nothing, because the event loop accepts only one save of a tag list at a time */
+    /* frees a tag list that no reload has taken yet; normally there is none, because the event loop accepts only one save at a
+       time */
     tag_save_free(reload->save);
     reload->save = save;
     pthread_cond_signal(&reload->thread.wake);

@@ -64,7 +64,7 @@ struct server {
     int64_t begun_ns; /* monotonic time when the daemon began to start */
 };
 
-/* global, because a signal handler gets no argument */
+/* the event loop on which signals act; global, because a signal handler gets no argument for it */
 static struct net *_Atomic to_stop;
 static _Atomic bool preparing, told_to_end;
 

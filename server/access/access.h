@@ -65,7 +65,8 @@ bool access_is_proxy(const struct access_params *params, const char *address);
 /* Writes the client's address from an X-Forwarded-For header to `out`: the last address in the list that is not in
    params->proxies, because each proxy appends the address of its peer. Returns false if there is none. */
 bool access_forwarded(const struct access_params *params, const char *list, char *out, size_t size);
-/* Returns true if a query argument is a token. Tokens are not accepted in URLs, because logs and browser histories keep URLs. */
+/* Returns true if an argument of a URL's query would pass an access token. Such requests are refused, because logs and browser
+   histories keep URLs. */
 bool access_argument_is_token(const char *argument);
 
 #endif

@@ -15,7 +15,7 @@ enum { LOGIN_FAILURES = 10, LOGIN_WAIT_S = 5, LOGIN_ADDRESSES = 1024 };
 enum login {
     LOGIN_NONE, /* the client sent no token */
     LOGIN_GOOD,
-    LOGIN_GOOD_NEW, /* the token is valid but was not used from this address in the last ten minutes, so its use is worth a log line */
+    LOGIN_GOOD_NEW, /* the token is valid but was not used from this address in the last ten minutes, so the caller writes a log line */
     LOGIN_WRONG,
     LOGIN_WRONG_SLOWS, /* the token is wrong, and this failure reaches the limit: the address is throttled from now on */
     LOGIN_HELD,        /* the token was not checked, because the address sent too many wrong ones; the client may retry later */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairs devices that show a wall's display. Waiting devices are kept in memory only, so a restart gives each new digits. */
+/* Pairs devices that show a display of a wall of displays. A device that waits for approval shows six digits. Waiting devices
+   are kept in memory only, so they get new digits after a restart. */
 #include "access/pairings.h"
 
 #include <openssl/crypto.h>

@@ -99,7 +99,9 @@ bool tokens_may_see(const struct token_holder *holder, const char *view)
     size_t length = strlen(view);
     for (const char *at = holder->views; *at; at += at[strcspn(at, ",")] ? strcspn(at, ",") + 1 : strlen(at))
         if (!strncmp(at, view, length) && (at[length] == ',' || !at[length]))
-            return named_view_id_valid(view); /* accepts only one id: a comma-separated list could match part of holder->views */
+            /* requires that `view` is the id of one view: a text such as "a,b" could otherwise match part of the
+               comma-separated list holder->views */
+            return named_view_id_valid(view);
     return !holder->views[0];
 }
 
@@ -124,7 +126,8 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
     while (n > 0 && strchr(" \t", line[n - 1]))
         line[--n] = 0;
     for (char *next = line; (next = strstr(next, key)); next++)
-        /* searches for the keyword only after the hash, because the holder's name may contain it */
+        /* searches for the keyword `plant` only after the token's hash, because the holder's name in front of the hash may
+           contain that word */
         at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at;
     if (!at)
         return true;

@@ -37,7 +37,7 @@ struct alarm_service {
     pthread_mutex_t queue_lock; /* lock of the sample queue; may be taken while holding the store's lock */
     /* --- below: protected by queue_lock */
     struct alarm_event_queue queue;
-    struct thread thread; /* contains the lock of the alarms; the store's lock may be taken while holding it */
+    struct thread thread; /* this thread's lock protects the alarms; the store's lock may be taken while holding it */
     /* --- below: protected by thread.lock */
     struct alarms *alarms;
     int raised_now;
@@ -132,7 +132,8 @@ static void keep_all(struct alarm_service *service)
     }
 }
 
-/* Writes the current state of every alarm to the journal that has changed since alarms_number() was `number`. */
+/* Writes the current state of each recently changed alarm to the journal. An alarm has changed recently if its change number
+   exceeds `number`, which alarms_number() returned earlier. */
 static void keep_since(struct alarm_service *service, uint64_t number)
 {
     for (int i = service->journal ? alarms_newest(service->alarms) : -1; i >= 0; i = alarms_at(service->alarms, i)->older) {
@@ -410,7 +411,8 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    /* keeps the row in memory: the former leader may lack it when it returns as a standby */
+    /* keeps the mirrored journal row in memory, to send it later: the former leader may lack the row when it returns as a
+       standby */
     service->rows[++service->row_count % MAX_ROWS] = *row;
     pthread_mutex_unlock(&service->thread.lock);
 }

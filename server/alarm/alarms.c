@@ -115,8 +115,8 @@ static void add_links(struct alarms *alarms)
         if (device && (device->alarm < 0 || device->alarm >= (int)with_bad) && !(kind && !strcmp(kind, "replay")))
             add_link(alarms, device, (int)i, LINK_DELAY_NS);
     }
-    /* the device has a tag that never becomes stale: LINK_DELAY_NS as the minimum delay keeps short connection losses from
-       raising the alarm */
+    /* LINK alarms of devices with a tag that never becomes stale get a delay of at least LINK_DELAY_NS. It keeps short
+       connection losses from raising the alarm. */
     for (size_t i = 0; i < tag_count; i++) {
         struct alarm *link = of_tag[i] < 0 || list[of_tag[i]].alarm < 0 ? NULL : &alarms->list[list[of_tag[i]].alarm];
         if (link && never_stale(alarms, i) && link->delays.on_ns < LINK_DELAY_NS)
@@ -145,8 +145,9 @@ static enum alarm_kind kind_of(const struct plant_mirror *mirror)
     return mirror->limit == LIMIT_COUNT ? ALARM_ON : (enum alarm_kind)(1 + mirror->limit);
 }
 
-/* Creates alarms for the bit tags that report alarms of another alarm system. `mirrors` has the indices of these tags; a bit's
-   alarm belongs to the tag that the bit is about. A bit of Bad quality raises the alarm as well. */
+/* Creates alarms for the bit tags through which another alarm system reports its alarms. `mirrors` has the indices of these bit
+   tags. Each alarm belongs to the tag that the other system monitors, not to the bit tag. A bit of Bad quality raises the alarm
+   as well. */
 static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count)
 {
     const struct plant *plant = alarms->plant;
@@ -507,8 +508,8 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
     }
 }
 
-/* Returns true if a tag whose BAD alarm was suppressed in favour of its device's LINK alarm needs its own alarm again: the
-   device sends readings of other tags, but none of this tag for its stale time. */
+/* Returns true if a tag needs its own BAD alarm again, which was suppressed because the device's LINK alarm reported the
+   failure: the device has answered again for the tag's stale time, but sent no reading of this tag. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
@@ -564,7 +565,8 @@ static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
     return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;
 }
 
-/* Returns true if a tag's current quality needs no sample event: no alarm depends on the tag, or the quality is unchanged. */
+/* Returns true if no sample event need be created for the tag's current quality: no alarm depends on the tag, or its alarms
+   have already seen that quality. */
 static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
 {
     const struct last_sample *seen = &alarms->seen[tag];
@@ -577,7 +579,8 @@ static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32
     return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == status_of(alarms, tag, quality));
 }
 
-/* Creates and evaluates sample events for tags that became stale after their last sample, or lack a first one for too long. */
+/* Creates sample events for tags that became stale after their last sample, or that have waited too long for a first sample.
+   Evaluates the alarms with these events. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
 {
     size_t count = 0;

@@ -6,7 +6,9 @@
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* says in which role an alarm depends on a tag's samples */
+/* one dependency of an alarm on the samples of a tag; the role says whether it uses the tag's value, alarm bit or quality, for
+   example */
+struct feed {
     int tag, alarm;
     enum feed_role role;
 };
@@ -25,7 +27,7 @@ struct alarms {
     struct alarms_listener listener;
     struct alarm *list;
     size_t count, capacity;
-    struct feed *feeds; /* which alarms depend on which tag's samples; sorted by tag */
+    struct feed *feeds; /* dependencies of alarms on the samples of tags, sorted by tag */
     size_t feed_count, feed_capacity;
     int *by_tag; /* indices in `list` of all alarms, sorted by tag */
     /* [tag], with one extra element at the end: position of the tag's first entry in `feeds` and in by_tag */

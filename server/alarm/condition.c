@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Evaluates the condition of an alarm: its limit, deadband and delays. */
+/* Evaluates the condition of one alarm: compares a value with the alarm's limit, and applies its deadband and delays. */
 #include "alarm/condition.h"
 
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value)

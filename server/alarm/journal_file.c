@@ -22,7 +22,8 @@ static const char schema_1[] =
     " until INTEGER NOT NULL, who TEXT NOT NULL, reason TEXT NOT NULL, PRIMARY KEY(tag, kind)) WITHOUT ROWID;"
     "CREATE VIEW journal AS SELECT strftime('%Y-%m-%dT%H:%M:%fZ', t / 1e6, 'unixepoch') AS utc, tag, kind, event, after AS state,"
     " priority, lim AS \"limit\", value, who, reason FROM event;";
-/* Version 2 adds units. Older rows have no unit (NULL), because theirs is not known. */
+/* Version 2 of the file format adds the unit of each row's value. Rows written before have no unit (NULL), because it is not
+   known. */
 static const char schema_2[] =
     "ALTER TABLE event ADD COLUMN unit TEXT;"
     "ALTER TABLE state ADD COLUMN unit TEXT;"
@@ -35,8 +36,8 @@ static const char *const schemas[JOURNAL_VERSION] = { schema_1, schema_2 };
 /* Reads rows in the order of the time index, so that a page of old rows takes no longer to read than a page of new ones. */
 #define IN_TIME(unit) "SELECT " ROW(unit) " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
 #define NEWEST " ORDER BY t DESC, id DESC LIMIT ?5"
-/* Steps through the index on tag and kind from alarm to alarm, and takes each alarm's newest row up to a time. This takes a few
-   steps per alarm, however long the journal is. */
+/* Query for the newest row of each alarm up to a given time. It jumps from alarm to alarm in the index on tag and kind, which
+   takes a few steps for each alarm, however long the journal is. */
 #define AT(unit)                                                                                                                           \
     "WITH RECURSIVE known(tag, kind) AS ("                                                                                                 \
     " SELECT * FROM (SELECT tag, kind FROM event ORDER BY tag, kind LIMIT 1)"                                                              \

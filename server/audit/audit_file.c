@@ -21,7 +21,8 @@ static bool write_all(int fd, const char *bytes, size_t count)
     return true;
 }
 
-/* Finds the last complete line of the audit file and sets the chain to it. Returns the offset after that line. */
+/* Finds the last complete line of the audit file, and sets the hash chain's state (line number and hash) to that line. Returns
+   the offset after that line. */
 static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
 {
     size_t window = bytes < 2 * AUDIT_LINE_BYTES ? bytes : 2 * AUDIT_LINE_BYTES;
@@ -40,7 +41,8 @@ static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
     return bytes - window + end;
 }
 
-/* Sets the chain to the last complete line of the audit file; removes an incomplete line left by a crash. */
+/* Sets the hash chain's state (line number and hash) to the last complete line of the audit file; removes an incomplete line
+   left by a crash. */
 static int find_chain(struct audit_file *file, char **finding)
 {
     struct stat st;

@@ -30,7 +30,7 @@ struct core_link_params {
     /* standby core only: promises the leader, when asked, not to take the lead. NULL: this node is a renderer */
     struct lease_keeper *keeper;
     struct historian *historian;      /* standby core only: records the leader's samples. NULL: nothing is recorded */
-    /* standby core only: folder of the file that lists which alarms the leader has announced. NULL: not stored */
+    /* standby core only: folder of the file that lists for which alarms the leader has sent notifications. NULL: not stored */
     const char *folder;
     void (*notify)(void *arg);        /* called on the link's thread when core_link_collect() has new messages */
     void *notify_arg;

@@ -9,7 +9,7 @@
 
 enum { CORE_READINGS_HEAD_BYTES = 24, CORE_READING_BYTES = 32 };
 
-/* The last reading of each tag that was sent to one renderer. */
+/* The readings that one renderer was sent last, one for each tag. */
 struct core_sent {
     size_t count;
     struct core_sent_reading {
@@ -21,8 +21,8 @@ struct core_sent {
 
 void core_sent_init(struct core_sent *sent, size_t tag_count);
 void core_sent_finish(struct core_sent *sent);
-/* Appends a message with the readings that differ from those in *sent, and updates *sent. If no reading differs, the message
-   only shows that the core is alive. */
+/* Appends a message with the readings that differ from those sent last (*sent), and updates *sent. If no reading differs, the
+   message has no readings and only shows that the core is alive. */
 void core_readings_write(struct text *out, const struct snapshot *snapshot, struct core_sent *sent);
 
 struct core_readings {

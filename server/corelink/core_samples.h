@@ -9,7 +9,7 @@
 enum {
     CORE_SAMPLES_HEAD_BYTES = 8,
     CORE_SAMPLE_BYTES = 24,
-    CORE_SAMPLES_AT_ONCE = 20000, /* maximum number of samples in one message */
+    CORE_SAMPLES_AT_ONCE = 20000, /* maximum number of samples in one message (core_samples_write()) */
     CORE_SAMPLES_MOST = 2000000   /* maximum number of queued samples */
 };
 

@@ -9,8 +9,8 @@ struct encoder_impl {
     const char *name;
     bool is_stream;
     struct encoder *(*create)(struct log *log, const char *library);
-    /* Encodes a frame and stores the packet in encoder->ready. count 0: encodes the whole frame. Otherwise the rectangles cover
-       everything that differs from params->before, and the codec encodes at least them. */
+    /* Encodes a frame and stores the packet in encoder->ready. count 0: encodes the whole frame. Otherwise `rects` cover
+       everything that differs from params->before, and the codec must encode at least these rectangles. */
     int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                 int count);
     void (*destroy)(struct encoder *encoder);

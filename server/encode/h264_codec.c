@@ -89,8 +89,8 @@ static int failed(const struct h264_codec *h264, const char *what, int status, c
     return status == AVERROR(ENOMEM) ? -ENOMEM : -EIO;
 }
 
-/* Returns the number of slices for encoding in parallel: more than one only for frames too large for one core; with many cores,
-   one per SLICED_PX pixels. */
+/* Returns the number of slices, which are encoded in parallel: 1 unless the frame is too large for one core; otherwise one for
+   each SLICED_PX pixels, at most one per core. */
 static int thread_count(int width_px, int height_px)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN), pixels = (long)width_px * height_px;

@@ -8,16 +8,16 @@
 #include "base/workers.h"
 #include "field/weights.h"
 
-/* Measures, unless already known, the error in the triangles of the level of detail that uses the first `vertices` vertices.
-   Merges it into weights->errors: for each vertex, the largest error of the adjacent triangles. The unit is the spread of the
-   readings for shepard, and the largest reading for paper. params and usable are those of weights_create(). in_range: the
-   readings differ by no more than preparation assumed. No-op if each pixel evaluates the field (plant/exact.h), if preparation
-   left no error for these parameters and all sensors are used, if the weights are prepared (linear within triangles by
-   definition), or when out of memory. */
+/* Measures, unless already known, how far values interpolated within triangles are from the field. Covers the triangles of the
+   level of detail that uses the first `vertices` vertices, and merges the result into weights->errors: for each vertex, the
+   largest error of the adjacent triangles. The unit is the spread of the readings for shepard, and the largest reading for
+   paper. params and usable are those of weights_create(). in_range: the readings differ by no more than preparation assumed.
+   Does nothing if each pixel evaluates the field (plant/exact.h), if preparation left no error for these parameters and all
+   sensors are used, if the weights are prepared (then linear within triangles by definition), or when out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
                          struct workers *workers);
 /* Returns the largest change of a value due to errors of distances along the surface, as a multiple of the weighted mean of
-   |reading - value|. 0: these errors change no value noticeably, or distances have none. */
+   |reading - value|. Returns 0 if these errors change no value noticeably, or if the distances are exact. */
 double drawn_error_of_distances(const struct weights *weights);
 
 #endif

@@ -53,8 +53,9 @@ void field_set_baselines(struct field *field, struct baselines *baselines);
 /* Sets the registry of sensors' trial positions; it must outlive the field. Without a registry, or if the trial no longer
    exists, sensors have the plant's positions. */
 void field_set_trials(struct field *field, struct trials *trials);
-/* Returns the parameters under which this asset's field is cached: params, or a modified copy in *room. The copy omits a trial
-   that moves nothing on this asset. If all sensor positions are assumed, it has the parameters of a constant field. */
+/* Returns the parameters under which this asset's field is cached: `params` itself or, if fewer parameters affect this asset, a
+   modified copy in *room. The copy drops a trial that moves no sensor of this asset. If all sensor positions are assumed, the
+   copy has the parameters of a constant field. */
 const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room);
 /* Returns the trial (set of moved sensors) whose id is params->trial; the caller releases it with field_give_trial(). NULL: the id is 0, or
    the trial no longer exists. */
@@ -80,8 +81,8 @@ void field_clear_cache(struct field *field);
 const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                        size_t count);
 /* Updates the fields of several small assets in parallel, each on one core. Skips large fields, fields of trials, and fields
-   for which memory is short: the caller must call field_scalars_of() for all assets afterwards. counts: number of vertices
-   wanted, by index in `assets`. */
+   for which memory is short: the caller must call field_scalars_of() for all assets afterwards. counts: for each index in
+   `assets`, the number of vertices whose values are wanted. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot);
 /* Does the work of field_scalars_of() in steps of about `work` nanoseconds (of one core), so that a large update does not block
@@ -121,7 +122,8 @@ struct field_sensor {
     /* geodesic distance of each vertex if the file lacks them; NULL: not known yet, or straight-line distances are used */
     const float *along_m;
     float strength, decay;
-    /* value in the sum; scaled to 0..1 for interpolation `paper`; for a difference, the reading minus the baseline's */
+    /* the sensor's value in the weighted sum; scaled to 0..1 for interpolation `paper`; for a difference, the reading minus the
+       baseline's reading */
     float value;
     bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good; usable: it contributes;
                                            uncertain: its quality is Uncertain */

@@ -109,8 +109,8 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
 
 /* Caches columns of G (one sensor's weights at all vertices) only when they are summed for the second time: while a user drags
    a slider, each set of weights is summed only once. To make room, evicts only entries last used before the previous use of
-   these weights; otherwise two busy fields would evict each other forever. If not all columns fit, caches the parts for the
-   first vertices, which all levels of detail use. */
+   these weights; otherwise two fields in constant use would evict each other forever. If not all columns fit, caches the parts
+   for the first vertices, which all levels of detail use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
     size_t bytes = weights_column_bytes(weights), had = weights_kept_bytes(weights);

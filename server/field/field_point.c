@@ -10,7 +10,7 @@
 #include "field/update.h"
 #include "plant/influence.h"
 
-/* Interpolates between the scalars of the triangle's corners, like a drawn frame. */
+/* Returns the value at the point, interpolated linearly between the scalars of the triangle's corners, as drawn frames do. */
 static void point_drawn(const struct scalars *scalars, const struct field_place *place, struct field_point *out)
 {
     double value = 0, no_data = 0, uncertain = 0;
@@ -24,8 +24,8 @@ static void point_drawn(const struct scalars *scalars, const struct field_place 
     *out = (struct field_point){ .value = value, .no_data = no_data > 0.5, .uncertain = uncertain > 0.5 };
 }
 
-/* Returns the largest error of the value at a place; 0 if it is below a colour step. Any level of detail may be drawn there, so
-   the largest interpolation error of the triangles around the corners counts. of_distances: the part due to errors of
+/* Returns the largest error of the value at a point; 0 if it is below a colour step. Any level of detail may be drawn there, so
+   the error is the largest one of the triangles around the three corners. *of_distances receives the part due to errors of
    distances. */
 static double error_near(const struct field_state *state, const struct field_place *place, double of_distances)
 {

@@ -18,19 +18,20 @@ struct scalar;
 void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m);
 /* Writes the straight-line distance of each position from the point. */
 void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m);
-/* For one sensor: lowers near_m[i], the distance from vertex i to the nearest sensor so far, to distance_m[i] if that is smaller. */
+/* Takes the distances of all vertices from one sensor: lowers near_m[i], the distance from vertex i to the nearest sensor so
+   far, to distance_m[i] if that is smaller. */
 void kernel_nearest(const float *restrict distance_m, size_t count, float *restrict near_m);
 /* Returns the largest finite distance, or most_m if that is larger. */
 float kernel_largest(const float *distance_m, size_t count, float most_m);
 
-/* For one sensor: raises top[i] to the sensor's strength if no sensor is nearer to vertex i. After a call for each sensor,
-   top[i] is the largest strength among the equally near nearest sensors. kernel_shepard() divides by it, so that weights cannot
-   overflow. */
+/* Call once for each sensor: raises top[i] to the sensor's strength if no sensor is nearer to vertex i. Afterwards top[i] is
+   the largest strength of all sensors that are nearest to the vertex at equal distance. kernel_shepard() divides by it, so that
+   weights cannot overflow. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
-/* For one sensor: if it contributes, raises top[i] to its exponent in the paper's Algorithm 1 (Kim & Suh 2025), max(0, 1 -
-   distance / radius) strength / ln 2 (a power of 2), if that is larger. A sensor contributes within its reach. If no sensor
-   reaches vertex i, the nearest one contributes alone and continues its value, so that a triangle with one reached corner can
-   be interpolated. Start with zeros and call once for each sensor. */
+/* Call once for each sensor, with `top` all zero before the first call. Afterwards top[i] is the largest exponent of the
+   sensors that contribute to vertex i in Algorithm 1 (Kim & Suh 2025). A sensor's exponent, to base 2, is max(0, 1 - distance /
+   radius) strength / ln 2. Sensors contribute within their reach. If no sensor reaches vertex i, the nearest one contributes
+   alone and continues its value, so that a triangle with one reached corner can be interpolated. */
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 
@@ -48,12 +49,13 @@ struct kernel_column {
     float radius_m;         /* radius R, for interpolation paper */
 };
 /* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the
-   nearest sensor. It is exactly 1 for the strongest of the nearest sensors; where near is 0, it is exactly 0 for all others.
-   With a reach, it is multiplied by ((reach - distance) / (reach - near))^2: 1 for the nearest sensor, 0 for others from the
-   reach on. */
+   nearest sensor. The weight is exactly 1 for the strongest of the nearest sensors; at a vertex where near is 0, it is exactly
+   0 for all other sensors. If the reach is finite, the weight is multiplied by ((reach - distance) / (reach - near))^2: 1 for
+   the nearest sensor, 0 for others from the reach on. */
 void kernel_shepard(const struct kernel_column *column, float *restrict weight);
-/* Writes the sensor's weight in Algorithm 1, exp(d strength - top), with d = max(0, 1 - distance / radius), unless `weight` is
-   NULL; and its term, which is the weight times d^decay. A reach fades both as in kernel_shepard(). */
+/* Writes two factors of Algorithm 1 (Kim & Suh 2025) for one sensor at each vertex: to `weight`, unless NULL, exp(d strength -
+   top), with d = max(0, 1 - distance / radius); and to `term`, that weight times d^decay. A finite reach reduces both as in
+   kernel_shepard(). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);
 
 /* Adds columns[c] * factors[c] to sum, for column_count <= KERNEL_COLUMNS columns (one sensor's weights at a block of

@@ -14,7 +14,9 @@ struct layout_sensor {
     uint32_t vertex;       /* index of the vertex nearest to the sensor */
     bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m instead of the file */
     const float *tried_m;  /* geodesic distance of each vertex; NULL: not known yet */
-    const float *heat_m;   /* each vertex's distance by the heat method; NULL: not prepared */
+    /* by vertex: distance from the sensor in metres along the surface, computed by the heat method; NULL: plantcast-prep has
+       not computed heat distances for this group */
+    const float *heat_m;
     float strength, decay; /* as configured, >= 0 */
 };
 
@@ -26,7 +28,8 @@ struct layout_points {
     float (*away_m)[3];     /* [point]: straight-line distances from the corners of its triangle */
 };
 
-/* Sets all members of `points` for one point in a triangle of the asset file. */
+/* Stores one point in element `point` of every array of `points`: the triangle's corners, the barycentric coordinates `parts`,
+   the position, and the straight-line distances to the corners. file: the asset file with the vertices. */
 void layout_set_point(const struct asset_view *file, const struct layout_points *points, size_t point, const uint32_t corners[3],
                       const float parts[3]);
 
@@ -46,7 +49,7 @@ struct field_layout {
 /* Creates the layout of a group's sensors on an asset. trial: moved sensors; NULL: none. Scene and trial must outlive the
    layout. Returns NULL if no sensor of the group is on the asset. */
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
-/* Returns true if the trial adds, removes or moves sensors of the group on the asset. */
+/* Returns true if the trial adds, removes or moves a sensor of this group on this asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Frees the layout. Accepts a pointer to NULL; sets the pointer to NULL. */
 void layout_destroy(struct field_layout **layout);

@@ -28,14 +28,14 @@ void neighbours_destroy(struct neighbours **neighbours); /* frees the object and
 size_t neighbours_count(const struct neighbours *neighbours);
 /* Returns the index of a sensor's tag in the plant. */
 int neighbours_tag(const struct neighbours *neighbours, size_t sensor);
-/* Returns a level L such that, if all sensors read L, the prediction is L: `ambient` for fin; for the others any level would
-   do, and 0 is returned. */
+/* Returns the level of the whole field that predictions preserve: if all sensors read this level, each prediction is this
+   level, too. That is `ambient` for fin. The other interpolations preserve any level, so 0 is returned. */
 double neighbours_level(const struct neighbours *neighbours);
 /* Predicts each sensor from the others. values: [sensor]; NaN: not usable. out: [sensor]. */
 void neighbours_predict(const struct neighbours *neighbours, const double *values, struct neighbour *out);
 
-/* Lists the sensors nearest to a sensor along the surface, nearest first. Skips sensors with apart[sensor] set, and sensors to
-   which no path leads. out: receives at most `most` sensor indices. Returns their number. */
+/* Lists the sensors nearest to a sensor along the surface, nearest first. Skips sensors whose element of `apart` is not 0, and
+   sensors that no path along the surface reaches. out: receives at most `most` sensor indices. Returns their number. */
 size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, const bool *apart, size_t most, size_t *out);
 
 /* A cache of the latest predictions by asset and group; zero-initialise. The scene must outlive the cache. Call from one thread only. */

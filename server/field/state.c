@@ -69,7 +69,8 @@ size_t state_bytes(const struct field_state *state)
     return sizeof(struct field_state) + state->room * each_vertex(state) + state->layout->sensor_count * each_sensor;
 }
 
-/* Returns the number of vertices to allocate: `count` rounded up to whole blocks, but at most all vertices. */
+/* Returns the number of vertices for which to allocate memory: `count` rounded up to whole blocks of KERNEL_BLOCK, but at most
+   the number of vertices of the asset. */
 static size_t room_for(const struct field_state *state, size_t count)
 {
     size_t whole = (count + KERNEL_BLOCK - 1) / KERNEL_BLOCK * KERNEL_BLOCK;
@@ -140,8 +141,8 @@ static struct state_input input_of(const struct field_state *state, const struct
     };
 }
 
-/* Subtracts the baseline's input `then` from the current input `now`. Only sensors usable in both contribute; otherwise a
-   sensor that appeared or failed would look like a change of the plant. */
+/* Subtracts the baseline's input `then` from the current input `now`. A sensor contributes only if it is usable in both;
+   otherwise a sensor that appeared or failed since would look like a change of the plant. */
 static struct state_input less(struct state_input now, struct state_input then)
 {
     bool usable = now.usable && then.usable;

@@ -93,7 +93,8 @@ void trials_destroy(struct trials **pointer)
     *pointer = NULL;
 }
 
-/* Frees dropped trials, except the newest TRIALS_KEPT and those that a caller holds (trials_take). Call with the lock held. */
+/* Frees dropped trials (sets of sensor positions that nobody uses any more), except the newest TRIALS_KEPT and those that a
+   caller still holds (trials_take()). Call with the lock held. */
 static void sweep(struct trials *trials)
 {
     int dropped = 0;

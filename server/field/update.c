@@ -14,7 +14,8 @@
 #include "plant/influence.h"
 
 #define FLAG 255
-#define DRAWN_ERROR (1 / 255.0) /* fraction of the range; vertices whose triangles may be drawn with a larger error are marked uncertain */
+/* error as a fraction of the colour range; vertices of triangles that may be drawn with a larger error are marked uncertain */
+#define DRAWN_ERROR (1 / 255.0)
 /* a newly chosen error limit is stricter than necessary by this factor, so that it stays valid when readings change slightly */
 #define ERROR_MARGIN 1.1
 /* the error limit (error_limit) is replaced if it is stricter than necessary by more than this factor */
@@ -53,7 +54,7 @@ static size_t blocks_of(size_t vertex_count)
 
 /* --- choosing the work ------------------------------------------------------------------------------------------------------ */
 
-/* Lists the sensors to sum: all sensors of the weights, or only those whose input changed. */
+/* Lists the sensors to sum: all sensors of the weights or, if only changes are added, the sensors whose input changed. */
 static struct weights_terms choose_terms(struct field_state *state, bool all)
 {
     const struct weights *weights = state->weights;
@@ -201,12 +202,12 @@ void update_begin(struct field_state *state, size_t count)
 
 /* --- block by block --------------------------------------------------------------------------------------------------------- */
 
-/* Returns struct scalar's `uncertain`. marked / total: the fraction of the weight on Uncertain sensors. filled: the byte for a
-   value filled in around a lost sensor; the larger byte counts. */
+/* Returns a vertex's byte for `uncertain` of struct scalars: the larger of `filled`, the byte of a value filled in around a
+   lost sensor, and the byte for the weight of Uncertain sensors. That weight is the fraction marked / total. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    /* 1 if Uncertain sensors have half of the weight. Weights of interpolation gp may be negative, so `total` may be 0 and
-       `part` above 2 */
+    /* `part` is 1 if Uncertain sensors have half of the total weight. Weights of interpolation gp may be negative, so `total`
+       may be 0 and `part` above 2 */
     double part = total > 0 && marked > 0 ? 2 * marked / total : 0;
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
@@ -286,7 +287,8 @@ static bool map_block(const struct update *update, size_t begin, size_t count, f
     return set_flags(update, begin, count, nothing, nothing);
 }
 
-/* Returns true if kernel_few() suffices for a block: few sensors, all their weights cached, and no flags to set. */
+/* Returns true if the fast path kernel_few() can compute this block: few sensors, all their weights cached, and no flags to
+   set. */
 static bool is_simple(const struct update *update, size_t block, size_t begin)
 {
     return !field_params_cover(&update->state->params) && !update->state->sums && !update->flags && block < update->old &&

@@ -14,7 +14,8 @@ enum sensor_use {
     SENSOR_LOST, /* the sensor is configured but not usable, so there is no data around it */
     SENSOR_USED,
     SENSOR_NO_LIMITS, /* the sensor is good, but its tag has no limits: the area around it counts as measured but has no value to show */
-    SENSOR_ASIDE      /* the sensor is ignored, because another one gives the asset's value */
+    /* the sensor is ignored: all sensor positions on the asset are assumed, and another sensor gives the asset's value */
+    SENSOR_ASIDE
 };
 
 /* Whether a vertex has data, depending on the sensor nearest to it. */

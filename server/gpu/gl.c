@@ -12,8 +12,8 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    /* software: this attempt may use a software device if no device is requested; again: it repeats an earlier attempt, this
-       time with software devices allowed */
+    /* software: this attempt may use a software device even if the caller requested no device; again: this attempt repeats an
+       earlier one, now with software devices allowed */
     bool software, again;
 };
 static const struct attempt attempts[] = {

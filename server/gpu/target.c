@@ -50,7 +50,8 @@ bool target_init(struct target *target, struct log *log, int width_px, int heigh
 size_t target_bytes(const struct target *target)
 {
     size_t pixels = (size_t)target->width_px * (size_t)target->height_px, samples = (size_t)target->samples;
-    return 8 * pixels * (samples > 1 ? samples + 1 : 1); /* bytes of colour and depth, plus the resolved copies if multisampled */
+    /* bytes of colour and depth of all samples, plus those of the resolved copies if the target is multisampled */
+    return 8 * pixels * (samples > 1 ? samples + 1 : 1);
 }
 
 void target_finish(struct target *target)

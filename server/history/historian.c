@@ -36,7 +36,8 @@ enum {
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
-static const int64_t REPEAT_US = 10 * US_PER_S; /* at the run's end, readings whose newest sample is this old are recorded again */
+/* when recording ends, tags whose newest sample is at least this old get one more point */
+static const int64_t REPEAT_US = 10 * US_PER_S;
 
 struct historian_queue {
     struct sample_event *at; /* samples in order of arrival */
@@ -145,8 +146,8 @@ static void put(struct historian *historian, int tag, const struct history_point
     counter_inc(historian->counters.points, (int64_t)(historian->waiting.count - before));
 }
 
-/* Records a reading without a new sample, at a time that is not in the future. Also passes it to store_tell_aged(), so that a
-   standby records the same point. */
+/* Records a tag's present reading as a point at a time that is not in the future, although no sample arrived then. Also passes
+   it to store_tell_aged(), so that a standby records the same point. */
 static void put_reading(struct historian *historian, int tag, int64_t mono_ns, int64_t utc_ns)
 {
     const struct reading *reading = &historian->snapshot->readings[tag];
@@ -157,8 +158,8 @@ static void put_reading(struct historian *historian, int tag, int64_t mono_ns, i
     recorder_set_quality(historian->recorder, tag, utc_ns / 1000, event.quality);
 }
 
-/* Records changes of quality that no sample reports: a reading became stale, or a value is Good again whose source time is
-   before the loss of the connection or the start of this daemon. */
+/* Records changes of quality that came without a sample: a reading became stale, or a value with a source time before the loss
+   of the connection, or before this daemon's start, is Good again. */
 static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     store_snapshot(historian->store, mono_ns, utc_ns, historian->snapshot);
@@ -182,7 +183,8 @@ static void repeat_readings(struct historian *historian, int64_t before_us, int6
             put_reading(historian, (int)i, mono_ns, utc_ns);
 }
 
-/* Ends every tag's recorded line with a point without a value just after last_us, because later values are unknown. */
+/* Adds a point without a value just after last_us to every tag's series, so that its recorded line ends there: later values are
+   unknown. */
 static void leave_out(struct historian *historian, int64_t last_us)
 {
     for (size_t i = 0; i < historian->plant->tag_count; i++)
@@ -292,7 +294,7 @@ static void say_gap(struct historian *historian, struct month_file *file, int64_
 }
 
 /* Called after a start: if the previous daemon was killed, records each tag's newest sample, ends the recorded lines there, and
-   notes the gap in the file's table of events. */
+   notes the gap in recording in the month file's table of events. */
 static int recover(struct historian *historian)
 {
     size_t count;
@@ -341,7 +343,7 @@ static int enter_month(struct historian *historian, int month)
     return error;
 }
 
-/* Returns the end (exclusive) of the rows from `begin` on that belong to the same month as row `begin`. */
+/* Returns the index after the last of the rows, from row `begin` on, that belong to the same month as row `begin`. */
 static size_t same_month(const struct recorder_rows *rows, size_t begin)
 {
     int month = month_of(rows->at[begin].point.t_us);
@@ -437,8 +439,8 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     return error;
 }
 
-/* Closes the month's file after the spooled rows were written. Its held rows (newest samples that are not recorded yet) stay
-   there, so that recover() handles them as after a crash. */
+/* Closes the month's file after the rows of the spool file were written to it. The file's held rows (newest samples that are
+   not recorded yet) are not deleted, so that recover() handles them as after a crash. */
 static int leave_file(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -524,7 +526,7 @@ static struct now look_at_clocks(void)
     return now;
 }
 
-/* Returns by how many nanoseconds the wall clock was set since the last call; 0: it was not set. */
+/* Returns by how many nanoseconds the wall clock was set (not advanced) since the last call; 0: it was not set. */
 static int64_t watch_clock(struct historian *historian, const struct now *now)
 {
     int64_t ahead_ns = now->utc_ns - now->mono_ns, step_ns = historian->utc_ahead_ns ? ahead_ns - historian->utc_ahead_ns : 0;
@@ -567,8 +569,9 @@ static void tick(struct historian *historian, bool last)
         note_step(historian, utc_ns, step_ns);
     bool new_month = historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000);
     if (new_month)
-        /* records every tag's newest sample in the old month's file, because a recorded line that crosses the month's end must
-           not depend on samples in memory */
+        /* At the end of a month, records every tag's newest sample in the old month's file. A tag's line that continues in the
+           next month then starts from a point on disk, not from a sample that is only in memory and would be lost in a crash.
+           */
         recorder_end(historian->recorder, &historian->waiting);
     if (!historian->stands_by && (new_month || last))
         repeat_readings(historian, new_month ? month_begin_us(month_of(utc_ns / 1000)) : utc_ns / 1000 - REPEAT_US, mono_ns, utc_ns);
@@ -579,8 +582,8 @@ static void tick(struct historian *historian, bool last)
     measure_free(historian);
 }
 
-/* Ends the recorded lines of the previous run at its newest samples. Used if the rows of that run's spool file still cannot be
-   written to history, before they are spooled together with those of this run. */
+/* Ends the recorded lines of the previous run at that run's newest samples. Used if the rows in that run's spool file still
+   cannot be written to history: they are then spooled again, together with the rows of this run. */
 static void end_spooled_lines(struct spool_rows *rows)
 {
     struct recorder_rows *kept = &rows->kept;

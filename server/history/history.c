@@ -74,8 +74,9 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
 
 /* --- series ------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the rollup level with the longest buckets that are at most twice stretch_us, the desired length. Returns -1 if the
-   buckets of all levels are longer: the caller must then compute buckets from points. */
+/* Returns the rollup level (set of precomputed buckets of one length) with the longest buckets that are at most twice
+   stretch_us, the desired length. Returns -1 if the buckets of all levels are longer: the caller must then compute buckets from
+   points. */
 static int level_for(int64_t stretch_us)
 {
     int level = -1;
@@ -128,7 +129,8 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
 {
     struct history_series *out = gather->out;
     struct history_bucket to = *bucket;
-    /* a switch holds its last value until then; earlier file versions stored in `first` the value after a step at the bucket's start */
+    /* the value of a switch holds until the next point, so the bucket begins with the last value of the previous one. Earlier
+       versions of the file stored in `first` the value after a step at the bucket's start */
     if (out->step)
         to.first = gather->last.last;
     int64_t begin_us = bucket->t_us - bucket->t_us % out->bucket_us, end_us = gather->last.t_us + gather->length_us;
@@ -157,7 +159,7 @@ static void put_points(struct gather *gather, const struct history_points *point
             put_bucket(gather, &closed);
 }
 
-/* Merges the incomplete bucket of the series' newest points. */
+/* Merges the last bucket computed from points, which may be incomplete because the series continues. */
 static void put_rest(struct gather *gather)
 {
     struct history_bucket rest;
@@ -382,8 +384,9 @@ void history_series_finish(struct history_series *series)
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-/* Returns true if the tag has no value at t_us because its newest recorded sample is older than the tag's `Stale s` allows. If
-   readings had continued, the historian would have recorded a newer point. */
+/* Returns true if the tag has no value at t_us: its newest recorded sample is older than the tag's `Stale s` (time in seconds
+   for which a value stays usable) allows. If samples had continued to arrive, the historian would have recorded a newer point.
+   */
 static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
 {
     return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&
@@ -400,7 +403,8 @@ static void read_pair(const struct history_pair *pair, int64_t t_us, int64_t sta
     out->value = isnan(before->value) ? 0 : before->value;
     out->received_utc_ns = t_us * 1000;
     out->age_ns = 0;
-    if (!quality_is_good(out->quality)) { /* the quality has not been Good since the point `before`, so the value is as old as that point */
+    /* the quality has not been Good since the point `before`, so the age of the value is counted from that point */
+    if (!quality_is_good(out->quality)) {
         out->received_utc_ns = before->t_us * 1000;
         out->age_ns = (t_us - before->t_us) * 1000;
     } else if (pair->after.t_us != INT64_MIN && history_point_joined(before, &pair->after, pair->step)) {
@@ -420,7 +424,8 @@ static int at_month(struct history_reader *reader, int month, const struct histo
     return error;
 }
 
-/* Returns true if for some tag the point before t_us was not found; with `after`, if the usable point before it has no point after it. */
+/* Returns true if the search must go on: for some tag, no point at or before t_us has been found yet. With `after`, also if
+   such a point is usable and the next point of the tag has not been found. */
 static bool lacks_point(const struct history_pair *pairs, size_t count, bool after)
 {
     size_t i = 0;

@@ -27,20 +27,23 @@ struct import_counts {
     struct charset_choice encoding;
     bool exported; /* true: the file has the columns of `plantcast history export` */
     int64_t from_us, to_us;
-    int64_t longest_us[2]; /* the longest time between samples that is not a gap, in microseconds: its minimum and maximum over all tags */
+    /* minimum and maximum over all tags, in microseconds, of the longest time between two samples that does not count as a gap
+       */
+    int64_t longest_us[2];
 };
 
-/* Imports a file in one of two forms. Long: columns Tag, Time, Value and optionally Quality (0x80050000, Good, Uncertain, Bad)
-   and Unit. Without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a device sends them. Wide:
-   Time, then one column per tag. A blank cell or a state word (value/state_word.h) is a Bad sample. The rows of each tag must
-   ascend in time; of rows with equal times the last one counts. A point without a value (Bad_NoCommunication) is recorded after
-   the last sample before a gap, and after the end of a series that no recorded point follows. The longest time between samples
-   that is not a gap is longest_gap_us. If longest_gap_us is 0, the limit is `Stale s` (a column of the tag list), provided that
-   the tag's row states it and the series is not slower; otherwise, ten times the median spacing of the series. A series of two
-   samples uses the median over all other series; if there are none, `Stale s` or twice override_s (the plant's maximum time
-   between two recorded points). In an exported file, where lines replace samples, a time of up to twice override_s is never a
-   gap, and a tag that is never stale has no gaps. Findings go to diag; after any error nothing is imported. Returns false on
-   errors, or if the folder cannot be written (logged). */
+/* Imports a CSV file with samples in one of two forms. Long form: columns Tag, Time, Value and optionally Quality (0x80050000,
+   Good, Uncertain, Bad) and Unit. Without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a
+   device sends them. Wide form: a column Time, then one column per tag. A blank cell or a state word (value/state_word.h) is a
+   Bad sample. The rows of each tag must ascend in time; of rows with equal times the last one counts. A point without a value
+   (Bad_NoCommunication) is recorded after the last sample before a gap, and after the end of a series that no recorded point
+   follows. The longest time between samples that is not a gap is longest_gap_us. If longest_gap_us is 0, the limit is `Stale s`
+   (a column of the tag list), provided that the tag's row states it and samples do not arrive more slowly; otherwise, ten times
+   the median spacing of the series. A series of two samples uses the median over all other series; if there are none, `Stale s`
+   or twice override_s (the plant's maximum time between two recorded points). An exported file has points of recorded lines
+   instead of samples: there, a time of up to twice override_s is never a gap, and a tag that is never stale has no gaps. Errors
+   and warnings go to diag; after any error nothing is imported. Returns false on errors, or if the folder cannot be written
+   (logged). */
 bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts);
 
 #endif

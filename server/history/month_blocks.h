@@ -13,9 +13,10 @@ struct month_chunk {
     size_t count;
 };
 
-/* Appends a tag's points, ascending: from the last one at or before from_us to the first one after to_us. */
+/* Appends the points of a tag, oldest first: from the last one at or before from_us to the first one after to_us. */
 int month_blocks_read(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out);
-/* Stores a chunk's ascending times in the file and sets its id; id 0: there are too many times to share. */
+/* Stores a chunk's ascending times in the file and sets the chunk's id. The id becomes 0 if there are too many times for one
+   chunk; each block then stores its own times. */
 int month_chunk_store(struct month_file *file, struct month_chunk *chunk);
 /* Writes ascending points of a tag as blocks. If the chunk has an id, it must contain the times of these points. Merges the
    points with those of existing blocks in that time span; a new point replaces an old one of the same time. */

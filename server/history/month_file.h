@@ -17,7 +17,7 @@ extern const int64_t history_level_us[LEVEL_COUNT];
 struct history_tag {
     const char *name, *unit;
     bool step;        /* true: the tag is a switch, whose values hold until the next point */
-    double within;    /* maximum deviation of the recorded line from any reading, in the tag's unit */
+    double within;    /* largest allowed difference between the recorded line and any reading, in the tag's unit */
     int64_t stale_us; /* microseconds for which a reading stays usable after its arrival; INT64_MAX: always */
 };
 

@@ -57,8 +57,8 @@ bool month_has_blocks(struct month_file *file);
 /* Returns the id of the tag's series whose unit is, or can be converted to, `wanted`, and sets *change to the conversion; 0:
    the file has no such series. wanted NULL: returns the series with the newest points, without conversion. */
 int64_t month_find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change);
-/* Appends a tag's points from the compressed blocks and from the table `sample` (older versions), ascending: from the last one
-   at or before from_us to the first one after to_us. Returns 0 or -errno. */
+/* Appends the points of a tag, oldest first, from the compressed blocks and from the table `sample` (older versions of the
+   file): from the last point at or before from_us to the first one after to_us. Returns 0 or -errno. */
 int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out);
 void history_points_add(struct history_points *points, const struct history_point *point);
 

@@ -77,8 +77,9 @@ static void report_set_aside(struct month_file *file, const struct history_tag *
     sqlite3_reset(find);
 }
 
-/* Ends and renames the tag's series, because its unit cannot be converted to the tag's current unit. The series keeps its
-   points and its unit. Readers skip it until the tag has a unit to which it can be converted. */
+/* Ends the tag's series in this file and renames it, because its unit cannot be converted to the unit that the tag has now. The
+   series keeps its points and its unit. Readers skip it unless the tag later gets a unit to which that of the series can be
+   converted. */
 static int set_series_aside(struct month_file *file, const struct history_tag *of, int64_t id)
 {
     static const struct month_chunk own = { 0 };
@@ -336,7 +337,8 @@ static int move_tag(struct month_file *file, int tag, const struct month_chunk *
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        /* loads the rollups before the new points are in blocks; otherwise these points would count twice */
+        /* the incomplete rollup buckets must be loaded before the new points are written to blocks: load_rollups() reads the
+           blocks, so these points would otherwise count twice */
         error = load_rollups(file, tag, rows->id);
     points->count = 0;
     for (size_t i = 0; i < count && !error; i++) {

@@ -37,8 +37,9 @@ static double span_of(const struct plant *plant, const struct plant_tag *tag)
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
 }
 
-/* Returns the longest time between two samples of a tag over which the recorded line may slope. `Stale s` may allow a far
-   longer silence, during which live pictures show the last value. */
+/* Returns the longest time between two samples of a tag that the recorded line may bridge with a slope. After a longer time,
+   the line is level until shortly before the next sample. The tag's `Stale s` may allow a far longer silence, during which live
+   pictures show the last value. */
 static int64_t silence_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->validity.stale_s >= PLANT_NEVER_STALE_S || plant_tag_sends_changes(plant, tag))
@@ -120,8 +121,9 @@ static void put(struct recorder *recorder, int tag, const struct history_point *
     add_points(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
 }
 
-/* If there were no samples for long before this one, records the state of that time. Otherwise the recorded line would slope
-   from the old value to the new one over the whole silence. */
+/* Call before a sample is recorded. If the previous sample is long ago, first records the old value at a time shortly before
+   the new sample. Otherwise the recorded line would slope from the old value to the new one over the whole time without
+   samples. */
 static void put_silence(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
 {
     const struct recorder_lane *lane = &recorder->lanes[tag];
@@ -178,7 +180,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* if the newest sample was just recorded, the recorded point becomes the tag's held row, so that the end of the line is
+        /* also when the newest sample was just recorded: that point becomes the tag's held row, so that the end of the line is
            known after a crash */
         recorder_newest(recorder, recorder->touched[i], &point);
         add_points(held, recorder->touched[i], &point, 1);

@@ -77,7 +77,9 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     month_file_close(&file);
     if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
         return false;
-    if (!newest) /* free space in the file counts as freed, because the cut returns it to the disk along with the space of the points */
+    /* the free space within the file counts as freed, because the cut returns it to the disk, together with the space of the
+       deleted points */
+    if (!newest)
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
@@ -144,7 +146,9 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         mem_free(why);
     }
     if (!limits->sends)
-        *unsent = 0; /* points left in an outbox by an earlier configuration do not count as lost, because no database is configured now */
+        /* points that an earlier configuration left to be sent to PostgreSQL do not count as lost, because no database is
+           configured now */
+        *unsent = 0;
     if (*unsent)
         log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
                   "history: keep_gb: deleted %lld of the oldest points before they were sent to PostgreSQL", (long long)*unsent);

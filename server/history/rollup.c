@@ -87,8 +87,8 @@ bool rollup_put(struct rollup *rollup, const struct history_point *point, struct
         open_bucket(rollup, next.t_us);
         if (rollup->has_last)
             take_part(rollup, &next, rollup->bucket.t_us > rollup->last.t_us ? rollup->bucket.t_us : rollup->last.t_us, next.t_us);
-        /* the point is at the bucket's start and no straight line leads to it: the previous value holds until then, and is the
-           bucket's first value */
+        /* the point is at the bucket's start, and no straight line leads from the previous point to it: the previous point's
+           value holds until then, and is the bucket's first value */
         if (rollup->has_last && next.t_us == rollup->bucket.t_us && history_point_usable(&rollup->last) &&
             !history_point_joined(&rollup->last, &next, rollup->step))
             rollup->bucket.first = rollup->last.value;
@@ -139,7 +139,8 @@ void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, 
         into->bad_us += to_us - from_us;
         return;
     }
-    /* the slope is 0 if `b` has no first value: earlier versions stored none if `b` starts with a point without a value */
+    /* the slope is 0 if bucket `b` has no first value: earlier versions of the file stored none if the first point of `b` has
+       no value */
     double slope = isnan(b->first) ? 0 : (b->first - a->last) / (double)(b->t_us - end_us);
     double enter = a->last + slope * (double)(from_us - end_us), leave = a->last + slope * (double)(to_us - end_us);
     take_value(into, enter);

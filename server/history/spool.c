@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes spool files: text with one line per unwritten row: kind (recorded or held), time, value, quality and tag
-   name. A line of kind `u` precedes the first row of each tag: length of the tag's unit, unit and name. Earlier versions of the
-   program ignore such lines. */
+/* Reads and writes spool files, which hold rows that could not be written to history. They are text with one line per row: kind
+   (recorded or held), time, value, quality and tag name. A line of kind `u` precedes the first row of each tag: length of the
+   tag's unit, unit and name. Earlier versions of the program ignore such lines. */
 #include "history/spool.h"
 
 #include <errno.h>

@@ -77,8 +77,9 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
-        /* the sample is within the deadband but outside the door: records the held point (newest sample that left the
-           deadband). Otherwise a reader of the current state would see a ramp instead of a step */
+        /* The sample is within the deadband but outside the door: records the held point (the newest sample that left the
+           deadband). Otherwise the line drawn from the recorded points to the present would show a ramp where the value made a
+           step. */
         if (usable && door->has_held && !passes(door, sample)) {
             struct history_point held = door->held;
             count = keep(door, &held, kept, count);
@@ -87,8 +88,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
         door->has_skipped = true;
         return due ? keep_last(door, params, kept, count) : count;
     }
-    /* first passes the skipped sample (the last one within the deadband) to the door, so that the recorded line does not rise
-       before the values did */
+    /* first passes the skipped sample (the last one within the deadband) to the door: otherwise the recorded line would begin
+       to rise before the values did */
     if (door->has_skipped) {
         struct history_point skipped = door->skipped;
         count = params->step ? 0 : swing(door, params, &skipped, kept, count);

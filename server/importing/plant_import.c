@@ -25,7 +25,8 @@ struct plant_import {
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     struct import_order order; /* the import order in progress or, if there is none, the last one */
-    /* the last successful import order that read models; the current models were read with its units, axis and encoding */
+    /* the last successful import order that read models: the units, axis and encoding of the present models are those of this
+       order */
     struct import_order read;
     bool ordered, busy, cancelled;
     enum import_phase phase;

@@ -122,7 +122,7 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
     if (strlen(fingerprint) != 16 ||
-        /* ignores an incomplete row, left when writing was interrupted */
+        /* skips an incomplete row, which remains if the daemon was interrupted while writing it */
         (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0))
         return;
     loop_checks->begun = true;

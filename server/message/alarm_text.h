@@ -25,7 +25,8 @@ struct alarm_query {
     int limit;      /* maximum number of rows */
     int64_t offset; /* for /api/v1/alarms: number of alarms to skip */
     char tag[256];  /* name of the tag or device whose alarms to return; empty: all alarms */
-    /* for /api/v1/alarms/journal: time range in microseconds UTC, and the id below which rows are returned */
+    /* for /api/v1/alarms/journal: time range of the rows, in microseconds UTC; before_id: only rows with smaller ids are
+       returned */
     int64_t from_us, to_us, before_id;
 };
 /* Parses the percent-decoded arguments of an HTTP query, such as `limit=100`, `format=csv`. journal true: also accepts the

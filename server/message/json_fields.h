@@ -6,8 +6,8 @@
 #include "message/message.h"
 #include "message/names.h"
 
-/* Functions need_...: a missing member is an error. Functions may_...: a missing member leaves *out unchanged, and the function
-   returns true. *given, if not NULL, tells whether the member was present. */
+/* Functions whose names begin with need_ treat a missing member as an error. Functions whose names begin with may_ leave *out
+   unchanged if the member is missing, and return true. *given, if not NULL, tells whether the member was present. */
 bool need_number(const json_t *o, const char *name, double low, double high, double *out, struct message_error *error);
 bool may_number(const json_t *o, const char *name, double low, double high, double *out, bool *given, struct message_error *error);
 /* Reads the member "seq", an integer in 1..2^32-1. */

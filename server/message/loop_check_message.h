@@ -6,7 +6,7 @@
 #include "message/message.h"
 #include "value/snapshot.h"
 
-/* Parses the message into out->loop_check. Returns false with *error saying what is wrong. */
+/* Parses the message `prove` into out->loop_check. Returns false with *error saying what is wrong. */
 bool loop_check_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Compares the tag's current reading with the expected value and records the result. who: the user's name. Returns the answer;
    free with mem_free(). */

@@ -53,7 +53,7 @@ enum message_type {
     MESSAGE_SIGN
 };
 
-/* the session's frames that the server signs: none, the refined ones, or all */
+/* frames of a session that the server must sign (SIGNED_REFINED: only refined frames, not previews of a moving picture) */
 enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL };
 
 /* RESUME_CHARS: length of a resume token, by which a client continues its session after a lost connection. RESUME_MOST_CHARS:
@@ -98,7 +98,8 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 struct params_change {
     uint32_t seq;
     unsigned given;            /* bit mask of the members present in the message (enum params_given) */
-    struct field_params field; /* this member and all that follow are new parameter values, each valid only if its bit is set in `given` */
+    /* This and all following members are new values of parameters, each valid only if its bit is set in `given`. */
+    struct field_params field;
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
@@ -113,9 +114,9 @@ struct params_change {
     double light_dir[3];
     int environment;
     int selected_asset;
-    /* with GIVEN_SENSORS, field.overrides holds the sensors named in the message. A strength or decay that the message omits is
-       FIELD_AS_CONFIGURED; if it omits both, the sensor's override is removed */
-    bool only_these_sensors; /* true: the message had `sensors: null`, so all other overrides are removed */
+    /* With the bit GIVEN_SENSORS, field.overrides has the strength and decay of the sensors named in the message. A value that
+       the message omits is FIELD_AS_CONFIGURED; if it omits both, the sensor gets back its configured strength and decay */
+    bool only_these_sensors; /* true: the message had `sensors: null`, which removes the overrides of all sensors that it does not name */
     enum baseline_change baseline;
     char baseline_name[BASELINE_NAME_BYTES];
     struct visibility visibility;
@@ -202,10 +203,10 @@ struct pair_request {
 struct hello_request {
     /* access token, and the resume token of an earlier session; empty: none */
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1];
-    double idle_ms; /* milliseconds since the user was last active; negative: not stated */
+    double idle_ms; /* milliseconds since the last input of the user; negative: not stated */
     bool tokens;    /* true: the server must send the view as a token whenever the view changes */
     bool depth;     /* true: the client wants depth grids with its frames */
-    bool anew;      /* true: the client resumes only the session's id and its followers, but not its view */
+    bool anew;      /* true: the client continues the earlier session (its id and its followers), but does not want that session's view */
     bool has_camera, has_params;
     /* the tile that this display shows of a picture spread over many displays; display 0: this client shows no tile */
     struct wall_place tile;
@@ -229,7 +230,7 @@ struct message {
     double decode_ms; /* message ack: milliseconds that the client needed to decode the frame; negative: not stated */
     double t;         /* message ping: the client's time stamp, which the server returns in its answer */
     bool active;      /* message ping: true: the user was active since the last ping */
-    uint64_t follow;  /* messages follow and lead: number of another session; 0: no session */
+    uint64_t follow;  /* messages follow and lead: number of the other session to follow, or to which the lead is handed; 0: no session */
     struct alarm_request alarm;
     struct time_request time; /* messages time and hello: the time that the view shows */
     struct place_request place;
@@ -265,13 +266,14 @@ struct params_context {
 /* Applies a change of parameters to a view. If part of the change is invalid, returns false with *error and leaves the view
    unchanged. If the change names another group, the view first gets that group's default parameters. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
-/* The parts of params_parse() and params_apply() for the members `show`, `sensor`, `baseline` and `sensors`. */
+/* params_parse() and params_apply() call these functions for the members `show`, `sensor`, `baseline` and `sensors`. */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
 /* Stores or removes the baseline that a change names. Call it last, after all checks of the change, because it cannot be undone. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* The parts of params_parse() and params_apply() for the members `scale`, `breaks` (limits between colour bands) and `isolines`. */
+/* params_parse() and params_apply() call these functions for the members `scale`, `breaks` (limits between colour bands) and
+   `isolines`. */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
 /* split_parse() and split_apply() parse and apply the member `split`, which describes the right half of a split view (params_split.c). */

@@ -5,8 +5,8 @@
 #include "message/message.h"
 #include "placing/tag_file.h"
 
-/* place_parse() and the functions below parse messages into out->place, out->coverage, out->confirm, out->accept and out->kept. They
-   return false with *error saying what is wrong. */
+/* Each function parses one message and stores its content in `out`: in the member place, coverage, confirm, accept or kept.
+   Returns false with *error saying what is wrong. */
 bool place_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool coverage_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
@@ -23,7 +23,7 @@ char *coverage_text(const struct scene *scene, const struct place_set *set, cons
    (tag_save_free), otherwise NULL. who: the user's name. */
 char *tags_diff_text(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order);
-/* Returns the message `tags_saved`, which in this case says why a tag list could not be saved; free with mem_free(). */
+/* Returns the message `tags_saved` with the reason why a tag list could not be saved; free with mem_free(). */
 char *tags_refused_text(uint32_t seq, const struct refusal *why);
 
 #endif

@@ -37,7 +37,8 @@ bool role_may_save(enum role role, const char *address, struct message_error *er
    plant without tags, so that refusals do not reveal which tags exist. *copy shares everything else with `plant`. */
 const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy);
 
-/* Returns true if a renderer must forward messages of that type to its core, because they change state owned by the core. */
+/* Returns true if a renderer must forward messages of that type to its core, because only the core can change the state in
+   question. */
 bool message_is_handed_on(const struct message *message);
 
 #endif

@@ -16,8 +16,8 @@ struct view_address {
 };
 
 /* Translates a view's address into arguments of an HTTP query for a picture. Drops the selected tag and the camera's tilt,
-   because pictures do not show them. Returns false with *error if a picture cannot show the address. Call view_address_finish()
-   in any case. */
+   because pictures do not show them. Returns false with *error if no picture can show the view at this address. Call
+   view_address_finish() in any case. */
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error);
 /* Adds the argument NAME=VALUE. Returns false if there is no room for more. */
 bool view_address_add(struct view_address *address, const char *name, const char *value);
@@ -26,7 +26,8 @@ bool view_address_is_named(const char *arg, const char *name);
 /* Returns true if a query's argument `given` replaces a saved view's argument `name`: it is the same argument, or it makes the
    other meaningless, as `fit` does with `camera`. Either text may be followed by `=` and a value. */
 bool view_address_replaces(const char *given, const char *name);
-/* Adds an argument NAME=VALUE in place of those that it supersedes. Returns false if there is no room for more. */
+/* Adds an argument NAME=VALUE, and removes those that it replaces (view_address_replaces()). Returns false if there is no room
+   for more. */
 bool view_address_set(struct view_address *address, const char *arg);
 void view_address_finish(struct view_address *address);
 

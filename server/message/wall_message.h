@@ -4,8 +4,8 @@
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"
 
-/* tile_parse(), display_parse() and the functions below parse messages into out->hello.tile, out->wall or out->pair;
-   send_to_wall_parse() also writes view and title to out->view_edit. They return false with *error saying what is wrong. */
+/* Each function parses one message and stores its content in out->hello.tile, out->wall or out->pair; send_to_wall_parse() also
+   writes view and title to out->view_edit. Returns false with *error saying what is wrong. */
 /* Reads the optional member `tile` (display of a wall) of the message hello. */
 bool tile_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);

@@ -29,8 +29,9 @@ struct address_usage *address_limits_ref(struct address_limits *limits, const ch
 /* Releases a reference and sets *usage to NULL; accepts a pointer to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);
 
-/* Each function checks one quota of the address and returns whether one more is allowed. In this order: connection; stream;
-   connection of a proxy; history query; HTTP answer of `count` bytes; picture over HTTP. */
+/* Each function checks one limit of the address, and returns true if one more is allowed. may_connect: a connection;
+   may_stream: a stream; may_be_named: a connection of a proxy for this client; may_ask: a history query; may_hold: an HTTP
+   answer of `count` bytes; may_draw: a picture over HTTP. */
 bool address_limits_may_connect(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_stream(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_be_named(const struct address_limits *limits, const struct address_usage *usage);

@@ -39,8 +39,8 @@ struct http_refusal {
 /* Reads the headers of a request and sets the connection's role, client and holder. Returns false, with the answer in *refusal,
    if the request must be refused. */
 bool connection_identify(struct server_context *server, struct lws *wsi, struct http_refusal *refusal);
-/* Appends a suffix to the name of a signed-in user if a token has the same name, or if the name is `local`. So journals and the
-   audit trail can tell the users apart. */
+/* Appends a suffix to the name of a signed-in user if a token's holder has the same name, or if the name is `local`. So
+   journals and the audit trail can distinguish these users. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person);
 /* Returns the name of the user behind this connection's last request, for journals and lists; "local" if the user needed no token. */
 const char *connection_who(const struct connection *connection);

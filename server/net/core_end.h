@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The side of a renderer or standby of its connection /core to the core, in the event loop: forwards users' actions to the
-   core, and distributes what arrives from the core. Call only in the event loop. */
+/* A renderer's or standby's end of the connection to its core (path /core): forwards users' actions to the core, and
+   distributes messages that arrive from the core. Call only in the event loop. */
 #ifndef NET_CORE_END_H
 #define NET_CORE_END_H
 #include "net/server_context.h"
 
-/* On a renderer, makes sessions forward users' actions to the core over the plant's core_link. Does nothing on other daemons, which have no
-   core_link. */
+/* On a renderer, makes sessions forward users' actions to the core through core_link. Does nothing on other daemons, which have
+   no core_link. */
 void core_end_bind(struct server_context *server);
 /* Returns whether this daemon polls devices and owns alarms: it is neither a renderer nor a standby core. */
 bool core_end_leads(const struct server_context *server);

@@ -51,8 +51,8 @@ void net_lead(struct net *net, const struct plant_services *plant);
 /* Switches to another plant. Sessions keep their views, except for items whose names the new plant lacks. Returns false if
    history cannot be read any more, already logged. */
 bool net_take_plant(struct net *net, const struct plant_services *plant);
-/* Writes to `out` up to `most` distinct views that sessions will show in the next plant, so that they can be drawn in advance.
-   Returns their number. next->render_service may be NULL. */
+/* Writes to `out` up to `most` distinct views that sessions will show after the switch to the next plant, so that they can be
+   drawn in advance. Returns their number. next->render_service may be NULL. */
 size_t net_views(struct net *net, const struct plant_services *next, struct view *out, size_t most);
 /* Answers all HTTP requests for a reload with the reload's result. */
 void net_report_reload(struct net *net, bool good, const char *text);

@@ -23,12 +23,12 @@ struct net {
     struct cpu_meter cpu;
     int64_t cpu_ns; /* monotonic time when the processors' load was last read */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
-    struct { /* state of the handover to the standby (hand_over.c) */
+    struct { /* steps of the shutdown in which this core hands the lead to its standby (hand_over.c) */
         enum hand_over_step step;
         int64_t until_ns; /* monotonic time at which the current step of the handover is given up */
     } hand_over;
     struct {
-        pthread_mutex_t turn; /* held by the caller of net_call(), so that only one call is made at a time */
+        pthread_mutex_t turn; /* lock held by the thread that is in net_call(), so that only one thread calls at a time */
         pthread_mutex_t lock;
         pthread_cond_t done;
         /* --- below: protected by `lock` */
@@ -63,8 +63,8 @@ void net_calls_close(struct net *net);
 void net_bind_plant(struct net *net);
 /* Starts the readers of the plant's history, if there is one. Returns false if they cannot start, already logged. */
 bool net_open_history(struct net *net);
-/* In server->params.plant, sets services to NULL that cannot be used here: snapshot_cache if nothing is recorded, placing if
-   this daemon cannot save tag lists. Call after each change of params.plant. */
+/* Sets those services in server->params.plant to NULL that this daemon cannot offer: snapshot_cache if nothing is recorded,
+   placing if this daemon cannot save tag lists. Call after each change of params.plant. */
 void net_limit_services(struct server_context *server);
 /* Starts the thread that signs pictures, if there is a key. Returns false if it cannot start, already logged. */
 bool net_open_signer(struct net *net);

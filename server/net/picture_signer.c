@@ -12,7 +12,8 @@ struct picture_signer {
     void (*notify)(void *arg);
     void *arg;
     pthread_cond_t settled;
-    /* used only by the signing thread: the last frame and its signed form, so that sessions of one view share one signature */
+    /* cached by the signing thread, which alone uses it: the last unsigned frame and its signed form, so that sessions of one
+       view share one signature */
     struct packet *last, *last_signed;
     bool last_bare;
     /* --- below: protected by thread.lock */
@@ -165,7 +166,7 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
-    forget_last(signer); /* safe, because the signing thread is idle now */
+    forget_last(signer); /* accesses data of the signing thread, which is idle now */
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

@@ -53,7 +53,7 @@ struct renderer_peer {
     /* true: the last message with samples had all waiting samples, so the next message has readings, which resets the flag */
     bool samples_sent;
     bool reloads; /* true: the peer must still be told that this core loads the plant */
-    bool asks;    /* true: the peer must still be asked for its promise not to take the lead (corelink/lease.h) */
+    bool asks;    /* true: the peer must still be sent the question whether it promises not to take the lead (corelink/lease.h) */
     /* standby: when this core ends, it asks the standby a last time, after all other messages, to promise not to take the lead.
        Number of this question; 0: not sent */
     uint64_t last_question;
@@ -111,7 +111,7 @@ static bool is_witness(const struct renderer_peer *renderer)
     return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);
 }
 
-/* Returns whether a core is accepted as the standby: it has this core's version, plant and configuration. */
+/* Returns whether a core can be the standby: its version, plant and configuration equal this core's. */
 static bool is_standby(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && renderer->state == RENDERER_TAKEN;
@@ -287,8 +287,8 @@ static bool send_standby(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
-/* Returns whether the standby was sent all state that it needs to take over. Samples that arrived before lead_ended_ns count as
-   sent only after one more message of readings, which makes send_next() look for samples again. */
+/* Returns whether the standby was sent all state that it needs to take over. After the time lead_ended_ns, one more message of
+   readings must have been sent before all samples count as sent: send_next() looks for waiting samples only after it. */
 static bool has_all(const struct server_context *server, const struct renderer_peer *renderer)
 {
     int64_t ended_ns = server->life.lead_ended_ns;
@@ -318,7 +318,8 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
     renderer->close_text = votes ? NULL : "this node was refused";
-    /* a core refused only for its version may still take over: pairs are upgraded one core after the other */
+    /* a core that is refused only because its version differs may still take the lead: the two cores of a pair are upgraded one
+       after the other */
     json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
                                 votes && !renderer->other_configuration);
     if (renderer->other_configuration)
@@ -428,7 +429,8 @@ static bool send_readings(struct server_context *server, struct renderer_peer *r
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
-/* Resumes sending on connections whose answers wait until a standby has the state that the answered actions changed. */
+/* Lets those connections send again whose answers wait until a standby has received the state that the answered actions
+   changed. */
 static void wake_answers(const struct server_context *server)
 {
     for (const struct renderer_peer *one = server->core.renderers; one; one = one->next)
@@ -436,8 +438,8 @@ static void wake_answers(const struct server_context *server)
             lws_callback_on_writable(one->wsi);
 }
 
-/* Returns whether a standby was not sent the latest actions of users yet. Until then no client is told that the action is done:
-   the standby might take over without having received it. The core does not wait for a standby that is too slow. */
+/* Returns whether users' latest actions are not yet sent to the standby. Until then no client is told that the action is done:
+   the standby might take over without knowing of it. The core does not wait for a standby that is too slow. */
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
@@ -684,8 +686,8 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (renderer->state != RENDERER_TAKEN)
         why = "the peer's first message is not an introduction (type renderer)";
     else if (server->life.hands_over)
-        /* ignores the message, because this core is handing over the lead. When the connection ends, the renderer reports to
-           the user that the connection was lost */
+        /* Ignores the forwarded action, because this core is handing over the lead. When the connection ends, the renderer
+           tells the user that the connection was lost. */
         why = NULL;
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);

@@ -22,7 +22,7 @@ static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
 /* time limit for a node that has lost its core to close all its sessions, so that they move to other nodes */
 static const int64_t MOVE_NS = 1 * NS_PER_S;
-static const int64_t MOVING_NS = 200 * NS_PER_MS; /* how long after a user's input the session's camera counts as moving */
+static const int64_t MOVING_NS = 200 * NS_PER_MS; /* time after a user's input during which the session's camera counts as moving */
 
 /* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
 

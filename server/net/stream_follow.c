@@ -8,7 +8,7 @@
 static const int64_t MIN_LIST_INTERVAL_NS =
     500 * NS_PER_MS; /* minimum time between two lists of followers, because hundreds of followers may connect at once */
 
-/* Makes the followers of the resumed session follow the session that resumed it. */
+/* After a session was resumed over a new connection: makes its former followers follow the new session. */
 static void take_back(struct server_context *server, struct session *session)
 {
     for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
@@ -82,7 +82,7 @@ bool follow_spread(struct server_context *server, const struct stream *leader)
 void follow_forget(struct server_context *server, const struct stream *leader)
 {
     const struct stream *newer = stream_called(server, leader->session->identity.number);
-    /* session that resumed the leader's view over another connection, while the leader was still connected; NULL: none */
+    /* newer session to which the leading client reconnected while its old connection was not closed yet; NULL: none */
     struct session *again = newer ? newer->session : NULL;
     for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (stream->session->following.leader == leader->session && again && again != stream->session)

@@ -11,7 +11,7 @@
 struct notifier_params {
     struct log *log;
     struct counters *counters;
-    const struct plant *plant; /* must have a `notify`; plant and alarm service must outlive the notifier */
+    const struct plant *plant; /* plant whose plant file must have the key `notify`; plant and alarm service must outlive the notifier */
     /* the service whose alarms are sent */
     struct alarm_service *alarm_service;
     const char *folder;      /* folder of notify.json; the alarm journal creates it */

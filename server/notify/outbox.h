@@ -22,7 +22,7 @@ struct outbox_item { /* one alarm in a message */
     enum alarm_kind kind;
     int priority, step; /* step: index of the rule's escalation step that sends the alarm; 0: the first notification */
     enum alarm_status status;
-    double value, limit; /* value at which the alarm was raised, and its limit; NaN: none */
+    double value, limit; /* value for which the alarm was raised, and the limit that it violated; NaN: none */
     /* UTC microseconds. ended_us: when the alarm returned to normal or was acknowledged; 0: the alarm still needs attention */
     int64_t raised_us, ended_us;
 };
@@ -43,8 +43,8 @@ void outbox_destroy(struct outbox **outbox); /* Frees the outbox and sets *outbo
 /* Processes the present state of an alarm. restored: true: the state was read from the journal after a restart; the alarm is
    then sent only if it needs attention. */
 void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored, int64_t now_us);
-/* Call it after a restart, once outbox_put() was called for all alarms that are not normal. Ends the alarms of the saved state
-   that outbox_put() was not called for: while the daemon did not run, they returned to normal or lost their limits. */
+/* Call it after a restart, once outbox_put() was called for every alarm that is not normal. Ends all other alarms of the saved
+   state: while the daemon did not run, they returned to normal or their limits were removed. */
 void outbox_end_unseen(struct outbox *outbox, int64_t now_us);
 /* Does what is due at now_us: escalates alarms and drops old messages. */
 void outbox_tick(struct outbox *outbox, int64_t now_us);

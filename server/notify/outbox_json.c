@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The outbox of alarm messages as JSON: episodes of alarms with the recipients that were notified, and queued messages. Names
-   identify recipients, rules and alarms. */
+/* Converts the outbox of alarm messages to JSON and back: alarms that were raised, with the recipients that were notified of
+   them, and queued messages. Names identify recipients, rules and alarms. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>
@@ -74,7 +74,8 @@ static int64_t integer_of(const json_t *object, const char *key)
     return json_integer_value(json_object_get(object, key));
 }
 
-/* Returns a saved value or limit of an alarm in the tag's present unit. NAN: none, or its unit is unknown or not convertible. */
+/* Returns an alarm's saved value or limit, converted to the tag's present unit; NAN: there is none, or its unit is unknown or
+   not convertible. */
 static double value_of(const struct outbox *outbox, const json_t *object, const char *key, int tag)
 {
     const json_t *value = json_object_get(object, key);

@@ -32,7 +32,7 @@ struct trials *placing_trials(struct placing *placing);
 enum { PLACING_MOVES = TRIAL_SENSORS };
 struct place_move {
     int tag, asset;       /* indices of the tag and the asset in the plant */
-    double position_m[3]; /* position to which the sensor is moved, in plant coordinates, metres */
+    double position_m[3]; /* requested position of the sensor in metres, in plant coordinates */
 };
 enum placed_state {
     PLACED_WAITING, /* geodesic distances are still being computed; straight-line distances are used meanwhile */
@@ -83,8 +83,8 @@ struct sensor_coverage_answer {
    placing_collect() returns the answer. */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
-/* Passes newly computed geodesic distances to the sets that requested them. Returns a linked list of finished coverage answers,
-   oldest first; the caller frees each with sensor_coverage_answer_free(). */
+/* Passes newly computed geodesic distances to the sets of moved sensors that requested them. Returns a linked list of finished
+   coverage answers, oldest first; the caller frees each with sensor_coverage_answer_free(). */
 struct sensor_coverage_answer *placing_collect(struct placing *placing);
 /* Frees one coverage answer. */
 void sensor_coverage_answer_free(struct sensor_coverage_answer *answer);

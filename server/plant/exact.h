@@ -7,9 +7,9 @@
 #include "plant/influence.h"
 #include "plant/plant.h"
 
-/* Largest relative error, in either direction, of a distance along the surface. accuracy_test measured it on shapes without the
-   faults of CAD exports. The interpolation `shepard` weights a sensor by a distance to the power of -p, so a weight's relative
-   error is up to p times as large. */
+/* Largest relative error, positive or negative, of the distances along the surface that plantcast-prep computes; measured by
+   accuracy_test on shapes without the faults of CAD exports. The interpolation `shepard` weights a sensor by its distance to
+   the power of -p, so a weight's relative error is up to p times as large. */
 #define PLANT_DISTANCE_ERROR 0.0031
 
 /* Returns whether a field with this interpolation and kind of distance is evaluated at each pixel. */

@@ -19,7 +19,7 @@
 #define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise for `gp`, as a fraction of the group's range */
 
 #define PLANT_SEEN_PART 0.05 /* smallest difference of values visible as a difference of colours, as a fraction of the group's range */
-/* size in metres of the hot spots for which blind spots (places where no sensor would notice a hot spot) are computed */
+/* default radius in metres of the hot spots that `show: blind` considers (hot_spot_m in struct plant_group) */
 #define PLANT_HOT_SPOT_M 0.5
 
 /* Returns whether plantcast-prep computes the weights of an interpolation; false: the daemon computes them from distances. */

@@ -25,7 +25,7 @@ enum interpolation {
 };
 /* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-/* fill of the surface around a sensor while its reading is Bad: none, or the field of neighbouring sensors */
+/* what a picture shows around a sensor whose reading is Bad: nothing, or the field of neighbouring sensors */
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
 /* content of a client's first picture: values, or values relative to their alarm limits (operator's display) */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
@@ -136,12 +136,12 @@ struct plant_group {
     /* true (key `geodesic: heat`): plantcast-prep also computes distances along the surface by the heat method, as in Kim & Suh */
     bool heat;
     struct plant_gp gp;
-    /* radius in metres of the hot spots for which `show: blind` finds places that no sensor notices. It is the distance from a
-       spot's centre at which its excess temperature has fallen by a factor exp(-1/2) */
+    /* radius in metres of the hot spots for which `show: blind` finds places where no sensor would notice such a spot. At this
+       distance from the spot's centre, its excess temperature has fallen by a factor exp(-1/2) */
     double hot_spot_m;
     bool cuts_singles; /* true (key `singles: cut`): plantcast-prep subdivides triangles even of assets with only one sensor of the group */
     enum fill_mode fill;
-    bool log;                    /* true (`scale: log`): logarithmic colour scale; requires min > 0 */
+    bool log;                    /* true (`scale: log`): the colour scale is logarithmic, which requires min > 0 */
     /* ascending values at which one colour band ends and the next begins, for pictures in bands instead of continuous colours */
     double breaks[PLANT_BREAKS];
     double isolines[PLANT_ISOLINES];

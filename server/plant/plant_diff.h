@@ -6,8 +6,8 @@
 #include "plant/plant.h"
 
 struct plant_diff { /* zero-initialise */
-    /* one line for each difference, such as "tag TT-101: HH 90 > 95" or "tag TT-101: HH none > 95"; at most PLANT_DIFF_LINES.
-       more: number of differences left out */
+    /* texts, one for each difference, such as "tag TT-101: HH 90 > 95" (limit HH changed from 90 to 95) or "tag TT-101: HH none
+       > 95"; at most PLANT_DIFF_LINES. more: number of differences beyond that */
     char **lines;
     size_t count, capacity, more;
 };

@@ -21,8 +21,8 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-/* name of a revision's record (its folder) once the revision is undone completely; the next program that locks the folder
-   removes the record */
+/* name that the folder with a revision's record gets once the revision is undone completely; the next program that locks the
+   plant's folder removes it */
 static const char undone[] = ".import-undone";
 static const size_t max_text_bytes = (size_t)64 << 20;
 
@@ -125,7 +125,8 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    /* no such version in the record: the file was moved already, or the revision does not change it; success */
+    /* the record has no version of this file to be moved: the file was moved already, or the revision does not change it; both
+       count as success */
     int status = access(source, F_OK) != 0 ? 0 : *name == '/' ? put_elsewhere(source, target) : move(source, target);
     mem_free(source);
     mem_free(target);
@@ -154,8 +155,8 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    /* the record's list of files is missing: all files are back in place, and an earlier run was killed while removing the
-       revision's folder */
+    /* The record's list of files is missing, which means that all files are back in place: an earlier run was killed while it
+       removed the record's folder. */
     if (status == -ENOENT)
         status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
@@ -178,8 +179,8 @@ int revision_go_on_undoing(const char *folder)
     return status;
 }
 
-/* Returns whether killed programs left work folders in the plant's folder. now: true: also removes these folders. own: path of
-   a work folder of this program, which is kept. */
+/* Returns whether programs that were killed left work folders (temporary folders of imports) in the plant's folder. now: true:
+   also removes these folders. own: path of a work folder of this program, which is kept. */
 static bool remove_left(const char *folder, const char *own, bool now)
 {
     DIR *dir = opendir(folder);
@@ -315,8 +316,8 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
     int lock = plant_folder_lock(&at_once, why);
     if (lock >= 0)
         close(lock);
-    /* without a revision in progress, a failed lock is no error: either a running import has not begun to replace files, or
-       this program lacks the right to remove what a killed program left */
+    /* Without an unfinished revision, a failed lock is no error. The lock fails if a running import holds it but has not begun
+       to replace files, or if this program lacks the right to remove work folders of killed programs. */
     if (!killed) {
         mem_free(*why);
         *why = NULL;

@@ -21,9 +21,10 @@ void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, void *plant
 void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 /* Frees the settings of `notify` and sets *notify to NULL; accepts a pointer to NULL. */
 void plant_notify_free(struct plant_notify **notify);
-/* Reads a time span such as 22:00-06:00. Returns false after an error, which is reported for the key `name`. */
+/* Reads a daily time span such as 22:00-06:00; *from_min and *to_min receive minutes after midnight. Returns false after an
+   error, which is reported for the key `name`. */
 bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min);
-/* Read the lists `views`, `tours`, `other_plants` and `walls`. */
+/* Each function reads one list of the plant file: `views`, `tours`, `other_plants` or `walls`. */
 void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
@@ -36,8 +37,8 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
 /* Reports missing keys that the interpolation `fin` needs: the temperature of a group's surroundings (`ambient`), and the wall thickness of
    assets with sensors of that group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
-/* Report views, tags, tours and other plants that are named in tours and wall panes but do not exist. Call them after the tag
-   list has been read. */
+/* Both functions report names in tours and in panes of walls for which the plant file or tag list has no view, tag, tour or
+   other plant. Call them after the tag list has been read. */
 void plant_tours_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
 void plant_views_free(struct plant *plant);
@@ -68,7 +69,7 @@ void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *so
 /* Checks the keys of an MQTT source, and sets defaults. */
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_mqtt_finish(struct plant_mqtt *mqtt);
-/* Functions for OPC UA: read the key `security`, check all keys of a source, free its settings. */
+/* Functions for a source of type opcua: they read the key `security`, check all keys of the source, and free its settings. */
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
 void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_opcua_finish(struct plant_opcua *opcua);

@@ -10,7 +10,7 @@
 #include "base/color/lab.h"
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
-/* tolerance of the lengths of a finder pattern's dark and light runs, as a fraction of a cell */
+/* tolerance for the lengths of the dark and light runs of pixels in a finder pattern, as a fraction of a cell */
 static const double SLACK = 0.6;
 /* a colour counts as not in the legend if its CIELAB distance from all legend colours is larger than this */
 static const double STRANGE = 7;
@@ -128,7 +128,7 @@ struct color_patch {
     int count;
 };
 
-/* Returns the mean colour of the inner part of a rectangle, whose sides are in cells of the strip. */
+/* Returns the mean colour in the inner part of a rectangle of the strip. The rectangle's position and size are in cells. */
 static struct color_patch patch_at(const struct strip_picture *picture, const struct strip_found *found, double column, double row,
                                    double rows)
 {
@@ -225,8 +225,8 @@ static double to_segment(const double p[3], const double a[3], const double b[3]
     return sqrt(square);
 }
 
-/* Returns the CIELAB distance of a colour from a column of the legend. A column shows its colour in three shades. The distance
-   is measured to the line through the shades, along which lighting moves a colour. */
+/* Returns the CIELAB distance of a colour from one column of the legend strip. A column shows its colour in three shades,
+   because lighting in the picture changes colours. The distance is measured to the line through the three shades. */
 static double off_of(const struct strip_found *found, int column, const double lab[3])
 {
     return fmin(to_segment(lab, found->ramp[0][column], found->ramp[1][column]),
@@ -271,8 +271,8 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        /* If both ends of the scale have similar colours, a pixel's colour may match columns at both. The mean of their
-           positions would be meaningless, so the position of the best match is used. */
+        /* If both ends of the scale have similar colours, a pixel's colour may match columns at both ends. Their mean position
+           would be meaningless, so the position of the best match is used. */
         double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);

@@ -18,11 +18,12 @@ enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
 enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
 /* bytes reserved for the ends of deflate blocks in a depth grid's payload, which deflateBound() does not count: one block per part */
 enum { MOST_BLOCK_BYTES = 100 };
-/* Camera movement for which the depth grid must let clients warp a picture to within a fraction of a pixel. Unit: distance from
-   the camera to the surface. 0.1 corresponds to orbiting by six degrees. */
+/* Camera movement up to which clients can warp a picture with the depth grid to within a fraction of a pixel. Given as a
+   fraction of the distance from the camera to the surface; 0.1 corresponds to orbiting by six degrees. */
 static const double MOVEMENT = 0.1;
-/* Shifts on the screen, in pixels, when the camera moves by MOVEMENT. STEP_SHIFT_PX: two depths that shift apart by at least
-   this much form a step. UNIT_SHIFT_PX: two depths whose codes differ by 1 shift apart by this much. */
+/* Thresholds for depth differences, given as the distance in pixels by which two depths shift apart on the screen when the
+   camera moves by MOVEMENT. STEP_SHIFT_PX: from this shift on, the two depths form a step. UNIT_SHIFT_PX: shift of two depths
+   whose codes differ by 1. */
 static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
 /* Ground whose inverse distance from the camera (1/m) is below this, that is, farther away than 100 km, counts as background. */
 static const double LEAST_INVERSE = 1e-5;
@@ -102,7 +103,8 @@ struct coder {
     const struct depth_lens *lens;
     int width_px, height_px, columns, rows;
     float *nears, *fars; /* depths; -INFINITY: background */
-    /* by cell: 1: the ground lies in front of the cell's surface; near and far are then swapped, and the mask must be inverted */
+    /* by cell: 1: the ground is in front of the surface in the cell; the near and far depth are then swapped, and the cell's
+       mask must be inverted */
     uint8_t *swapped;
     uint16_t *near, *far, *masks; /* masks: of divided cells */
     uint8_t *data;
@@ -221,7 +223,7 @@ static inline int predicted_back(int left, int up, int corner)
     return corner >= most ? least : corner <= least ? most : left + up - corner;
 }
 
-/* Writes the depth code of each cell's farthest surface, as its difference from the prediction. */
+/* Writes the far code (depth code of the farthest surface) of each cell, as its difference from the prediction. */
 static uint8_t *put_back(const struct coder *coder, uint8_t *out)
 {
     int columns = coder->columns;
@@ -250,9 +252,9 @@ static uint8_t *put_near(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Reduces a cell's mask from one bit per pixel to MASK_SIDE x MASK_SIDE bits. A bit is 1 if at least one of 2 x 2 pixels
-   belongs to the near surface. Some pixels of the far surface thus move with the near one. The opposite error would be more
-   visible: a thin near object, such as a handrail, would appear twice. */
+/* Reduces a cell's mask, which has one bit per pixel, to MASK_SIDE x MASK_SIDE bits. A bit is 1 if at least one of 2 x 2 pixels
+   belongs to the near surface. Clients therefore move some pixels of the far surface along with the near one. The opposite
+   error would be more visible: a thin near object, such as a handrail, would appear twice. */
 static unsigned coarse_mask(uint64_t mask)
 {
     /* this line and the next merge each square of 2 x 2 pixels into one bit, set if any of the four is near. The results are

@@ -113,8 +113,8 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 
 /* The baseline that one half of a split view subtracts from its readings, if the half shows differences. */
 struct then {
-    /* wanted: the half shows differences from a baseline. distance: the half shows distances from a sensor, which its markers
-       already hold and which do not depend on readings */
+    /* wanted: this half shows differences from a baseline. distance: this half shows distances from a sensor; its markers
+       already have these distances, which do not depend on readings */
     bool wanted, distance;
     /* the baseline's readings, which are subtracted from the view's; NULL: the baseline no longer exists */
     const struct snapshot *snapshot;

@@ -8,8 +8,8 @@
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
-/* Fractions of the memory limit that the caches get, after the working memory (STORE_ROOM) is subtracted. Half of FIELDS_SHARE is for main
-   memory, half for the GPU. */
+/* Shares of the caches in the memory limit, after the working memory (STORE_ROOM) is subtracted. Half of FIELDS_SHARE is main
+   memory, half GPU memory. */
 static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, REFINED_SHARE = 0.15, PREVIEWS_SHARE = 0.1, TARGETS_SHARE = 0.1;
 /* Working memory (STORE_ROOM) that exceeds this fraction of the memory limit is freed after each frame and allocated again for the next. */
 static const double WORKING_SHARE = 0.4;

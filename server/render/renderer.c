@@ -196,8 +196,8 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = frame_plan_wanted_light(view);
-    /* bakes nothing while a user drags a section plane: each position needs another light set, which would be outdated before
-       it is ready */
+    /* false while a user drags a section plane: no light is baked then, because each position needs another light set, which
+       would be outdated before it is ready */
     bool steady = visibility_equal(&wanted.shown, &renderer->shown);
     if (renderer->bake_budget_ns && steady)
         light_step(&renderer->light, &wanted, renderer->bake_budget_ns);

@@ -13,7 +13,8 @@
 #include "scene/visibility.h"
 
 enum look {
-    /* field colours, in which shading changes CIELAB L* by up to 7; PBR (physically based shading) for assets without a field */
+    /* the field in its legend colours, which shading changes by at most 7 in CIELAB L*; assets without a field with PBR
+       (physically based shading) */
     LOOK_DEFAULT,
     /* PBR with the field as albedo (Fig. 13 of Kim & Suh, Electronics 2025, 14(15), 2938); labelled in the picture, since shading changes
        the colours */

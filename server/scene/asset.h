@@ -19,8 +19,8 @@ struct asset {
        zero: not opened */
     struct cache_file influence_file;
     struct influence_view influence;
-    /* bit mask by level of detail: 1: plantcast-prep subdivided the level's triangles until they show the field without visible
-       error (field/drawn_error.h) */
+    /* bit mask of levels of detail whose triangles plantcast-prep has subdivided until interpolating within them causes no
+       visible error of the field (field/drawn_error.h) */
     uint64_t resolved_levels;
     _Atomic int refs;
     /* by level of detail: triangles that bound closed bodies, whose cuts are drawn solid (closed_bodies.h); NULL: not computed yet */

@@ -6,7 +6,8 @@
 
 #include "scene/scene.h"
 
-/* Sets scene->extremes_m, owned by the scene. Ignores assets hidden at start, and the ground if the plant has other assets. */
+/* Computes scene->extremes_m (owned by the scene) from all assets except those hidden at start, and except the ground if the
+   plant has other assets. */
 void extremes_find(struct scene *scene);
 
 #endif

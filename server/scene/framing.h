@@ -10,7 +10,7 @@ enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, S
 
 struct framing {
     int asset, tag;              /* indices of the asset or tag to show; -1: none; both -1: the whole plant */
-    enum side side;              /* SIDE_NOW: keeps the camera's direction; for a sensor, the direction from outside its asset is used */
+    enum side side;              /* side from which to look. SIDE_NOW: as the camera looks now, but at a sensor from outside its asset */
     struct camera_window window; /* rectangle of the picture for the subject to fill */
 };
 
@@ -19,8 +19,9 @@ struct framing {
 bool framing_find(const struct plant *plant, const char *name, struct framing *framing);
 /* Moves the camera to show the framing's subject completely; keeps its lens. */
 void framing_look(const struct scene *scene, const struct framing *framing, double aspect, struct camera *camera);
-/* Moves a perspective camera, without turning it, until the window shows everything of the plant that the camera sees at 16:9.
- * `aspect` is that of the whole picture. Does nothing if the window already shows that. window all zero: the whole picture. */
+/* Moves a perspective camera, without turning it, until `window` shows everything of the plant that the camera would see in a
+   picture with the aspect ratio 16:9. `aspect`: that of the actual picture. Does nothing if the window already shows all that.
+   window all zero: the whole picture. */
 void framing_keep(const struct scene *scene, double aspect, const struct camera_window *window, struct camera *camera);
 
 #endif

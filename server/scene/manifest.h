@@ -16,7 +16,9 @@ struct manifest {
         char *missing;            /* reason why the asset could not be prepared and has no file; NULL: it was prepared */
         uint64_t recipe;          /* hash of all inputs of the asset except its sensors (plant/recipe.h) */
         uint64_t resolved_levels; /* bit mask of levels of detail, as in struct asset (scene/asset.h) */
-        char **left_out; /* textures and extensions of the asset's model that are not drawn; set only for a model's first asset */
+        /* names of textures and extensions of the asset's model that are not drawn. If several assets use a model, only the
+           first one has this list */
+        char **left_out;
         size_t left_out_count;
     } * entries;
     size_t count;

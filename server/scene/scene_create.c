@@ -63,7 +63,8 @@ static size_t count_placed(const struct plant *plant, const struct plant_sensor 
     return placed;
 }
 
-/* Returns whether the prepared parameters equal those stated in the plant file. Unstated ones were fitted and are not compared. */
+/* Returns whether the `gp` parameters with which the asset file was prepared equal those that the plant file states. Parameters
+   that it does not state were determined from readings, and are not compared. */
 static bool is_as_stated(const struct plant_gp *gp, const struct influence_entry *entry)
 {
     return (isnan(gp->range_m) || gp->range_m == entry->range_m) && (isnan(gp->noise) || gp->noise == entry->noise) &&
@@ -84,7 +85,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
         size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
-        /* without sensors plantcast-prep writes no influence file, so none is required */
+        /* without sensors, plantcast-prep writes no influence file, so no heat distances are required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
             log_err(log, "asset %s: no usable prepared file with %s for group %s", asset->plant->id, heat ? "heat distances" : "directions",
@@ -246,8 +247,8 @@ static int compare_assets(const void *a, const void *b)
     return ((const struct file_use *)a)->asset - ((const struct file_use *)b)->asset;
 }
 
-/* Opens the files of some assets. The array of uses is sorted by file name: the first use of a name opens the file, and later
-   uses share it. */
+/* Opens the files with the indices begin to end - 1, as one job of a worker. The list is sorted by file name: the first asset
+   that uses a name opens the file, and the next ones share it. */
 static void open_some(void *arg, size_t begin, size_t end)
 {
     const struct file_uses *uses = arg;

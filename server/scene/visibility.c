@@ -66,8 +66,8 @@ bool clip_keeps(const struct clip *clip, const double point_m[3])
     return true;
 }
 
-/* Returns the signed height above the plane of one corner of the box: the corner farthest on the plane's inner side (inward 1),
-   or on its outer side (inward -1). */
+/* Returns the signed height above a plane of one corner of the box: the corner farthest on the plane's inner side if `inward`
+   is 1, or farthest on its outer side if it is -1. */
 static double corner_height(const double plane[4], const double min_m[3], const double max_m[3], int inward)
 {
     double height = plane[3] + SLACK_M;

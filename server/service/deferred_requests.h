@@ -11,7 +11,7 @@ struct deferred_requests { /* zero-initialise; free with deferred_requests_finis
     /* deferred groups, oldest first; the groups from index `count` on are empty and keep their memory for reuse */
     struct request_group groups[DEFERRED_MOST];
     size_t count;
-    bool due; /* true: the render thread next draws for a deferred group */
+    bool due; /* true: the next turn of the render thread is for a deferred group */
 };
 
 /* Moves the group's frame requests (tickets) to the end of the queue and leaves the group empty. Returns false, and changes nothing, if the

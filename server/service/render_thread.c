@@ -12,7 +12,7 @@ static const int64_t LIGHT_NS = 4 * NS_PER_MS;
 static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time per frame for computing a field that takes long */
 /* REBUILD_NS: delay between attempts to create a new GL context; it doubles up to REBUILD_MAX_NS */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
-/* how long changed readings wait at most for a refined frame, if the view has had one before; then a preview is drawn */
+/* if a view has had a refined frame, changed readings wait at most this long for the next one; then a preview shows them */
 static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S;
 /* how long to wait after a driver restart for a GPU of the same kind as before; then any renderer is used */
 static const int64_t DRIVER_RESTART_TIMEOUT_NS = 60 * NS_PER_S;
@@ -250,8 +250,8 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-/* Caps the time that changed readings wait for a preview at MAX_READINGS_DELAY_NS, for clients that just got a refined frame.
-   That time had doubled with each refined frame that was given up before. */
+/* Called for clients that just got a refined frame: limits the time that changed readings wait for a preview to
+   MAX_READINGS_DELAY_NS. Each refined frame that was given up had doubled that time. */
 static void calm(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);

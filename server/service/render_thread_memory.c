@@ -15,7 +15,8 @@ static const size_t OTHER_BYTES = (size_t)576 << 20;
 /* bytes of free but still resident heap above which the heap is trimmed (free memory is returned to the system) */
 static const size_t FREE_BYTES = (size_t)64 << 20;
 static const int64_t TRIM_NS = 5 * NS_PER_S; /* minimum time between two trims */
-/* decay of the recorded peak of other memory: each measurement takes 1 / FADES off its excess over the present value */
+/* The recorded peak of other memory decreases slowly: each measurement lowers the difference between the peak and the present
+   value by the fraction 1 / FADES. */
 static const size_t FADES = 64;
 
 static counter *add_counter(struct render_service *service, const char *of)
@@ -76,7 +77,8 @@ void render_thread_bound_memory(struct render_thread *thread)
         counted += bytes[i];
     all = all ? all : memory_default_bytes();
     size_t bound = bound_of(all, bytes[STORE_MODELS], other_bytes(memory, all, counted));
-    /* the memory of frames is subtracted, because it cannot be limited: their number follows from the number of sessions */
+    /* the memory of finished frames is subtracted from what caches may use: it cannot be limited, because the number of frames
+       follows from the number of sessions */
     size_t caches = bound > 2 * frames ? bound - frames : bound / 2;
     field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
     renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));

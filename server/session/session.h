@@ -24,7 +24,7 @@ void session_introduce(struct session *session, const struct session_client *cli
 /* Notes that the session's connection is lost; call it before session_destroy(). Returns the view's pixels to the admission
    budget and informs the leader. keep: true: keeps the view for the client's return. */
 void session_leave(struct session *session, bool keep, int64_t now_ns);
-/* Records the end of the session in the audit trail. why: static text; NULL: the client left by itself. */
+/* Records in the audit trail that the session ended. why: reason (static text); NULL: the client left by itself. */
 void session_record_leave(const struct session *session, const char *why);
 /* Queues the answers to actions that have reached the disk (journal, files and audit trail) or could not be written. Returns
    whether it queued any. */
@@ -38,9 +38,9 @@ void session_settle_gone(struct kept_answers *answers);
 /* Makes the event loop close the connection once all queued texts are sent. text: static. If called more than once, the first
    reason counts. */
 void session_close(struct session *session, int code, const char *text);
-/* Returns true with *error if the user has been inactive for longer than --lock-after allows. Always false for tokens of walls
-   and programs (unattended), and for a person who signed in with OpenID Connect: access/openid watches that person across
-   several pages. */
+/* Returns true, with the refusal in *error, if the user has been inactive for longer than --lock-after allows. Always false for
+   tokens of walls and programs, which nobody attends, and for users who signed in with OpenID Connect: access/openid checks
+   their inactivity over all their pages. */
 bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error);
 /* Closes the session if its token was revoked or has expired, or if its user was inactive for too long; otherwise updates the session's
    role from the token. */
@@ -72,9 +72,9 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
 /* Does the session's timed work, such as playback and the choice of the codec. Call it about every 100 ms, or once a second while
    session_rests() is true for all sessions. */
 void session_on_tick(struct session *session, int64_t now_ns);
-/* Returns the monotonic time up to which the client's display is known to be current. A picture is owed to the client if its
-   view or a reading has changed since the picture it shows. If none is owed, returns when the client's last message arrived.
-   Otherwise returns the later of two times: when last no picture was owed, and when the last acknowledged picture was sent. */
+/* Returns the monotonic time up to which the client's display is known to be current. A client lacks a picture if its view or a
+   reading has changed since the picture that it shows. If it lacks none, the result is the time when its last message arrived.
+   Otherwise it is the later of two times: when it last lacked no picture, and when its last acknowledged picture was sent. */
 int64_t session_fresh_ns(const struct session *session);
 /* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or in flight, and no text is due. */
 bool session_rests(const struct session *session, int64_t now_ns);
@@ -172,8 +172,8 @@ void session_inherit(struct session *heir, const struct session *session);
 void session_lead_nobody(struct session *session);
 /* Returns the client's request about following (follow or hand over the lead) and clears it. */
 struct follow_request session_take_follow_request(struct session *session);
-/* Give all sessions that show the same view a common step of the quality ladder. Call each of the three functions for all
-   sessions before the next one: clear, count, choose. */
+/* Three functions that give all sessions of one view a common step of the quality ladder. Call the first for all sessions, then
+   the second, then the third: clear, count, choose. */
 void session_clear_steps(struct session *session);
 void session_count_step(struct session *session);
 void session_choose_step(struct session *session);
@@ -189,13 +189,14 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
 /* Drops the tile (one display's part of a wall's picture) from its wall if it has delayed the others for too long, and readmits
    it after a pause. Returns true if it did either. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
-/* Tells the client which displays of its wall are connected, if that changed. there, late_us: arrays indexed by display - 1.
-   late_us: UTC microseconds when that tile was dropped; 0: it takes part. leads: this session leads the wall. */
+/* Tells the client which displays of its wall are connected, if that changed. there: [display - 1]: true: connected. late_us:
+   [display - 1]: UTC microseconds when that display's tile was dropped; 0: it takes part. leads: this session leads the wall.
+   */
 void session_tile_tell(struct session *session, const bool *there, const int64_t *late_us, bool leads);
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */
 
-/* Redraws the sensors that the engineer moved on trial, once their geodesic distances are computed. */
+/* Requests a new picture of the sensors that the engineer moved on trial, now that their geodesic distances are computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
 /* Removes from the session a tag list that is to be activated by a reload, and returns it; the caller owns it. NULL: there is none. */
 struct tag_save *session_take_save(struct session *session);

@@ -150,8 +150,8 @@ void session_record_params(const struct session *session, const struct message *
     record_baseline(session, &message->split.right);
 }
 
-/* Returns whether a refused message is too frequent to record. While a user drags, a page sends `camera` and `params` many
-   times a second, and for a token narrowed to views each is refused. */
+/* Returns whether a refused message is too frequent to be recorded. While a user drags the mouse, the page sends `camera` and
+   `params` many times a second; if the user's token is limited to some views, each of them is refused. */
 static bool is_idle(const struct session *session, const char *about)
 {
     return session->identity.holder.views[0] && (!strcmp(about, "camera") || !strcmp(about, "params"));

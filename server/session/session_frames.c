@@ -8,7 +8,8 @@
 #include "session/session_impl.h"
 
 static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due once the camera has not moved for this long */
-/* while the render thread is overloaded or the network is slow: a refined frame is due once no preview was requested for this long */
+/* like STILL_NS while the render thread is overloaded or the network is slow: a refined frame is due once no preview was
+   requested for this long */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
 /* while the render thread is overloaded or the network is slow: age of the last refined frame at which another one is requested
    although previews continue */
@@ -21,7 +22,8 @@ static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS;
 /* how long the first frame waits at most for the first bandwidth measurement */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
-/* the rest of a refined frame whose view has changed is not sent if that would take longer than this */
+/* when the view of a refined frame has changed while the frame is being sent, the rest is not sent if sending it would take
+   longer than this */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before repeating the request for a frame that failed for lack of memory */
 /* assumed size ratio of a refined frame to a preview, until a refined frame was sent */
@@ -76,9 +78,9 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     if (!encoded->packet && encoded->absence == FRAME_FAILED)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
-    /* Notes that the shown picture is not refined, because a preview was drawn. This includes two special cases: a refined
-       frame arrived while the preview was being drawn; or the preview equals the frame already shown, and therefore has no
-       packet. */
+    /* Notes that the shown picture is not refined, because the render service drew a preview for this request. Two special
+       cases are included: a refined frame arrived while the preview was being drawn; and a preview without a packet, because it
+       equals the frame already shown. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
     if (is_lost(session, encoded, late)) {
@@ -193,8 +195,8 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
 }
 
-/* Returns whether a moving camera will soon need a frame anyway. That frame shows the new readings too, so they need no frame
-   of their own. */
+/* Returns whether the camera moves, so that a frame is needed soon in any case. That frame will also show the new readings,
+   which then need no frame of their own. */
 static bool next_camera_brings(const struct session *session, int64_t now_ns)
 {
     return session->demand.refined == REFINED_NOT && now_ns - session->demand.input_ns < CAMERA_INTERVAL_NS;
@@ -305,8 +307,8 @@ bool session_begun(const struct session *session, int64_t now_ns)
     return !starts && (!session->travel.first || session->following.leader);
 }
 
-/* Returns whether a frame may be requested. A refined frame that is still being drawn does not use the network yet. So a frame
-   for new readings may be requested meanwhile, however slow the client is. */
+/* Returns whether another frame may be requested. While a refined frame is still being drawn, it does not use the network. A
+   frame that shows new readings may therefore be requested meanwhile, however slow the client is. */
 static bool may_ask(const struct session *session, int64_t now_ns)
 {
     const struct pacer *pacer = &session->delivery.pacer;

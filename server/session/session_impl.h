@@ -20,7 +20,8 @@ const char *session_who(const struct session *session);
 
 /* --- session_audit.c: entries for the audit trail ----------------------------------------------------------------------- */
 
-/* Describe an action for the audit trail; the caller frees the text with mem_free. answer: the message for the client. */
+/* Each function describes an action in words, for the audit trail; the caller frees the text with mem_free. answer: the
+   server's answer to the client. */
 char *session_alarm_what(const struct session *session, const struct message *message);
 char *session_loop_check_what(const struct session *session, const struct message *message, const char *answer);
 char *session_view_what(const struct message *message);
@@ -78,7 +79,8 @@ bool session_look(struct session *session, const char *id, struct view *view, st
 bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error);
 /* Gives the smallest allowed picture size to a paired display that shows only trends or alarms, no picture of the plant. */
 void session_scope_fit(const struct session *session, struct view *view);
-/* Takes ownership of a text to be sent (mem_free), and returns the text without the list items that a narrowed token may not see. */
+/* Takes ownership of a JSON message that is about to be sent (mem_free). Returns it without the list items that a narrowed
+   token may not see. */
 char *session_scope_text(const struct session *session, char *text);
 
 /* --- session_life.c ---------------------------------------------------------------------------------------------------- */
@@ -170,8 +172,8 @@ void session_tile_came(struct session *session, struct frame_request *request, i
 
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */
 
-/* Act on the messages `place`, `gaps`, `save_tags` (also accept_places and restore_tags) and `prove` (loop checks). Return false with
-   *error if the request is refused. */
+/* Each function carries out a message: `place`, `gaps`, `save_tags` (also accept_places and restore_tags) or `prove` (loop
+   checks). Returns false with *error if the request is refused. */
 bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error);
 bool session_ask_coverage(struct session *session, const struct message *message, struct message_error *error);
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);

@@ -101,14 +101,14 @@ struct frame_delivery {
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all earlier ones */
     bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
-    /* by quality step: number of sessions that show this view, this one included, and need the step */
+    /* [step]: number of sessions, this one included, that show this view and need that step of the quality ladder */
     int steps[QUALITY_LADDER_STEPS];
     int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
 
 /* A client's requests about following, by session numbers. The event loop looks up the sessions. */
 struct follow_request {
-    bool returned;   /* true: the session resumed another session, whose followers should follow this one again */
+    bool returned;   /* true: the session resumed another session, whose former followers are to follow this one */
     uint64_t heir;   /* number of the session that takes the lead; 0: the lead stays */
     bool asked;      /* true: the client requested to follow session `wanted`, or nobody */
     uint64_t wanted; /* number of the session to follow; 0: none */

@@ -16,7 +16,8 @@ struct openid_params {
     struct audit *audit;     /* audit trail; NULL: nothing is recorded */
     const char *path;        /* path of the configuration file */
     int64_t lock_ns;         /* nanoseconds of inactivity after which a user is signed out; 0: never */
-    void (*wake)(void *arg); /* called on any thread when openid_collect() has an answer or a user's rights changed */
+    /* called on any thread when openid_collect() has the result of a log-in, or a signed-in user's rights changed */
+    void (*wake)(void *arg);
     void *wake_arg;
 };
 

@@ -14,7 +14,7 @@ struct openid_reply {
 };
 
 /* openid_get() and openid_post() return true if the provider answered, even with an error status; free the answer with
-   openid_reply_finish(). stop: when this flag becomes true, the request is aborted. */
+   openid_reply_finish(). stop: once another thread sets this flag, the request is aborted. */
 /* Requests a URL with GET and reads the JSON answer. bearer: an access token; NULL: none. */
 bool openid_get(const struct openid_config *config, const char *url, const char *bearer, const _Atomic bool *stop,
                 struct openid_reply *reply);

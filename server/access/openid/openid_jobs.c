@@ -43,7 +43,8 @@ struct openid_job *openid_take_job(struct openid_jobs *jobs)
     return job;
 }
 
-/* If the provider accepts no revocations and too many are queued, drops the oldest; its token stays valid until it expires. */
+/* Queues a token that the provider shall revoke. If the provider accepts no revocations and the queue is full, drops the oldest
+   token in the queue; that token stays valid until it expires. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token)
 {
     if (!refresh_token || !json_object_get(openid->metadata, "revocation_endpoint"))

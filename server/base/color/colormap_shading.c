@@ -8,8 +8,8 @@
 
 /* largest accepted error of a value read from a colour: 3 % of the map's 256 colours */
 static const double MAX_MISREAD = 0.03 * 256;
-/* fraction of samples that must be read correctly; stricter than the 0.95 promised for frames (struct colormap: safe), because
-   extreme light is more common in frames than in these samples */
+/* fraction of samples whose value must be read correctly. Stricter than the 0.95 promised for pictures (`safe` in struct
+   colormap), because extreme light is more common in pictures than in these samples */
 static const double MIN_RIGHT_PART = 0.974;
 static const double MIN_SHADING = 2, UNSAFE_SHADING = 4, STEP = 0.5;
 /* amplitude of the noise added to luma and chroma in turn, on a scale of 0..255: about that of JPEG at quality 80 */

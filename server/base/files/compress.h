@@ -15,8 +15,9 @@ int compress_parts(const struct atomic_file_part *parts, size_t part_count, int 
 
 /* Reads compressed bytes from start to end, without holding all decompressed bytes in memory. Call from one thread only. */
 struct decompressor;
-/* Returns NULL if the compressed bytes are incomplete, if the sizes in them contradict each other, or if memory is short. The caller keeps
-   `compressed` and calls decompressor_destroy(). */
+/* Creates a decompressor for the bytes that compress_parts() made. Returns NULL if bytes are missing, if the sizes stored in
+   them contradict each other, or if memory is short. `compressed` stays the caller's and must outlive the decompressor; end
+   with decompressor_destroy(). */
 struct decompressor *decompressor_create(const void *compressed, size_t bytes);
 /* Copies the next `count` decompressed bytes. Returns false if fewer are left or the compressed bytes are damaged. */
 bool decompressor_read(struct decompressor *d, void *to, size_t count);
@@ -24,9 +25,9 @@ bool decompressor_read(struct decompressor *d, void *to, size_t count);
 size_t decompressor_left(const struct decompressor *d);
 void decompressor_destroy(struct decompressor **d); /* &NULL is fine; leaves NULL */
 
-/* Reverses compress_parts(). Returns the joined parts, their number of bytes in *count; free with mem_free(). The memory is aligned for any
-   type. Returns NULL as decompressor_create() or decompressor_read(). Damaged bytes never cause an allocation of more than 256 KiB for each
-   chunk that is present. */
+/* Decompresses all bytes that compress_parts() made. Returns the joined parts, and their number of bytes in *count; free with
+   mem_free(). The memory is aligned for any type. Returns NULL if the compressed bytes are incomplete or damaged, or if memory
+   is short. Damaged bytes never cause an allocation of more than 256 KiB for each chunk that is present. */
 void *decompress(const void *compressed, size_t bytes, size_t *count);
 /* Returns the number of bytes that decompress() returns, or SIZE_MAX if the compressed bytes are incomplete or the sizes in them contradict
    each other. Allocates nothing and does not decompress. */

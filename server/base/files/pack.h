@@ -15,7 +15,7 @@ struct unpack { /* bytes of packed arrays that are not read yet; the caller owns
     const char *at;
     size_t left;
     bool bad;                        /* true: a read has failed, so all further reads fail too */
-    struct decompressor *compressed; /* source of the bytes; NULL: they are at `at` */
+    struct decompressor *compressed; /* decompressor that supplies the bytes; NULL: the bytes are uncompressed, in memory at `at` */
 };
 /* Reads the next array; free with mem_free(). Returns NULL if the array is empty, has elements of another size, or does not fit
    into memory; from->bad stays false only for an empty array. */

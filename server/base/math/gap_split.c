@@ -10,10 +10,10 @@
 
 enum { BINS = 256, MAX_SPLITS = 64 };
 static const double SMALL_SHARE = 0.02; /* stray pieces are small if together they have at most this fraction of the total area */
-/* lengths of a gap in sizes of the main part: beyond a gap of SMALL_GAP, small pieces are stray; beyond a gap of LARGE_GAP,
-   pieces of any area */
+/* minimum length of a gap, as a multiple of the main part's size. Beyond a gap of SMALL_GAP, only small pieces (SMALL_SHARE)
+   count as stray; beyond a gap of LARGE_GAP, pieces of any area do */
 static const double SMALL_GAP = 1, LARGE_GAP = 100;
-/* distance, as a fraction of the main part's size, beyond which corners of triangles count as different places */
+/* corners of triangles farther apart than this fraction of the main part's size count as different places */
 static const double ONE_PLACE = 1e-3;
 
 struct tri_range {
@@ -98,8 +98,8 @@ static size_t gather(struct tri_range *part, int axis, double from_m, double to_
     return count;
 }
 
-/* Returns true if the triangles that cross the gap end at several places on its far side, that is, if their corners there are
-   more than within_m apart. */
+/* Returns true if triangles cross the gap and their corners on its far side are more than within_m apart: they then connect the
+   main part with a real part of the model, not with one stray point. */
 static bool reach_several_places(const struct gap_tri *tris, size_t count, int axis, double from_m, double to_m, bool above,
                                  double within_m)
 {

@@ -7,7 +7,8 @@
 double round_reading(double value)
 {
     double size = fabs(value);
-    /* below 1e-300, `scale` would overflow; from 1e12 on, rounding to three decimals would not change the number */
+    /* returns other numbers unrounded: below 1e-300, `scale` would overflow; from 1e12 on, rounding to three decimals would
+       change nothing */
     if (!(size >= 1e-300 && size < 1e12))
         return value + 0.0; /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
     double scale = size >= 1e4 ? 1000 : pow(10, 6 - floor(log10(size)));

@@ -4,8 +4,8 @@
 #define BASE_MATH_VEC_H
 #include <math.h>
 
-/* Returns the smaller of two numbers that are not NaN. The C library's fmin() and fmax() also handle NaN; calling them would
-   take half the time of a ray query. */
+/* Returns the smaller of two numbers that are not NaN. Replaces fmin() and fmax() of the C library: calls of these functions,
+   which also handle NaN, would take up half the time of a ray query. */
 static inline double min_of(double a, double b)
 {
     return a < b ? a : b;

@@ -197,8 +197,8 @@ int confine(const struct confine_params *params)
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    /* commands also move files between folders, which a Landlock ruleset always forbids under ABI 1; under ABI 1, paths of
-       commands are therefore not restricted */
+    /* Commands also move files between folders. Landlock before its version ABI_RENAME always forbids that in a restricted
+       process. With such a kernel, the paths of commands are therefore not restricted. */
     bool moves_files = params->role != CONFINE_READER;
     int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
@@ -214,9 +214,9 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
         int abi;
         const char *missing;
     } parts[] = {
-        /* abi: first Landlock version that can restrict an access; missing: the access, which commands under `convert` have on
-           kernels with an older version. Model-reading programs never have these accesses, because seccomp blocks the system
-           calls. TCP and devices are not listed, because seccomp blocks them for commands, too. */
+        /* abi: first Landlock version that can restrict this access; missing: the access in words. On a kernel with an older
+           Landlock, commands under `convert` keep the access. Programs that read models never have it, because seccomp blocks
+           the system calls. TCP and devices are missing here, because seccomp blocks them for commands, too. */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "truncate all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },

@@ -109,10 +109,10 @@ static void allow(struct filter_program *program, const int *calls, size_t count
     }
 }
 
-/* Appends a test of a system call's argument to the filter: compares the lower half of the argument (all that the kernel uses
-   of an int) with `values`. `test` is BPF_JEQ, or BPF_JSET for any bit of a value. allowed true: a match is allowed and
-   anything else refused; false: a match is refused. The order of the halves is right because both supported processors are
-   little-endian. */
+/* Adds rules for one argument of a system call to the filter. `test` is BPF_JEQ (the argument equals a value) or BPF_JSET (it
+   has any bit of a value). allowed true: only arguments that match one of `values` are allowed; false: these are refused.
+   Compares the lower 32 bits, all that the kernel uses of an int; they come first in memory, because both supported processors
+   are little-endian. */
 static void decide(struct filter_program *program, int call, int argument, unsigned test, const struct values *values, bool allowed)
 {
     add_instruction(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, (unsigned)(2 + 2 * values->count));

@@ -24,7 +24,8 @@ enum {
     FIRST_SOCKET = 3 /* number of the first descriptor that systemd passes: sd_listen_fds(3) */,
     EXTENSION_S = 60,
     EXTENSION_INTERVAL_S = 5,
-    /* minimum number of extension requests within limit_s seconds: with a short limit_s, requests are sent at shorter intervals */
+    /* minimum number of requests for more start time within limit_s, the start's time limit in seconds; a short limit_s makes
+       the interval between requests shorter than EXTENSION_INTERVAL_S */
     MIN_EXTENSIONS = 60
 };
 static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* processes that used less CPU time than this between two checks count as idle */

@@ -272,7 +272,7 @@ static double rate_around(const struct narrow_table *table, bool latin, const un
     return rate;
 }
 
-/* Returns the log probability of a text's high bytes (0x80 and above). */
+/* Returns the log probability of a text's high bytes (0x80 and above), if the text has the one-byte encoding of this model. */
 static double score_narrow(const struct narrow_model *model, const unsigned char *at, size_t count)
 {
     struct narrow_table table;
@@ -304,8 +304,8 @@ static void add_frequent(void *data, const unsigned char *bytes, size_t count, i
     }
 }
 
-/* Returns a penalty for a two-byte character next to lower-case ASCII letters, because its bytes are then more likely to be two
-   letters of a one-byte encoding. */
+/* Returns a penalty for a two-byte character that stands next to lower-case ASCII letters: the two bytes are then more likely
+   two letters of a one-byte encoding. */
 static double rate_beside(unsigned before, unsigned after)
 {
     return (islower(before) ? -2.5 : 0) + (islower(after) ? -2.5 : 0);
@@ -333,7 +333,9 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            rate += 3; /* compensates for an ASCII second byte, which the one-byte models do not score */
+            /* makes up for the second byte, which is ASCII: the one-byte models, with which this score is compared, give no
+               score to ASCII bytes */
+            rate += 3;
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
             length = 4; /* a four-byte character of GB 18030 that GBK lacks */
             rate = -14;

@@ -11,7 +11,7 @@ struct diag_item {
     char *file;
     int line, column; /* position of the finding in the file, from 1; 0: no position */
     char *text;
-    const char *form; /* format string of the text; findings with the same format string are grouped as similar */
+    const char *form; /* format string of the text; diagnostics with the same format string are merged when printed */
 };
 
 struct diag { /* zero-initialise */

@@ -20,8 +20,8 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* upper bound on the time between the ends of different tags' recorded lines. If it is unknown when this daemon last mirrored a
-   sample of the leader, reading from the database starts this long before the newest recorded point */
+/* upper bound on the time between the last recorded points of different tags. If this daemon does not know when it last
+   received a sample of the leader, it reads points from the database from this long before its newest recorded point on */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
 /* upper bound on the delay until a sample is a point in the files of both the leader and the standby. The thread waits this
    long before it deletes points that the leader has sent, and before it reads points from the database that this machine lacks
@@ -51,7 +51,7 @@ struct postgres {
     } counters;
     pthread_t thread;
     bool started;
-    int stop_fd; /* eventfd that becomes readable when the sending thread must end */
+    int stop_fd; /* eventfd (a descriptor that another thread makes readable) that tells the sending thread to end */
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     bool leads, ends_lines;
@@ -121,8 +121,8 @@ static void connect_now(struct postgres *postgres)
     postgres->newest_ns = 0;
 }
 
-/* Resets the error state. Call it only after a successful write: a connection alone proves nothing, because even a server with
-   a full disk accepts connections. */
+/* Marks the database as working: resets the error state. Call it only after a successful write: a connection alone proves
+   nothing, because even a server with a full disk accepts connections. */
 static void is_well(struct postgres *postgres)
 {
     postgres->backoff = (struct backoff){ 0 };
@@ -370,7 +370,8 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        /* sent_ns lags by one round, because the historian may have added points while this round sent the others */
+        /* sent_ns is set to the time one round ago, because the historian may have added points to one outbox while this round
+           was sending another */
         postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS;
         pthread_mutex_unlock(&postgres->lock);
     }
@@ -493,9 +494,9 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Queues another read of the span just before this daemon became the leader. The queue holds at most two such reads: the first
-   keeps its place however often a standby reconnects, and the second runs once the points of the newest connection have
-   arrived. */
+/* Queues another read of the time just before this daemon became the leader, because a standby may have sent more points of
+   that time. The queue holds at most two such reads: the first is never moved back, however often a standby reconnects; the
+   second runs once the points of the newest connection have arrived. */
 void postgres_fill_again(struct postgres *postgres)
 {
     struct postgres_span *newest = NULL;

@@ -144,7 +144,7 @@ static const struct {
     unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
-    /* served without a check for readiness: the event loop runs only once models and GL are loaded */
+    /* /readyz works as soon as requests are served: the event loop runs only once models and GL are loaded */
     { "/readyz", ready, ROLE_NOBODY, 0 },
     { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
     { "/login", ask_login, ROLE_NOBODY, 0 },
@@ -268,7 +268,8 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct http_refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
-    /* clears the previous request's value: libwebsockets reuses this struct for all requests of a connection */
+    /* clears the value that the connection's previous request left: libwebsockets reuses this struct for all requests of a
+       connection */
     request->sandboxed = false;
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);

@@ -286,9 +286,9 @@ int api_walls(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, walls_text(server->params.plant.scene->plant, &reader));
 }
 
-/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The renderer repeats this
-   at each request of the display, because the digits would expire otherwise. Returns the request's state as known to this
-   renderer. */
+/* Forwards a display's pairing request to the core, which chooses the digits and sends them to its renderers. The renderer
+   forwards every such request of the display, because the digits would expire otherwise. Returns the state of the pairing as
+   known to this renderer. */
 static enum pairing ask_core(struct server_context *server, const struct pairing_request *asked, char digits[PAIRING_DIGITS + 1],
                              int *left_s)
 {

@@ -5,7 +5,7 @@
 #include "importing/export_folder.h"
 #include "net/server_context.h"
 
-struct asked { /* the frame, or the pick in a frame, for which an HTTP request waits */
+struct asked { /* the picture, or the pick (what is at a pixel), for which an HTTP request waits */
     bool picks;
     struct frame_request frame_request;
     char **args; /* percent-decoded arguments of the URL, which a picture's signature covers; freed by asked_free() */
@@ -31,7 +31,7 @@ struct http_exchange {
     size_t count, sent;
     /* usage of the address to whose answer_bytes the body is added; NULL: the body is not counted. The connection holds the reference */
     struct address_usage *holder;
-    bool asks;         /* true: the request's history query is being answered */
+    bool asks;         /* true: an answer to the request's history query is being computed */
     bool asks_instant; /* true: the request comes from a renderer and asks for the readings of a past instant */
     enum {
         PIECES_NONE,
@@ -42,7 +42,7 @@ struct http_exchange {
     uint64_t client;             /* id by which request_find() finds the request while it waits */
     int64_t until_ns;            /* monotonic time at which the waiting request is answered with "not ready" */
     bool reloads;                /* true: the request waits for a reload of the plant */
-    /* true: the requested action is done; its answer waits for the line `record` of the audit trail to be on disk */
+    /* true: the requested action was carried out, but the answer waits until line `record` of the audit trail is on disk */
     bool recorded;
     struct settling_ticket record; /* line of the audit trail that records the request */
     struct upload_body *body_in; /* upload in progress; NULL: none */
@@ -107,7 +107,7 @@ void request_forget(struct server_context *server, struct http_exchange *request
 /* Applies the result of an answer that was given outside of the request's own callback: 0 keeps the connection, -1 closes it soon. */
 void request_answered(struct http_exchange *request, int result);
 
-/* Handlers of HTTP paths: each answers the request or makes it wait (request_await). */
+/* Handlers of HTTP paths: each answers the request, or calls request_await() so that it is answered later. */
 int ask_snapshot(struct server_context *server, struct http_exchange *request);
 int ask_pick(struct server_context *server, struct http_exchange *request);
 int ask_history(struct server_context *server, struct http_exchange *request);

@@ -25,8 +25,8 @@ static struct params_context context_of(const struct server_context *server)
                                     .now_us = clock_plant_ns(server->params.plant.clock) / 1000 };
 }
 
-/* Adds an argument of the request's query to the arguments of a saved view. Returns false with *error if the user may not use
-   the argument, or there is no room. */
+/* Adds an argument of the request's own query to the arguments of the saved view that the query names. Returns false with
+   *error if the user may not use the argument, or there is no room. */
 static bool add_own(struct view_address *out, const struct connection *connection, const char *arg, struct message_error *error)
 {
     char name[48];

@@ -16,7 +16,8 @@ void model_rules_name(const json_t *root, const char *list, size_t number, int p
 
 /* Returns whether this program implements an extension. */
 bool model_rules_known(const char *name);
-/* Returns whether a glTF extension affects only the colours of a model, so that it can be ignored. */
+/* Returns whether a glTF extension affects only the look of a model (colours and materials), not its shape, so that it can be
+   ignored. */
 bool model_rules_look(const char *name);
 
 #endif

@@ -6,8 +6,8 @@
 
 enum { NODE_MAX_DEPTH = 512, NODE_MAX_COUNT = 4000000 };
 
-/* Computes the transform of a node from translation, rotation (a quaternion of any length but zero) and scale. matrix: replaces
-   these three; NULL: the node has no matrix. Returns NULL, or the reason why the node is refused. */
+/* Computes the transform of a node from translation, rotation (a quaternion of any length but zero) and scale. If `matrix` is
+   not NULL, the node's transform is that matrix instead. Returns NULL, or the reason why the node is refused. */
 const char *node_rules_local(const double t[3], const double q[4], const double s[3], const double *matrix, double out[16]);
 /* Checks the transform `m` from a node to the scene. Returns NULL, or the reason why the node is refused. */
 const char *node_rules_world(const double m[16]);

@@ -19,7 +19,7 @@ struct csv_row {
     size_t count, capacity;
 };
 
-struct csv { /* state of the CSV reader; callers may read its members but not change them */
+struct csv { /* state of the CSV reader; callers may read the members but must not change them */
     char *path;
     struct diag *diag;
     char *bytes, *at; /* bytes: content of the file; at: the read position in it */

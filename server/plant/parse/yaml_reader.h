@@ -77,7 +77,8 @@ bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *wh
                    struct yaml_map *map);
 /* Returns whether the key was given and its value read without an error. */
 bool yaml_map_good(const struct yaml_map *map, const char *name);
-bool yaml_map_has(const struct yaml_map *map, const char *name); /* Returns whether the key is present, whatever its value. */
+/* Returns whether the mapping contains the key, with any value, even an invalid one. */
+bool yaml_map_has(const struct yaml_map *map, const char *name);
 /* Returns the position of a key's value; the position of the mapping if the key is absent. */
 struct text_position yaml_map_place(const struct yaml_map *map, const char *name);
 

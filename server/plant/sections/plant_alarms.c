@@ -11,7 +11,7 @@
 
 struct alarm_reference {
     char *text;
-    size_t tag; /* index of the tag whose row has the reference: to its alarm bit, or to the bit that suppresses its alarms */
+    size_t tag; /* index of the tag whose row of the tag list contains the reference to another tag */
     enum tag_column column;
     int line, at_column;
 };

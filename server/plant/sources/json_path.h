@@ -35,7 +35,7 @@ bool json_path_check(const char *text, bool relative, char why[200]);
 const char *json_path_begin(const char *text);
 /* Reads one step and moves *at past it. Returns false at the end of the path (`why` unchanged) or at a syntax error (reason in `why`). */
 bool json_path_next(const char **at, struct json_path_step *out, char why[200]);
-/* Like json_path_next(), but for a path inside a filter, where a name also ends at blanks and operators. */
+/* Like json_path_next(), but for a path inside a filter, where a name also ends at a blank or a comparison operator. */
 bool json_path_next_operand(const char **at, struct json_path_step *out, char why[200]);
 
 #endif

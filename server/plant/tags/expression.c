@@ -18,8 +18,8 @@ enum operation { OP_NUMBER, OP_INPUT, OP_ADD, OP_SUBTRACT, OP_MULTIPLY, OP_DIVID
 struct expression_step {
     enum operation operation;
     double number;
-    /* index: of an input in expression_inputs(), or of a function, depending on `operation`. arguments: number of the
-       function's arguments */
+    /* index: meaning depends on `operation`: index of an input in expression_inputs(), or of a function. arguments: number of
+       the function's arguments */
     int index, arguments;
 };
 

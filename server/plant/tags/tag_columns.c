@@ -91,7 +91,8 @@ static void report_unknown(struct tag_columns *columns, const struct csv_cell *c
         header_warning(columns, cell, "a column without a name is ignored");
 }
 
-/* Reports a column that occurs twice, under two of its accepted names. csv_open() reports columns with equal names. */
+/* Reports an error if the tag list has a column twice, under two of its accepted names. csv_open() reports columns with equal
+   names. */
 static void check_doubled(struct tag_columns *columns, const struct csv_cell *cell, int before)
 {
     const struct csv_cell *first = before >= 0 ? &columns->csv.header.cells[before] : NULL;

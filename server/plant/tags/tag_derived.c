@@ -11,7 +11,7 @@ enum mark { UNSEEN, OPEN, DONE };
 
 struct derived_walk {
     struct plant *plant;
-    char *marks; /* by tag: state of the depth-first search (enum mark) */
+    char *marks; /* [tag]: state of the tag in the depth-first search (enum mark) */
 };
 
 static int find_tag(const void *plant, const char *name)
@@ -92,7 +92,7 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
             continue;
         diag_error(diag, plant->files.tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
                    plant->tags[link->tag].name);
-        break; /* stops at the first cycle: visiting the other tags of the cycle would report it again */
+        break; /* stops after reporting the first cycle: the search from another tag of the same cycle would report it again */
     }
     mem_free(walk.marks);
 }

@@ -23,7 +23,7 @@ struct tag_line {         /* line that differs between two versions of the tag l
 };
 struct tag_lines { /* zero-initialise */
     struct tag_line *at;
-    size_t count, capacity, more; /* more: number of differing lines beyond the limit of the list (TAG_LINES) */
+    size_t count, capacity, more; /* more: number of differing lines that `lines` leaves out, because it has TAG_LINES already */
 };
 enum { TAG_LINES = 200 };
 

@@ -59,7 +59,7 @@ static const char *const kind_names[] = {
 #define GALLON 3.785411784e-3 /* US */
 #define BARREL 0.158987294928 /* of oil */
 #define CUBIC_FOOT (FOOT * FOOT * FOOT)
-#define PSI 6894.757293168361        /* Pa; = POUND * 9.80665 / INCH^2 */
+#define PSI 6894.757293168361        /* value of 1 psi in Pa: POUND * 9.80665 / INCH^2 */
 #define MM_HG 133.322387415          /* conventional millimetre of mercury */
 #define HORSEPOWER 745.6998715822702 /* 550 ft lbf/s */
 #define BTU 1055.05585262            /* international table BTU */

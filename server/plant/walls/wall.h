@@ -56,7 +56,9 @@ struct wall_pane {
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
     double every_s; /* how long the pane shows each of its views, in seconds */
     double hours;   /* hours that a trend covers */
-    bool on_alarm;  /* true: when an alarm is raised, the pane shows the alarm's view; only for panes of views and tours */
+    /* true: when an alarm is raised, the pane shows the view that belongs to the alarm; only for panes that show views or a
+       tour */
+    bool on_alarm;
 };
 
 struct wall_display {
@@ -104,7 +106,8 @@ const struct wall_display *wall_display_find(const struct plant *plant, const ch
 bool wall_display_has_pictures(const struct wall_display *display);
 bool wall_display_shows_tag(const struct wall_display *display, const char *tag);
 bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id);
-/* Returns whether a display has a pane of that kind and, unless item is NULL, with that view, tag, tour or other plant. */
+/* Returns whether a display has a pane of that kind. item not NULL: the pane must also show that item (a view, tag, tour or
+   other plant, depending on the kind). */
 bool wall_display_has(const struct wall_display *display, enum pane_kind kind, const char *item);
 /* Returns what is wrong with a title or a view address (static text), or NULL. */
 const char *named_view_title_wrong(const char *title);

@@ -31,8 +31,8 @@ int frame_tiles_cells(const struct frame_tiles *tiles)
     return tiles->columns * tiles->rows * (is_whole(tiles) ? 1 : BLOCK_CELLS);
 }
 
-/* Returns the column, within its block, of the cell (square of pixels) with this Z-order index (Morton code) by packing every
-   second bit. Given index >> 1, it returns the row. */
+/* Returns a cell's column within its block. Cells (squares of 64 x 64 pixels) are numbered in Z-order (Morton code), so every
+   second bit of the index belongs to the column. For index >> 1, returns the row. */
 static int cell_at(int place)
 {
     return (place & 1) | (place >> 1 & 2) | (place >> 2 & 4);

@@ -47,7 +47,8 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
    change colours, that is always the middle row. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
-    /* range of a surface's brightness from the first to the last row of the shaded colour map; darker or brighter surfaces are clamped */
+    /* limits of a surface's brightness that the first and the last row of the shaded colour map represent; darker or brighter
+       surfaces use these rows */
     static const double dark = 0.14, bright = 0.86;
     double rows = COLORMAP_ROWS - 1;
     bool shaded = view->look == LOOK_DEFAULT;
@@ -72,7 +73,8 @@ static void fill_clip(struct frame_uniforms *block, const struct frame_context *
     }
 }
 
-/* Brightness factor of assets without a field in front of a dark backdrop, where large pale floors would glare at full brightness. */
+/* factor for the brightness of assets that show no field, if the backdrop is dark: large pale floors would glare at full
+   brightness */
 static const float DIM_CONTEXT = 0.55f;
 
 void frame_uniforms_fill(struct frame_uniforms *block, const struct frame_context *context)

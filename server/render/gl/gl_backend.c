@@ -16,15 +16,16 @@
 #include "render/renderer_impl.h"
 
 enum { REFINED_SAMPLES = 4 };
-/* TILE_NS: target duration of drawing a tile where GL runs on the processor (no GPU). TRIANGLE_NS: expected time per triangle there. Both
-   in nanoseconds. */
+/* For GL on the processor (no GPU), in nanoseconds. TILE_NS: drawing time for which the size of tiles is chosen; TRIANGLE_NS:
+   expected drawing time per triangle. */
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
-/* Maximum GPU time of the last refined frame, in nanoseconds, for drawing the next one in one call, like a preview, instead of in steps. */
+/* If the GPU needed at most this time (nanoseconds) for the last refined frame, the next one is drawn in one call, like a
+   preview, instead of in steps. */
 static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
-/* Minimum number of triangles in a frame for occlusion culling: a slow GPU needs about half a millisecond to draw them. Where GL runs on
-   the processor, testing the bounding boxes of assets costs more than it saves. */
+/* Minimum number of triangles in a frame for occlusion culling; a slow GPU draws fewer in about half a millisecond. GL on the
+   processor never culls: testing the bounding boxes of assets there costs more than it saves. */
 enum { OCCLUSION_MIN_TRIANGLES = 250000 };
 /* Initial estimate of the time per pixel and pass, in nanoseconds, where GL runs on the processor; used until measured. */
 static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
@@ -102,8 +103,8 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
     return true;
 }
 
-/* Prepares to continue a job after the renderer has drawn other frames. The job then holds a reference to its light set (baked
-   light), so that the set is not evicted. On failure, logs the reason and returns false. */
+/* Prepares a frame's job to be continued after the renderer has drawn other frames. The job then holds a reference to its light
+   set (baked light), so that the set is not evicted. On failure, logs the reason and returns false. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);
@@ -143,8 +144,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
 
 /* --- tiles ------------------------------------------------------------------------------------------------------------------ */
 
-/* Draws some of the tile's surfaces. Returns TRIANGLE_NS times the number of triangles drawn: the expected share of the drawing
-   time that does not depend on pixels. *done: true once the whole tile is drawn. */
+/* Draws some of the tile's surfaces. *done: true once the whole tile is drawn. Returns the part of the drawing time, in
+   nanoseconds, that is due to the number of triangles rather than pixels: TRIANGLE_NS for each triangle drawn. */
 static double draw_surfaces(struct renderer *renderer, struct render_job *job, const struct tile *tile, bool *done)
 {
     struct gl_job *own = job->of.gl;
@@ -208,8 +209,8 @@ static struct drawn_tile draw_tile(struct renderer *renderer, struct render_job 
     return drawn;
 }
 
-/* Updates the measured time per pixel of a pass. took_ns: CPU time of this process, not wall time, so that other load on the machine does
-   not make tiles smaller. */
+/* Updates the measured drawing time per pixel of a pass. took_ns: CPU time of this process. Wall time would include other load
+   on the machine, and make tiles smaller than necessary. */
 static void update_pixel_time(struct renderer *renderer, const struct drawn_tile *drawn, int64_t took_ns)
 {
     double *pixel_ns = &renderer->by_gl->pixel_ns[drawn->pass], now_ns = ((double)took_ns - drawn->triangles_ns) / fmax(drawn->pixels, 1);

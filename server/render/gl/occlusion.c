@@ -85,8 +85,8 @@ static bool make_box(const struct view_constants *constants, const struct scene_
     return true;
 }
 
-/* Adds the occlusion state of an asset. Assets whose depth is shifted towards the viewer (scene_asset.front) may be in front of their
-   bounding box, so they are drawn without a test. */
+/* Adds the occlusion test of an asset. Assets whose depth is shifted towards the viewer (scene_asset.front) may be in front of
+   their bounding box, so they are drawn without a test. */
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct frame_context *context, int index)
 {
     const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];

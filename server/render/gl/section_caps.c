@@ -51,10 +51,10 @@ static void count_asset(struct section_caps *caps, const struct frame_context *c
     model_draw_closed(&caps->draws, model, frame_level(context, asset));
 }
 
-/* Sets up clipping for counting bodies along view rays. Enables the section planes through which rays enter the visible side.
-   Geometry beyond a plane through which rays leave the visible side is kept: a ray that leaves a body there was inside it. The
-   sign of a plane's depth coefficient in clip space tells whether rays enter or leave, for all pixels alike. A plane through
-   the eye is ignored. */
+/* Sets up clipping with section planes, for counting bodies along view rays. Clips at planes through which rays enter the
+   visible side. Does not clip at planes through which rays leave the visible side: a ray that leaves a body beyond such a plane
+   was inside the body at the plane. The sign of a plane's depth coefficient in clip space tells whether rays enter or leave,
+   for all pixels alike. A plane through the eye is ignored. */
 static void clip_entries(const struct frame_context *context)
 {
     const struct clip *clip = &context->view->visibility.clip;

@@ -11,8 +11,9 @@
 
 /* Uniform locations of the shaders preview.* and refined.*; must match these shaders. */
 enum { MATERIAL = 2, TEXTURES = 3 };
-/* Polygon offset factor per unit of scene_asset.front, the rank among assets whose faces coincide. GPUs round corners to fractions of a
-   pixel, differently for each triangle, so coincident faces differ in depth by a fraction of their depth slope. */
+/* Factor of the polygon offset for each rank in scene_asset.front, which orders assets whose faces coincide. GPUs round corners
+   to fractions of a pixel, differently for each triangle. The depths of coincident faces therefore differ by a fraction of the
+   faces' depth slope. */
 static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 

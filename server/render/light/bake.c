@@ -15,16 +15,16 @@
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 /* constant openness (visible part of the sky, 0..255) in a rough light set, which is baked fast because openness is not computed */
 static const uint8_t ROUGH_OPENNESS = 190;
-/* length of an edge, in texels of the sky's depth maps, from which the triangle counts as large */
+/* minimum length of a triangle's longest edge, in texels of the sky's depth maps, for the triangle to count as large */
 static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width: a filtered lookup also reads the texels around a point */
 static const double SUN_MARGIN = 0.002;
-/* lower bound of openness (0: no sky is visible, 1: the whole sky) when the hidden assets are as large as the plant;
-   proportionally less for smaller ones */
+/* minimum of openness (0: no sky is visible, 1: the whole sky) at any point, if the assets that the user hides are as large as
+   the whole plant; proportionally lower if they are smaller */
 static const double OPEN_AT_LEAST = 0.6;
-/* Size of one step of the bake where GL runs on a processor. _VERTICES: number of vertices, or of sample points in large triangles; _ROWS:
-   number of rows of the ground texture. SKY_: for bakes that include openness; SUN_: for bakes of sunlight only. A GPU bakes everything in
-   one step. */
+/* Size of one step of a bake, for GL on the processor; a GPU bakes everything in one step. Names that end in _VERTICES: number
+   of vertices, or of sample points in large triangles; in _ROWS: rows of the ground texture. SKY_: steps of bakes that include
+   openness; SUN_: steps of bakes of sunlight only. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
 
 /* Must match shaders/bake.comp. */
@@ -38,7 +38,7 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
-    /* visibility of assets as set in the plant file; only assets visible in it are drawn into the sky's depth maps */
+    /* assets that the plant file shows at start; only these are drawn into the sky's depth maps */
     struct visibility start;
     bool with_sky;
     struct directions_block *directions;
@@ -252,7 +252,7 @@ static void bind_vertices(const struct bake *bake)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
 }
 
-/* Bakes light at points inside large triangles (edge of at least LARGE_FACE_TEXELS). If memory for the points runs out, light
+/* Bakes light at points inside large triangles (see LARGE_FACE_TEXELS), for one step. If memory for the points runs out, light
    is sampled at vertices only. */
 static void faces_bit(struct bake *bake)
 {

@@ -16,8 +16,8 @@ enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
 /* Radiance is clipped at this multiple of the environment map's mean radiance. Brighter spots are the sun or lamps, and the
    renderer adds the sun as a separate light. */
 static const double MAX_RADIANCE_FACTOR = 24;
-/* Side in pixels of the reflection map for each roughness layer: rough layers are smooth, so they are computed at low resolution and
-   enlarged. */
+/* Width and height in pixels of the reflection map for each level of roughness. Reflections on rough surfaces are blurred, so
+   their maps are computed at low resolution and enlarged. */
 static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
 
 /* An environment map being processed. pixels: an equirectangular image. pyramid: octahedral maps in plant axes made from it, each level
@@ -25,7 +25,7 @@ static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32,
 struct environment_source {
     const float (*pixels)[4];
     int width, height;
-    /* y_up: true: +y of the plant is up, false: +z; even: true: radiance depends on elevation only, as in the built-in sky */
+    /* y_up: true: +y is up in the plant, false: +z; even: true: radiance depends on elevation only, as in the built-in sky */
     bool y_up, even;
     /* factor: exposure and white balance, by colour channel; most: limit of the brightest channel's radiance before the factor
        is applied */
@@ -210,8 +210,9 @@ struct environment_job {
     const struct lobe *lobe; /* sample rays of the roughness layer; NULL for layer 0, a perfect mirror */
 };
 
-/* Returns the index of the texel from which texel `i` copies its light: texels with equal light are computed once. In a sky
-   that depends on elevation only, the octahedral map repeats in eight equal triangles or, with y up, in two halves. */
+/* Returns the index of the texel from which texel `i` copies its light; `i` itself if it must be computed. In a sky whose light
+   depends on elevation only, the octahedral map consists of eight equal triangles or, with y up, of two equal halves, of which
+   one is computed. */
 static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);

@@ -21,7 +21,7 @@ struct environments {
     struct gl *gl;
     struct environment_slot slots[1 + PLANT_ENVIRONMENTS];
     int count;
-    /* texture of the table that environment_brdf() computes, ENVIRONMENT_BRDF_PX wide and high; all renderers share the table */
+    /* texels of the table that environment_brdf() computes, ENVIRONMENT_BRDF_PX wide and high; all renderers share the table */
     const float (*brdf_texels)[2];
     GLuint brdf; /* texture of brdf_texels */
 };

@@ -20,7 +20,7 @@ static void find_ground(struct light *light)
     for (int i = 0; i < 2; i++)
         side_m = fmax(side_m, scene->bounds_max_m[across[i]] - scene->bounds_min_m[across[i]]);
     side_m += 1.2 * gpu_scene->radius_m;
-    /* the ground is slightly below the plant, so that no surface lies in its plane */
+    /* the ground is drawn slightly below the plant's lowest point, so that no surface of the plant coincides with it */
     light->ground_height_m = scene->bounds_min_m[up] - 0.001 * gpu_scene->radius_m;
     memset(light->plant_from_ground, 0, sizeof(light->plant_from_ground));
     for (int i = 0; i < 2; i++) {
@@ -126,8 +126,8 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
-/* Returns a cached light set (baked light) whose openness (visible part of the sky) can be copied for a new set for `key`.
-   NULL: the cache has none. */
+/* Finds a cached light set (baked light) whose openness (visible part of the sky) is also right for a new set with `key`, so
+   that it can be copied. NULL: there is none. */
 static const struct light_set *find_open(const struct light *light, const struct light_key *key)
 {
     double most = bake_least_open(light->gpu_scene, &key->shown);

@@ -8,8 +8,8 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-/* Backdrop colour (sRGB) by elevation, from -1 (straight down) to 1 (straight up). The colours are even and bright, to suit an operator's
-   screen. */
+/* Returns one channel of the backdrop's colour (sRGB) at an elevation, from -1 (straight down) to 1 (straight up). The colours
+   vary little and are bright, to suit an operator's screen. */
 static double backdrop(double height, bool dark, int channel)
 {
     static const double zenith[2][3] = { { 0.757, 0.816, 0.870 }, { 0.090, 0.110, 0.135 } };

@@ -15,8 +15,8 @@ static const double NEIGHBOUR_UNITS = 30, HELD_FACTOR = 0.8;
 struct item_buckets {
     const struct crowd_item *items;
     double cell;
-    /* hash table of markers by grid cell. heads: by bucket, index of the marker added last; next: by marker, index of the previous marker
-       in its bucket; -1: none */
+    /* Hash table of chosen markers by grid cell. heads: for each bucket, index of the marker added last; next: for each marker,
+       index of the marker added to its bucket before it; -1: none */
     int *heads, *next;
     size_t mask;
 };
@@ -52,7 +52,8 @@ static void put(struct item_buckets *crowd, int index)
     *head = index;
 }
 
-/* Counts the items (markers) of a grid cell whose squared distance to `item` is less than `least`, up to MAX_NEIGHBOURS. */
+/* Counts the chosen markers in one grid cell whose squared distance from `item` is less than `least`; stops at MAX_NEIGHBOURS.
+   */
 static int count_cell(const struct item_buckets *crowd, double column, double row, const struct crowd_item *item, double least)
 {
     int count = 0;

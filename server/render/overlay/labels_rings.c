@@ -13,8 +13,8 @@ static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 /* maximum number of labels; more alarm rings than this count as a flood, in which rings of one asset share a call-out */
 enum { MAX_GROUPS = 24 };
-/* Grid of further label positions around the centre of a group of alarm rings, tried nearest first. STEP_X, STEP_Y: spacing in units;
-   STEPS: number of steps to each side of the centre. */
+/* Further positions for the label of a group of alarm rings, if none beside the group is free: a grid around its centre, tried
+   nearest first. STEP_X, STEP_Y: spacing in units (pixels at 1280x720); STEPS: number of steps to each side. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {
@@ -27,7 +27,8 @@ struct ring_group {         /* rings that share a label */
     int *members;           /* indices of the group's items (markers), most important first; points into rings.members */
     size_t count;
     struct label_box box;
-    /* mate: index of the group with which to merge this one, if its label found no room; LABEL_NONE: the label has room */
+    /* mate: index of the group with which this one is to be merged, because its label found no free position; LABEL_NONE: the
+       label has a position */
     int slot, mate;
 };
 
@@ -35,8 +36,8 @@ struct rings {
     struct label_layout *layout;
     const int *order;
     size_t count, group_count;
-    /* pixels per unit of CLOSE and STILL_CLOSE: first the size of a unit, then enlarged step by step until at most MAX_GROUPS labels
-       remain */
+    /* size in pixels of one unit for CLOSE and STILL_CLOSE; it is enlarged step by step (GROWTH) until at most MAX_GROUPS
+       labels remain */
     double least;
     struct ring_group *groups;
     /* for each alarm ring, in the order of `order`: position in pixels that represents the ring when near rings are grouped

@@ -436,7 +436,8 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
 
 void overlay_markers(struct pen *pen)
 {
-    int cards = pen->taken_count; /* number of boxes occupied before any marker is drawn: cards (legend, header) and banners */
+    /* number of boxes that are occupied before any marker is drawn: cards of the overlay (such as the legend) and banners */
+    int cards = pen->taken_count;
     struct marker_labels wanted = { .pen = pen };
     size_t *chosen, count = choose_markers(pen, cards, &chosen);
     wanted.items = mem_array(count, sizeof(*wanted.items));

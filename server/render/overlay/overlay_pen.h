@@ -57,14 +57,15 @@ void pen_text(struct pen *pen, double x, double y, const char *text);
 const char *pen_word(const struct pen *pen, enum overlay_word word);
 void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
-/* Formats a value with the fewest decimals that show differences of 1/5000 of the range. */
+/* Formats a value with as few decimals as possible, but enough to show differences of 1/5000 of `range`. */
 void pen_number(double value, double range, char out[40]);
-/* Returns the number of decimals needed to show differences of 1/500 of the range. */
+/* Returns the number of decimals that are needed to show differences of 1/500 of `range`. */
 int pen_decimals(double range);
 /* Returns the value rounded to this many decimals, and 0 instead of -0. */
 double pen_rounded(double value, int decimals);
 
-/* Draws the colour bar of pen->view: MIN at the bottom, MAX at the top, ticks on the right, the group's limits on the left. */
+/* Draws the colour bar of pen->view: MIN at the bottom and MAX at the top, tick labels on its right, and the group's alarm
+   limits on its left. */
 void overlay_bar(struct pen *pen, const struct label_box *bar);
 /* overlay_bar_width returns the width of the colour bar with the texts on both sides, overlay_bar_left the width of the text to its
    left. */

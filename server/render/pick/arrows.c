@@ -70,15 +70,16 @@ static bool is_apart(const struct arrow_set *set, const struct asset_view *view,
     for (size_t i = 0; i < set->count; i++) {
         const float *a = set->places[i].normal, *b = place->normal;
         point_of(view, &set->places[i], there);
-        /* opposite normals: the positions lie on the two sides of a thin wall, so they may be close to each other */
+        /* the normals at the two positions point in opposite directions: they are on the two sides of a thin wall, so their
+           arrows may be close to each other */
         if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0 && vec_distance(here, there) < least_m)
             return false;
     }
     return true;
 }
 
-/* Chooses arrow positions in rounds, each with half the minimum distance of the round before. Any prefix of the list is thus evenly
-   spread. */
+/* Chooses arrow positions in rounds; each round halves the minimum distance between positions. The first n positions of the
+   list are thus evenly spread, for any n. */
 static void select_spread(struct arrow_set *set, const struct arrow_candidates *candidates)
 {
     set->places = mem_array(MAX_POSITIONS, sizeof(*set->places));

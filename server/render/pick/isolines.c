@@ -12,8 +12,9 @@
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
-/* The field along a triangle's edge need not be linear. MAX_PIECES: maximum number of pieces of an edge that are searched for
-   crossings with isolines. MAX_BISECTIONS: number of bisection steps that locate a crossing within a piece. */
+/* Limits of the search for points where an isoline crosses an edge of a triangle, along which the field need not be linear.
+   MAX_PIECES: maximum number of pieces of an edge that are searched one by one; MAX_BISECTIONS: number of bisection steps that
+   locate a crossing within a piece. */
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
 /* minimum distance between possible label positions on isolines, as a fraction of the asset's size */
 static const double SPACING = 0.1;

@@ -12,7 +12,7 @@
 #include "render/pick/coarse_level.h"
 
 #define STROKE_NONE UINT32_MAX
-enum { MAX_CROSSINGS = 64 };          /* maximum number of edges crossed within one step */
+enum { MAX_CROSSINGS = 64 };          /* maximum number of triangle edges that one step of a stroke may cross */
 /* step length for tracing strokes (short streamlines), as a fraction of the distance between arrows */
 static const double STEP_PART = 0.35;
 /* smallest cosine between the directions of consecutive steps of a stroke (120 degrees): sharper turns are vortices too small to trace */

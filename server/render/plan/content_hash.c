@@ -67,7 +67,7 @@ static void add_colors(XXH3_state_t *state, const struct view *view)
 {
     double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
     hash_bytes(state, numbers, sizeof(numbers));
-    /* hashes the instant because a frame carries its time: frames of two instants differ even if their pixels are equal */
+    /* includes the instant, because it is part of the frame: frames of two instants differ even if their pixels are equal */
     hash_bytes(state, &view->at_us, sizeof(view->at_us));
     add_field_params(state, &view->field);
     add_color_scale(state, &view->color_scale);

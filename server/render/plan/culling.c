@@ -25,7 +25,8 @@ static bool in_frustum(const struct culling *culling, const struct asset_cluster
 {
     for (int p = 0; p < 6; p++) {
         const float *plane = culling->planes[p];
-        /* signed distance from the frustum plane to the innermost corner of the cluster's box; below 0: the whole box is outside */
+        /* signed distance from the frustum plane to that corner of the cluster's box that is farthest on the plane's inner
+           side; below 0: the whole box is outside */
         float far = plane[3];
         for (int c = 0; c < 3; c++)
             far += plane[c] * (plane[c] > 0 ? cluster->high_m[c] : cluster->low_m[c]);

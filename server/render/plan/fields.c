@@ -205,7 +205,8 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         return &fields->lost;
     struct pixel_field pixels;
     field_pixels(fields->field, asset, params, &pixels);
-    /* at most one sensor is usable, so the field is not evaluated at pixels, and all vertices need values */
+    /* interpolation needs the values of all vertices: renderers do not evaluate this field at pixels, because at most one
+       sensor is usable */
     if (pixels.count == 0 && count < all) {
         count = all;
         scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);

@@ -8,7 +8,7 @@ struct frame_planner { /* inputs for making frame plans; they must outlive the p
     const struct gpu_scene *gpu_scene;
     struct fields *fields;
     struct light *light;
-    bool near_light; /* true: until the light that its view asks for is baked, a preview uses the most similar light that is ready */
+    bool near_light; /* true: a preview uses the most similar light that is ready, until the light for its own view is baked */
     bool finest;     /* true: plans use the finest level of detail of each asset only */
 };
 

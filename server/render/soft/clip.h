@@ -9,8 +9,8 @@
 /* NEAR_CORNERS, NEAR_TRIANGLES: maximum numbers of corners and of triangles that result from clipping one triangle by all planes. */
 enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_TRIANGLES = NEAR_CORNERS - 2 };
 
-/* corner of a clipped triangle. at: position in clip space, with x and y in pixels. a, b: as in struct soft_vertex: column and
-   row of the colour map, or light */
+/* Corner of a clipped triangle. at: position in clip space, with x and y in pixels. a, b: members as in struct soft_vertex:
+   column and row of the colour map if the surface shows a field, otherwise its light. */
 struct near_corner {
     float at[4], a, b;
     /* strength, 0..1, of each pattern (no data, uncertain, no limits) at the corner; from the vertex's flags, interpolated

@@ -5,7 +5,7 @@
 
 #include "render/soft/kernels.h"
 
-/* colour map columns of values far outside the scale are clamped to this absolute value */
+/* largest absolute value of a column of the colour map; values far outside the scale are clamped to it */
 #define FARTHEST 1e6f
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
@@ -204,8 +204,8 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
 struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    /* Per triangle; -1: true. kept: the triangle will be drawn. doubtful: nearer surfaces fill the depth blocks (8 x 8 pixels)
-       at the four corners of its bounding rectangle, but further blocks of the rectangle are not tested yet */
+    /* Masks of triangles, -1 for true. kept: the triangle will be drawn. doubtful: it is hidden in the depth blocks (8 x 8
+       pixels) at the four corners of its bounding rectangle, but the rectangle has more blocks, which are not tested yet. */
     lanes_int kept, doubtful;
     lanes nearest;
 };

@@ -75,7 +75,8 @@ static void choose_stretch(struct raster *raster)
         area2 += normal * normal;
         volume += normal * (double)m[2][r];
     }
-    /* 1 / f^2, where f is the distance of eye and image plane in pixels; 0: rays are parallel */
+    /* 1 / f^2, where f is the distance in pixels between eye and image plane; 0: the view is orthographic, so all rays are
+       parallel */
     double turn2 = step2 > 0 ? step2 * area2 / (volume * volume) : 0;
     int n = SOFT_STRETCH_MOST;
     while (n >= SOFT_STRETCH_LEAST && !(0.15 * n * n * turn2 * SKY_BACKDROPS / 2 <= most))

@@ -10,31 +10,32 @@
 
 #include "base/mem.h"
 
-/* DEPTH: number of levels of squares, with sides from 128 to 16 pixels. SHORT_LIST: lists of at most this many sensors are not
-   shortened further */
+/* DEPTH: number of sizes of squares, whose sides are from 128 to 16 pixels. SHORT_LIST: lists of at most this many sensors are
+   not shortened further */
 enum { DEPTH = 4, SHORT_LIST = 8 };
 static const float FAR_M = 1e15f, MOST_SHARE = 0.0625f, LOG2_E = 1.44269504f;
 
 enum node_column { PLACE_X, PLACE_Y, PLACE_Z, VALUE, STRENGTH, DECAY, STATE, INDEX, COLUMNS };
 
 struct node {
-    /* table of the near sensors, which no polynomial replaces yet: one column per enum node_column, padded to LANES. The columns STATE and
-       INDEX (index in field->sensors) hold integers */
+    /* Table of the near sensors, those that no polynomial replaces yet. It has one array for each value of enum node_column,
+       padded to LANES. The arrays STATE and INDEX (index of the sensor in field->sensors) hold integers. */
     float *columns[COLUMNS];
     int count;
     /* polynomials that replace the far sensors: those whose weight is smooth in the square of pixels; its member `sensors` is not set */
     struct pixel_list far;
     float least;           /* lower bound of the sum of the weights of the far sensors, which polynomials replace */
-    float left;            /* error budget left for more polynomials, as a fraction of the sum of all weights */
+    float left;            /* part of the error budget that is left for further polynomials, as a fraction of the sum of all weights */
 };
 
 struct building {
     const struct pixel_field *field;
-    /* Bound for the interpolation `shepard`. If a sensor's weight has an error e (as a fraction of the sum of all weights), a
-       value changes by at most e * (1/2 + away * |reading - middle|) * spread of the readings. For `paper`, away is 0 */
+    /* Values for converting an error of weights to an error of the field, for the interpolation `shepard`. If a sensor's weight
+       has an error e (as a fraction of the sum of all weights), a value changes by at most e * (1/2 + away * |reading -
+       middle|) * spread of the readings. For `paper`, away is 0 */
     float middle, away;
-    /* by index in the parent's list: largest change of a value if a polynomial replaces this sensor (it becomes far), in units
-       of the readings' spread. INFINITY: the sensor must stay near; -1: the sensor has no weight */
+    /* [index in the parent's list]: largest change of a field value, in units of the readings' spread, if a polynomial replaces
+       this sensor (it becomes far). INFINITY: the sensor must stay near; -1: the sensor has no weight */
     float *errors;
     struct node nodes[DEPTH + 1]; /* by level; [0]: all sensors */
 };
@@ -140,9 +141,9 @@ SOFT_INLINE void add_pole(struct logarithm *to, lanes times, lanes left)
     to->third += 2.0f * times * over * over * over;
 }
 
-/* Bounds the derivatives of a weight's logarithm in a box around surface points. near_m, far_m: smallest and largest distance
-   from the sensor there. Factors with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at
-   far_m. sign: sign with which the second derivative of the latter factors is added. */
+/* Bounds the derivatives of the logarithm of a sensor's weight in a box around surface points. near_m, far_m: smallest and
+   largest distance of the box from the sensor. Factors that are infinite at the sensor are evaluated at near_m, and factors
+   that are infinite at the reach or radius at far_m. sign: sign of the second derivative of the latter factors. */
 SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const struct eight_sensors *of, lanes near_m, lanes far_m,
                                           bool term, float sign)
 {

@@ -44,10 +44,12 @@ struct refined {
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
-    /* matrix, column by column, that maps the normal of a surface to an offset on the sun's shadow map. Adding the offset lifts
-       a point off its own surface, to avoid shadow acne */
+    /* Matrix, column by column, that maps a surface's normal to an offset in the sun's shadow map. The offset moves the
+       looked-up point off its own surface; otherwise the surface would shade itself (shadow acne). */
     float sun_from_normal[3][3];
-    float ground_step[3]; /* offset on the sun's shadow map that is added to points of the ground to avoid shadow acne */
+    /* offset in the sun's shadow map that is added to points of the ground, so that the ground does not shade itself (shadow
+       acne) */
+    float ground_step[3];
 };
 
 struct refined_item { /* one surface within a pixel */

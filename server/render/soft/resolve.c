@@ -198,8 +198,8 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
     columns[2] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
 }
 
-/* eight pixels that show the field: weights of triangle corners, and interpolated values (colour map columns; on a logarithmic scale field
-   values) */
+/* Eight pixels that show the field: the weights of their triangles' corners, and their interpolated values. Values are columns
+   of the colour map or, on a logarithmic scale, field values. */
 struct eight_shown {
     lanes w1, w2, carried;
     /* -1: field_colors() may colour the pixel; 0: the pixel or a corner of its triangle has a flag, so flagged_color() must colour it */
@@ -310,8 +310,8 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
 /* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
 typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* Colours of the next surfaces of pixels that show several surfaces. They are computed in advance, eight at a time, in the
-   order of their use in color_mixed(). */
+/* Colours of the next surfaces in pixels that show several surfaces. They are computed eight at a time before color_mixed()
+   uses them, in the same order. */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;

@@ -23,13 +23,16 @@ struct mixed { /* a pixel that shows several surfaces, and the range of its item
     int column;
     uint8_t field_count, surface_count;
     uint16_t sky, cap; /* area of the pixel that shows sky, and area that shows section caps; 0..VISIBILITY_SHARES */
-    uint16_t over[3];  /* sum of the colours of blended triangles, each weighted by the area that it covers: blue, green, red */
+    /* sum of the colours (blue, green, red) of blended triangles in the pixel, each weighted by the area that its triangle
+       covers */
+    uint16_t over[3];
     uint32_t first_field, first_surface;
 };
 
 struct refined_row { /* a row of pixels; the arrays of items (surfaces to shade) have room for SAMPLES items per pixel */
     struct refined_item *field, *surfaces;
-    /* by item (surface to shade): column of its pixel; -1: the pixel shows several surfaces and is composed after its items are shaded */
+    /* [item]: column of the pixel to which the item (surface to shade) belongs; -1: the pixel shows several surfaces, and its
+       colour is computed after all its items are shaded */
     int *field_columns, *surface_columns;
     struct mixed *mixed;
     uint8_t *sky;  /* by column: 1 if the pixel shows some of the sky, else 0 */

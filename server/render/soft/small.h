@@ -31,7 +31,8 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
 
 struct small { /* eight faces, as structure of arrays: lane i belongs to face i */
     lanes x, y;
-    /* edge functions of the faces, with members as in struct raster_edge; edge_row: edge_dy times x of the edge's upper end */
+    /* edge functions of the faces, with members as in struct raster_edge; edge_row: edge_dy times x, where x is that of the
+       edge's upper end */
     lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3];
     lanes_int negative[3];
     /* functions that are linear over the face: [0] depth, [1] a, [2] b of struct soft_vertex. at: value at (x, y); dx, dy: change per

@@ -151,7 +151,8 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     size_t pixels_count, pixels_capacity;
     int row_bias; /* number added to the row of the colour map in a MARK_PIXELS mark, so that it is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: number of elements from one row to the next, a multiple of LANES */
-    /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles are enlarged by it. Previews: 0 */
+    /* largest distance between a sample and its pixel's centre, along x or y, in pixels. Bounding rectangles are enlarged by
+       it. 0 in previews, which sample the centre */
     float reach_px;
     float *depth;
     uint32_t *marks;
@@ -191,8 +192,8 @@ struct soft { /* shared by all frames */
     const struct environments *environments;
     size_t material_count;       /* number of materials of all models together */
     uint32_t *material_of_model; /* by model: index, among all materials, of its first material */
-    /* tables of colour ramps: RAMP_STEPS colours per row, from dark to bright; ramp_of_material: by index of a material: its row in
-       muted_ramps and own_ramps */
+    /* muted_ramps, own_ramps: tables with one colour ramp (RAMP_STEPS colours, from dark to bright) per row; ramp_of_material:
+       [material]: row of its ramp in both tables */
     uint32_t *muted_ramps, *own_ramps, *ramp_of_material;
     struct soft_materials materials;
     lanes *shading;            /* by material: attributes of shading, at the indices BASE, METALLIC, ROUGHNESS, EMISSIVE (refined_impl.h) */

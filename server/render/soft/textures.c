@@ -187,7 +187,8 @@ void soft_spread_coordinates(const float (*coordinates)[2], const uint32_t verti
     }
 }
 
-/* Returns the mipmap level, with fraction, whose texels are as large as pixels of the frame. */
+/* Returns the mipmap level whose texels are as large as pixels of the frame; the fraction says how far it is between two
+   levels. */
 static float level_at(const struct soft_texture *texture, float uv[3][2])
 {
     float square = 0;

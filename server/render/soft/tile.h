@@ -10,16 +10,19 @@ enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
 enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + NEAR_CORNERS * PART_TRIANGLES };
 
-/* faces whose farthest and nearest corner have depths of at most this ratio are drawn without perspective correction */
+/* perspective correction is omitted for faces whose largest and smallest corner depth have at most this ratio */
 #define SOFT_LITTLE 1.02f
 
-struct soft_corners { /* vertices of a part with the members of struct soft_vertex, followed by the vertices that clipping added */
+/* vertices of the part (group of triangles) that is being drawn, one array for each member of struct soft_vertex. After the
+   part's own vertices come those that clipping added. */
+struct soft_corners {
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
-    /* flags of the vertices; a vertex that clipping added has only flags of SOFT_PATTERNS; cut_patterns holds the strength of
-       each pattern there */
+    /* Flags of the vertices. A vertex that clipping added has only the flags SOFT_PATTERNS, which say that it has patterns;
+       cut_patterns has the strength of each pattern there. */
     uint32_t flags[MOST_CORNERS];
     struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
-    int count, placed;  /* number of vertices; placed: those that clipping did not add, which come first */
+    /* count: number of vertices; placed: number of the part's own vertices, which come before those that clipping added */
+    int count, placed;
     uint32_t all_flags; /* the OR of all flags */
     bool flat;          /* perspective is negligible */
     /* true: some vertices are in front of the near plane or beyond the guard band (a border around the frame, clip.h), so faces

@@ -94,8 +94,8 @@ struct visibility_buffer {
     /* by pixel: light that the pixel reflects in the glossy look; NULL: another look; `rows` then holds the brightness */
     struct visibility_gloss *gloss;
     const struct soft_tones *tones; /* set with gloss; not owned */
-    /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil (coverage by ghost
-       lines) over colours that no reading changes, and sets both to 0 there */
+    /* Ink of each pixel (line drawn over its colour, VISIBILITY_INK). In pixels whose colour no reading changes,
+       visibility_buffer_settle() draws ink and veil (lines of ghosted assets) into the colour itself, and sets both to 0. */
     uint8_t *ink;
     uint8_t *veil; /* by pixel: coverage by ghost lines, 0..255; NULL: there are no ghosts */
     uint8_t veil_bgr[3];
@@ -114,7 +114,8 @@ struct visibility_buffer {
     /* value at each visible vertex, interpolated over triangles: column of the colour map or, on a logarithmic scale, the
        field's value. NAN: a flag of the vertex selects a pattern */
     float *carried;
-    float *plain;                 /* the values of `carried`, also at vertices where `carried` is NAN because a pattern is shown */
+    /* like `carried`, but with the field's value also at vertices where `carried` is NAN because a pattern is shown */
+    float *plain;
     uint32_t *flags;              /* from soft_flags() */
     struct depth_grid *grid;      /* reference to the frame's depth grid (coarse depth for clients); NULL: the frame has none */
     struct frame_marker *markers; /* positions of markers in the frame, and whether surfaces hide them */

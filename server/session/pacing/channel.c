@@ -72,9 +72,9 @@ bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns)
     return channel->rtt_ns[0] && now_ns - channel->rtt_begin_ns >= RTT_WINDOW_NS;
 }
 
-/* The client acknowledges a frame after decoding it and reports the decoding time, which gives the arrival time. On the
-   server's clock every arrival appears late by the delay of the return path. Only differences between arrivals are used, so
-   this delay cancels out. */
+/* Handles the client's acknowledgement of a frame, sent after decoding. The reported decoding time gives the time when the
+   frame arrived. On the server's clock, every arrival appears late by the delay of the acknowledgement's way back. Only
+   differences between arrivals are used, so this delay cancels out. */
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 {
     int64_t rtt_ns = channel_rtt_ns(channel), took_ns = more(ack->now_ns - ack->sent_ns, 0);

@@ -7,7 +7,8 @@
 
 #include "base/clock.h"
 
-/* bytes per pixel of a JPEG frame (196 kB at 1920x1080, quality 78), and frames per second */
+/* expected bytes per pixel of a JPEG frame (196 kB at 1920x1080, quality 78), and frames per second, from which the bandwidth
+   for JPEG is computed */
 static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;
 /* measured bandwidth as a multiple of what JPEG needs: above PLENTY a switch to JPEG is allowed, below SCARCE the codec returns to H.264 */
 static const double PLENTY = 4, SCARCE = 2;

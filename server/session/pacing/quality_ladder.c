@@ -15,12 +15,14 @@ static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 /* decoding time of a frame above which the client cannot keep up with 25 frames a second */
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS;
 static const int64_t FAST_DECODE_NS = 20 * NS_PER_MS;
-/* limit on the time to make a picture. The server makes two pictures at a time, so a longer time means fewer than 15 pictures a second */
+/* if making a picture takes longer than this, the ladder steps down. The server makes two pictures at a time, so this is the
+   limit for 15 pictures a second */
 static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
-/* limit on the bytes of all copies of a frame for the viewers of a view: the event loop needs some tens of ms to send this many */
+/* limit on the bytes of a frame's copies for all viewers of a view, because the event loop needs some tens of milliseconds to
+   send this many */
 static const double CROWD_BYTES = 30e6;
 /* MIN_VIEWERS: minimum number of viewers of a view that get a common step; MAX_STEPS_WORSE: a viewer whose own step is worse
    than the common one by more than this uses its own */
@@ -72,9 +74,9 @@ double quality_ladder_bytes(const struct quality_ladder *ladder)
     return ladder->unit_bytes * steps[ladder->step].bytes;
 }
 
-/* Returns the factor by which the limit on a frame's transfer time grows at this step. A step whose next one has fewer pixels
-   gets twice the time: viewers at different picture sizes can no longer share frames. A client that reprojects gets 120 ms (1.5
-   * SLOW_NS) for a frame, which still allows 8 frames a second. */
+/* Returns the factor by which the limit on a frame's transfer time is larger at this step. It is 2 for a step whose next one
+   has fewer pixels, because viewers at different picture sizes can no longer share frames. For a client that reprojects it is
+   1.5 (120 ms in total), which still allows 8 frames a second. */
 static double slack_factor(const struct quality_ladder *ladder, int step)
 {
     double usual = ladder->reprojects ? 1.5 : 1;
@@ -134,7 +136,8 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     }
 }
 
-/* Returns whether the condition `now` has been true for limit_ns. *since_ns: stores when it became true; 0: it is false. */
+/* Returns whether `now`, a condition that the caller checks repeatedly, has been true for limit_ns. *since_ns: keeps the time
+   since when it is true; 0: it is false. */
 static bool lasts(int64_t *since_ns, bool now, int64_t limit_ns, int64_t now_ns)
 {
     if (!now)

@@ -39,7 +39,7 @@ static void add_alarm(const struct plant *plant, size_t tag, const struct readin
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
     json_t *values = json_array();
-    int64_t oldest_ns = 0; /* age of the oldest reading among those sent as a bare value, without quality and age */
+    int64_t oldest_ns = 0; /* age of the oldest of those readings that are sent as a bare value, that is, without quality and age */
     for (size_t i = 0; i < snapshot->count; i++) {
         const struct reading *r = &snapshot->readings[i];
         if (!all && sent[i] == r->changes)

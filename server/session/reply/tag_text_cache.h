@@ -6,8 +6,8 @@
 #include "session/session.h"
 
 struct tag_text_cache { /* zero-initialise */
-    /* by tag: change counter (reading.changes) that clients had before this message, which is right only for clients with the
-       same counters */
+    /* [tag]: change counter (reading.changes) of the reading that a client was sent last. The cached text is right only for
+       clients for which all these counters are equal */
     uint32_t *before;
     int64_t taken_ns; /* time of the snapshot of readings that `text` lists */
     bool all;

@@ -8,7 +8,8 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* FLIP_NS: time added to the slowest round trip to compute when all tiles show a picture; MAX_FLIP_NS: maximum of that sum */
+/* FLIP_NS: all tiles show a picture at one instant: the slowest client's round trip plus this time after sending it;
+   MAX_FLIP_NS: maximum of that sum */
 static const int64_t FLIP_NS = 25 * NS_PER_MS, MAX_FLIP_NS = NS_PER_S;
 
 bool session_tile_takes_part(const struct session *session, int64_t now_ns)
@@ -89,7 +90,8 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
     first.view.width_px = tile_layout_width(&layout);
     first.view.height_px = tile_layout_height(&layout);
     first.always = always;
-    /* this request may not add a picture to those in flight, but may replace one, such as a refined picture whose view has moved */
+    /* if `only_replace` is set, the request adds no picture to those in flight; it may only replace one, such as a refined
+       picture whose view has changed */
     first.only_replace = !may_add;
     first.picture = number;
     for (size_t i = 0; i < tiles->count; i++) {
@@ -144,8 +146,9 @@ static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
     return 0;
 }
 
-/* Requests another picture for all members if no frame is in flight and a member has a frame that it could not present. It
-   could not, because other members lack a frame of the same picture: a newer request replaced theirs before it was drawn. */
+/* If no frame is in flight, but a member has a frame that it could not present, requests another picture for all members. Such
+   a frame is left over when other members lack a frame of the same picture, because a newer request replaced theirs before it
+   was drawn. */
 static void ask_anew(const struct session_tiles *tiles)
 {
     bool any = false;

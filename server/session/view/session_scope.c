@@ -39,7 +39,8 @@ const char *session_scope_find_view(const struct plant_services *services, enum 
 static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    /* bare: omits the readings: with them, opening a view would save a baseline, for which a user needs the role operator */
+    /* bare: the view is read without present readings. With them, opening a view could save a baseline, which requires the role
+       operator */
     const struct params_context params = { .scene = context->services->scene, .baselines = context->services->baselines, .bare = true };
     struct view read;
     const char *address = session_scope_find_view(context->services, session->identity.role, &session->identity.holder, id, "named", error);
@@ -184,8 +185,8 @@ static bool shows_note(const struct session *session, const json_t *item)
     return !session->scope.tags;
 }
 
-/* Messages whose lists are filtered for a narrowed token: message type, name of the list, and the test that an item must pass to be
-   sent. */
+/* Lists in messages that are filtered for a narrowed token: type of the message, name of the list in it, and a test for its
+   items. Items that fail the test are not sent. */
 static const struct {
     const char *type, *list;
     bool (*keeps)(const struct session *session, const json_t *item);

@@ -11,8 +11,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* This fraction of the area matrix M, divided by the area of the connected component, is added to the Laplacian L. L alone is singular on
-   each connected component of the surface; the sum is regular, and distances change by only a millionth. */
+/* Fraction used to make the Laplacian L regular: L alone is singular on each connected component of the surface. Adds the area
+   matrix M, times this fraction, divided by the component's area. Distances change by only a millionth. */
 #define REGULARISATION 1e-6
 
 struct heat {

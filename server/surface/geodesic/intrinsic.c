@@ -91,8 +91,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
     memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
     memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
-    /* The flip renumbers the four outer sides of the two triangles. If one outer side is glued (marked as adjacent) to another of these
-       four, its reference gets the new index. */
+    /* The flip renumbers the four outer sides of the two triangles. If two of these outer sides are glued to each other (marked
+       as adjacent), the reference from one to the other must get the new index. */
     uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
     const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
                               3 * t + (uint32_t)((i + 1) % 3) };

@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "surface/geodesic/propagation.h"
 
-/* smallest barycentric weight of a source. A source on a corner or edge is moved into the triangle so that all weights have at
-   least this value */
+/* minimum barycentric weight of a source's position in its triangle; a source on a corner or edge is moved inwards to that
+   extent */
 #define MIN_WEIGHT 1e-6
 /* lay_out_beyond() follows a straight line to find the triangle with a given corner. The line ends inside the triangle, at this
    fraction of the way from the corner to the middle of the opposite side. */
@@ -63,9 +63,9 @@ static inline void fetch_fans(const struct propagation *propagation, uint32_t po
         __builtin_prefetch(from);
 }
 
-/* Lowers a point's distance to the offered distance, but not below the straight-line distance. An offer can be shorter than
- * that if the distances of an edge's two ends come from different paths around a fold or a rod. The point of the plane that
- * fits both distances is then too near. */
+/* Lowers a point's distance to the offered one, but not below the straight-line distance. An offer can be too short where the
+   distances at an edge's two ends come from different paths, around a fold or a rod: no position of the source fits both, and
+   the computed one is too near. */
 static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m)
 {
     float distance_m = offered_m < front->straight_m[point] ? front->straight_m[point] : offered_m;

@@ -30,8 +30,9 @@ void bvh_set_labels(struct bvh *bvh, const uint32_t *label);
 void bvh_nearest_unlike(const struct bvh *bvh, const double point[3], double limit_m, uint32_t label,
                         bool (*allowed)(const void *arg, uint32_t tri), const void *arg, struct bvh_place *place);
 
-/* Returns whether the mesh has a point within limit_m on an allowed triangle; faster than finding the nearest point. *tri: a triangle to
- * try first, or TRIMESH_NONE (neighbouring points often have the same nearest triangle); receives the triangle found. */
+/* Returns whether a triangle for which allowed() is true has a point within limit_m of `point`; faster than finding the nearest
+   point. *tri: triangle to try first, or TRIMESH_NONE (neighbouring points often have the same nearest triangle); receives the
+   triangle that was found. */
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                     const void *arg, uint32_t *tri);
 

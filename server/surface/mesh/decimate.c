@@ -89,8 +89,8 @@ static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
     return thin->params->part[s] == thin->params->part[t];
 }
 
-/* Returns whether removing a point changes neither the visible nor the hidden area of any part. star: the triangles around the point;
-   grown: by triangle of the star, change of twice its area; enough: tolerance of the sum of these changes. */
+/* Returns whether every part keeps its visible and its hidden area when a point is removed. star: the triangles around the
+   point; grown: [triangle of the star]: change of twice its area; enough: tolerance for the sum of these changes. */
 static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MAX_STAR], double enough)
 {
     for (size_t i = 0; i < star->count; i++) {

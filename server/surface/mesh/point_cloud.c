@@ -20,8 +20,8 @@ static float *floats_of(const double (*points)[3], size_t count)
     return floats;
 }
 
-/* One round of neighbour queries, each for the k nearest points. A point whose k neighbours all lie within the radius may have
-   more, so it is queried again in the next round with a larger k. */
+/* One round of a search for all points within a radius: each query finds the k nearest points. If all k of a point are within
+   the radius, there may be more; the point is then queried again in the next round with a larger k. */
 struct round {
     const double (*points)[3];
     float *floats;

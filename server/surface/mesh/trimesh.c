@@ -257,8 +257,8 @@ static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, co
     uint32_t v[3] = { tri[0], tri[1], tri[2] };
     sort3(v);
     uint32_t pair = edge_table_add(pairs, v[0], v[1]);
-    /* The table `seen` ignores the order of its two keys. The key of a pair of points is even and the key of the third point
-       odd, so that no two different triangles have the same keys. */
+    /* The table `seen` ignores the order of a key's two numbers. The number for the pair of points is made even and that for
+       the third point odd, so that two different triangles never have the same key. */
     return edge_table_add(seen, pair * 2u, v[2] * 2u + 1u);
 }
 

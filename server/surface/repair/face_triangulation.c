@@ -9,7 +9,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define ON_EDGE 1e-9 /* maximum barycentric weight of the opposite corner for a point to count as lying on an edge */
+#define ON_EDGE 1e-9 /* a point counts as on an edge of the face if its barycentric weight for the opposite corner is at most this */
 #define ON_WAY 1e-6  /* a point within this distance of a straight line, relative to the line's length, counts as on the line */
 
 void face_triangulation_finish(struct face_triangulation *face)

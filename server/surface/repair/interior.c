@@ -14,11 +14,11 @@
 /* A region is a set of points that are connected without passing another part. Only one in VOTE_EVERY triangles of a region is tested for
    being inside; if the results agree, they hold for the whole region. */
 #define VOTE_EVERY 16
-/* distance of test points from a triangle on another part's surface, on each side. Unit: reach (distance up to which a part
-   counts as touching, parts.h) */
+/* distance of test points from a triangle that lies on the surface of another part; there is one test point on each side. Unit:
+   reach (distance up to which a part counts as touching, parts.h) */
 #define BESIDE 1.5
-/* distance of test points from a triangle that may be inside its own part, on each side. Unit: reach (distance up to which a
-   part counts as touching, parts.h) */
+/* distance of test points from a triangle that may be inside its own part; there is one test point on each side. Unit: reach
+   (distance up to which a part counts as touching, parts.h) */
 #define BARELY 0.05
 #define FLUSH 0.9 /* minimum cosine between the normals of two touching faces for them to count as lying on each other */
 /* minimum height of a triangle for its normal to count as reliable. Unit: reach (distance up to which a part counts as
