@@ -438,8 +438,8 @@ static void wake_answers(const struct server_context *server)
             lws_callback_on_writable(one->wsi);
 }
 
-/* Returns whether users' latest actions are not yet sent to the standby. Until then no client is told that the action is done:
-   the standby might take over without knowing of it. The core does not wait for a standby that is too slow. */
+/* Returns whether users' latest actions are not yet sent to the standby. Until then no client is told that its action is done:
+   the standby might take over without the action. The core does not wait for a standby that is too slow. */
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the outbox of alarm messages to JSON and back: alarms that were raised, with the recipients that were notified of
-   them, and queued messages. Names identify recipients, rules and alarms. */
+/* Converts the outbox of alarm messages to JSON and back. It contains the alarms that were raised, which recipients were
+   notified of each alarm, and queued messages. Names identify recipients, rules and alarms. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>

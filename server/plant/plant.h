@@ -25,7 +25,7 @@ enum interpolation {
 };
 /* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-/* what a picture shows around a sensor whose reading is Bad: nothing, or the field of neighbouring sensors */
+/* content of a picture around a sensor whose reading is Bad: nothing, or the field of neighbouring sensors */
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
 /* content of a client's first picture: values, or values relative to their alarm limits (operator's display) */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
@@ -204,9 +204,13 @@ struct plant_source {
     int connect_delay_ms;              /* pause in milliseconds between connecting to the device and the first request */
     bool close_between_polls;          /* one request per connection */
     int max_registers, max_bits;       /* maximum number of registers, or of bits, in one Modbus request */
-    int max_gap; /* maximum number of unneeded registers or bits between two tags for one request to read both */
+    /* maximum number of unneeded registers (or bits) between the registers of two tags; with more in between, two requests are
+       sent */
+    int max_gap;
     enum byte_order byte_order;
-    int address_base; /* number of a device's first register in addresses such as 40001: 0 or 1; base_stated: true: set in the plant file */
+    /* number that addresses such as 40001 give to a device's first register: 0 or 1; base_stated: true: the plant file states
+       it */
+    int address_base;
     bool base_stated;
     /* heartbeat: name of a tag of this source whose value must keep changing; otherwise the device is taken to have stopped. NULL: none */
     char *heartbeat;
@@ -232,7 +236,8 @@ struct plant_publish {
 /* A PostgreSQL database that receives a copy of the history. */
 struct plant_postgres {
     char *url;   /* libpq URL without a password; NULL: no database */
-    char *login; /* path of a file with user and password, on a line each; NULL: libpq looks for them itself */
+    /* path of a file with the user name on the first line and the password on the second; NULL: libpq finds the login itself */
+    char *login;
     char *schema;
     double spool_points; /* maximum number of points on this machine's disk that wait for the database */
 };
@@ -307,7 +312,9 @@ struct tag_place { /* where a tag's sensor is on its asset */
     bool has_position;    /* true: position_m is set; false: `node` gives the position or, without a node, the middle of the asset */
     double position_m[3]; /* position in metres, in the coordinate frame that the asset's settings name */
     char *node;           /* name of the model node that gives the position, or NULL */
-    char *lost_asset;     /* asset id in the tag's row if no such asset exists (plant_load_with_orphans()), else NULL */
+    /* id of a missing asset: the tag's row names it, but no such asset exists (plant_load_with_orphans()); NULL: the asset
+       exists */
+    char *lost_asset;
 };
 
 struct tag_validity {                 /* conditions under which a tag's reading is good */
@@ -321,7 +328,9 @@ struct tag_validity {                 /* conditions under which a tag's reading 
 struct tag_alarms {
     double limits[LIMIT_COUNT];           /* alarm limits that apply to the tag: its own, or those of its group; NaN: no limit */
     struct plant_alarm_settings settings; /* alarm settings that apply to the tag: its own, or those of its group */
-    int suppressed_by; /* index of a bit tag that suppresses this tag's alarms by design while it is 1; -1: none */
+    /* index of a tag with one bit: while the bit is 1, the tag's alarms are suppressed, as the plant's designers intended; -1:
+       none */
+    int suppressed_by;
     struct plant_mirror mirror;
 };
 
@@ -372,7 +381,7 @@ struct plant_files {
     char *path, *folder; /* path of the plant file, and its folder without trailing slash */
     char *tags_path;
     char hash[17];       /* hash of plant file and tag list in hexadecimal, which identifies the configuration */
-    bool keeps_orphans;  /* true while loading: tags of assets that do not exist are accepted (plant_load_with_orphans()) */
+    bool keeps_orphans;  /* true while loading: tags whose asset does not exist are accepted (plant_load_with_orphans()) */
     bool without_models; /* true while loading: missing model files are accepted (plant_load_without_models()) */
 };
 
@@ -434,7 +443,8 @@ void plant_destroy(struct plant **plant); /* Frees a plant and sets *plant to NU
 /* The plant_find_...() functions return an index; -1: there is no such item. */
 int plant_find_asset(const struct plant *plant, const char *id);
 int plant_find_group(const struct plant *plant, const char *id);
-/* Returns the index of an environment by name: 0 for "sky", 1 for the plant's first panorama, and so on; -1: unknown. */
+/* Returns the index of an environment (lighting of pictures) by name: 0 for "sky", 1 for the plant's first panorama, and so on;
+   -1: unknown. */
 int plant_find_environment(const struct plant *plant, const char *name);
 int plant_find_tag(const struct plant *plant, const char *name);
 /* Returns the unit of a tag's readings; "": it has none, or `tag` is -1. */

@@ -151,7 +151,7 @@ void session_record_params(const struct session *session, const struct message *
 }
 
 /* Returns whether a refused message is too frequent to be recorded. While a user drags the mouse, the page sends `camera` and
-   `params` many times a second; if the user's token is limited to some views, each of them is refused. */
+   `params` many times a second; if the user's token is limited to some views, all these messages are refused. */
 static bool is_idle(const struct session *session, const char *about)
 {
     return session->identity.holder.views[0] && (!strcmp(about, "camera") || !strcmp(about, "params"));

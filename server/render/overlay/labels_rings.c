@@ -13,8 +13,8 @@ static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 /* maximum number of labels; more alarm rings than this count as a flood, in which rings of one asset share a call-out */
 enum { MAX_GROUPS = 24 };
-/* Further positions for the label of a group of alarm rings, if none beside the group is free: a grid around its centre, tried
-   nearest first. STEP_X, STEP_Y: spacing in units (pixels at 1280x720); STEPS: number of steps to each side. */
+/* Further positions for the label of a group of alarm rings, if none directly around the group is free: a grid around its
+   centre, tried nearest first. STEP_X, STEP_Y: spacing in units (pixels at 1280x720); STEPS: number of steps to each side. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {

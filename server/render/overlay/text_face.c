@@ -48,7 +48,7 @@ static struct found_face *found_of(cairo_t *cairo, bool bold)
     return &found[bold];
 }
 
-/* Returns the set of letters in a text if DejaVu Sans may lack some of them, else NULL. The caller frees the set. */
+/* Returns the set of letters in a text if DejaVu Sans may lack some of these letters, else NULL. The caller frees the set. */
 static FcCharSet *letters_beyond(const char *text)
 {
     FcCharSet *letters = FcCharSetCreate();

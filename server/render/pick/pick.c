@@ -12,8 +12,8 @@
 #include "value/quality.h"
 
 static const double MARKER_PX = 9; /* maximum distance in pixels from a click to the marker that it picks */
-/* within this distance from a sensor, in pixels or in metres, whichever is larger, a pick returns the sensor's measured value
-   instead of an interpolated one */
+/* within this distance from a sensor, in pixels or in metres (the larger one counts), a pick returns the sensor's measured
+   value instead of an interpolated one */
 static const double MEASURED_PX = 3, MEASURED_M = 0.005;
 
 struct pick_spot { /* state of one pick */

@@ -12,8 +12,8 @@ struct tile_layout {
     int display_px[2];       /* size of one display in pixels: width, height */
     int width_px, height_px; /* size of one tile's picture, which may have fewer pixels than its display */
     int gap_px[2];           /* pixels between two neighbouring tiles: horizontally, vertically */
-    /* [0]: width in pixels of the picture's margin left of the outermost tiles, and equally right of them; [1]: the same above
-       and below */
+    /* [0]: width in pixels of the picture's margin to the left of all tiles, and also of that to their right; [1]: height of
+       the margins above and below */
     int margin_px[2];
     struct burn_shift shift; /* burn-in shift of all tiles within the picture, in the display's own pixels */
 };
