@@ -12,13 +12,14 @@
 
 struct frame_marker {
     int tag;
-    float x_px, y_px; /* position in pixels from the top left of the frame; may lie outside the frame */
+    float x_px, y_px; /* position of the marker in pixels from the top left of the frame; may lie outside the frame */
     uint8_t occluded; /* 1: a surface hides the marker, or it lies outside the frame; 0: visible */
     uint32_t quality; /* OPC UA quality of the reading shown; for a difference the worse of the two readings */
     /* reading in engineering units, 0 if its quality is Bad. If the view shows differences: reading minus baseline; if it shows distances:
        metres, NAN if unknown */
     double value;
-    uint8_t half; /* half of a split view that the marker is in: 0 left, 1 right */
+    /* half of a split view (two pictures side by side) that the marker is in: 0: left, or the view is not split; 1: right */
+    uint8_t half;
 };
 
 struct frame_label { /* a visible point on an isoline, where the label of the isoline may be drawn; or the position of an arrow */

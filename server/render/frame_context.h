@@ -19,7 +19,9 @@ struct frame_context {
     const struct light_set *light;
     const struct target *target;
     struct field *field;
-    const struct fields_entry **fields; /* by index of the asset: cache entry with its field values; NULL: the asset shows no field */
+    /* by index of the asset: cache entry with the values of its field (interpolated between sensors); NULL: the asset shows no
+       field */
+    const struct fields_entry **fields;
     const int *visible;                 /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
     struct shaded_colormap colormap;

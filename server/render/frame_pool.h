@@ -17,6 +17,6 @@ uint8_t *frame_pool_take(struct frame_pool *pool, size_t bytes);
 void frame_pool_give(struct frame_pool *pool, uint8_t *pixels, size_t bytes);
 /* returns the total size in bytes of all buffers of the pool, both in use and kept for reuse */
 size_t frame_pool_bytes(const struct frame_pool *pool);
-void frame_pool_drop_spares(struct frame_pool *pool);   /* frees the buffers kept for reuse */
+void frame_pool_drop_spares(struct frame_pool *pool);   /* frees the pixel buffers that are kept for reuse */
 
 #endif

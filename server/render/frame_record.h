@@ -7,7 +7,8 @@
 #include "render/view.h"
 #include "value/baselines.h"
 
-enum { FRAME_RECORD_BASELINES = 2 }; /* maximum number of baselines in a record: one for each half of a split view */
+/* maximum number of baselines in a record: one for each half of a split view (two pictures side by side) */
+enum { FRAME_RECORD_BASELINES = 2 };
 struct frame_record {
     _Atomic int refs;
     struct snapshot *readings;
@@ -15,7 +16,8 @@ struct frame_record {
     struct {
         struct baseline what;
         struct snapshot *readings;
-    /* baselines that the frame's halves subtract from the readings; if both halves use the same baseline, it is stored once */
+    /* baselines (saved readings) that the frame's halves subtract from the readings; if both halves use the same baseline, it
+       is stored once */
     } baselines[FRAME_RECORD_BASELINES];
     int baseline_count;
 };

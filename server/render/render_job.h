@@ -17,7 +17,8 @@ struct render_job {
         struct gl_job *gl;
         struct soft_job *soft;
     } of;
-    struct frame_context context; /* context of the frame; its view, fields and visible list point into this struct */
+    /* frame context of the job; its pointers to view, fields and visible assets point to members of this struct */
+    struct frame_context context;
     struct view view;
     struct frame *frame;
     /* reference to the light set (baked light) that lights the frame; NULL: that light set is not baked yet */

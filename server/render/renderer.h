@@ -13,7 +13,7 @@ struct renderer;
 struct frame_plan;    /* render/plan/frame_plan.h */
 struct frame_planner; /* render/plan/frame_planner.h */
 
-/* On failure, logs the reason and returns NULL. All arguments must outlive the renderer. */
+/* Creates a renderer. On failure, logs the reason and returns NULL. All arguments must outlive the renderer. */
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field);
 void renderer_destroy(struct renderer **renderer);
 

@@ -33,7 +33,7 @@ struct shaded_colormap {
     uint32_t (*texels)[COLORMAP_COLUMNS];
     float *nearest;       /* for each position on the scale, the nearest position that has an isoline; NULL: there are no isolines */
     GLuint colors, lines; /* colors: texture of `texels`; lines: texture of `nearest`, 0: there are no isolines */
-    uint64_t version;     /* number of the colour map, from 1 up, unique among all colour maps made */
+    uint64_t version;     /* sequence number of the colour map, from 1 up, unique among all shaded colour maps made so far */
 };
 /* Computes the tables `texels` and `nearest`, and uploads them as textures. lines: values of isolines; line_count may be 0. The caller
    checks for GL errors and calls shaded_colormap_finish(). */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the halves of a split view one after the other and copies them side by side into one frame. */
+/* Draws the halves of a split view (two pictures side by side) one after the other and copies them into one frame. */
 #include "render/split_view.h"
 
 #include <math.h>
@@ -15,7 +15,8 @@ static const uint8_t divider_bgrx[4] = { 48, 40, 34, 255 };
 
 struct split_view {
     struct view view;
-    int half_count, done; /* half_count: number of halves (1 or 2); done: number of halves that need no more steps */
+    /* half_count: number of halves of the view (1: it is not split; 2); done: number of halves that are drawn completely */
+    int half_count, done;
     struct render_job *jobs[2];
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Default views, halves of split views, and equality of views. */
+/* Default views, halves of split views (two pictures side by side), and equality of views. */
 #include "render/view.h"
 #include "base/math/search.h"
 #include "plant/colormaps.h"

@@ -7,7 +7,8 @@
 
 #include "base/math/vec.h"
 
-#define FIT_MARGIN 1.06  /* ratio between the sizes of a picture and of the box fitted into it */
+/* ratio of the picture's size to that of the box fitted into it; above 1, so that a margin stays around the box */
+#define FIT_MARGIN 1.06
 #define LEAST_BOX_M 1e-4 /* side in metres of the smallest box to frame; smaller or empty boxes are framed as if they had this size */
 #define LEAST_NEAR_M 1e-6
 #define LEAST_HEIGHT_M 1e-5 /* smallest permitted height of an orthographic picture, in metres */
@@ -98,13 +99,15 @@ static void side_add(struct clip_side *side, double x, double z)
     side->low = fmax(side->low, -x + z * side->from);
 }
 
-/* Returns the smallest distance of the eye from the box's centre at which the box fits into the picture along one axis. */
+/* Returns the smallest distance of the camera's eye from the centre of a box at which the box fits into the picture along one
+   axis of the picture. */
 static double side_back(const struct clip_side *side)
 {
     return (side->low + side->high) / (side->to - side->from);
 }
 
-/* Returns how far the eye must be shifted sideways to centre the box, from this distance of the eye. */
+/* Returns how far the camera's eye, at the distance back_m from a box, must be shifted along one axis of the picture to centre
+   the box. */
 static double side_shift(const struct clip_side *side, double back_m)
 {
     return (side->high - side->low - back_m * (side->to + side->from)) / 2;

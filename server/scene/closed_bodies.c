@@ -24,7 +24,7 @@ struct bodies {
     /* place: by vertex: index of the first vertex at its position; root: by that first vertex: parent in the union-find forest of connected
        vertices */
     uint32_t *place, *root;
-    uint32_t *table; /* hash table by grid cell: 1 + index of the vertex at a welded position; 0: free slot */
+    uint32_t *table; /* hash table of grid cells, to find vertices by position: 1 + index of a welded vertex in the cell; 0: free slot */
     float apart_m;
     size_t table_mask, edge_mask;
     struct edge_count *edges;
@@ -91,7 +91,7 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* true: this cell equals that of a smaller k, which was already searched */
+        bool again = false; /* true: this cell is the same as one of the cells tried before, and has already been searched */
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];

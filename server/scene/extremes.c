@@ -10,8 +10,8 @@
 #include "scene/main_part.h"
 
 enum { DIRECTIONS = 96 };
-/* Limits for recognising an asset as the plant's ground: it has no sensor, is low for its size (even with lamps and kerbs), and
- * covers most of the plant's area. */
+/* Limits below for recognising an asset as the plant's ground: it has no sensor, is low for its size (even with lamps and
+   kerbs), and covers most of the plant's area. */
 /* GROUND_HEIGHT: largest height of ground, as a fraction of its larger side; GROUND_PART: smallest area of ground, as a
    fraction of the plant's area */
 static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8;
@@ -95,7 +95,8 @@ void extremes_find(struct scene *scene)
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;
     }
-    /* adds assets until a vertex is found: first all assets but the ground and those hidden at start, then the ground, then all */
+    /* searches in three rounds until a vertex is found: all assets but the ground and those hidden at start; then the ground
+       too; then the hidden ones too */
     for (int round = 0; round < 3 && !isfinite(most[0]); round++)
         for (size_t i = 0; i < scene->asset_count; i++)
             if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&

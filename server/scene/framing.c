@@ -119,7 +119,7 @@ void framing_look(const struct scene *scene, const struct framing *framing, doub
         camera_fit_along(camera, forward, min_m, max_m, aspect, &framing->window);
 }
 
-/* Returns whether the camera sees the point within a window of the picture. */
+/* Returns whether the camera sees the point within a rectangular window of the picture. */
 static bool sees(const struct camera *camera, double aspect, const struct camera_window *window, const double point_m[3])
 {
     static const struct camera_window whole = { -1, 1, -1, 1 };

@@ -47,9 +47,10 @@ static bool cross_box(const double origin[3], const double direction[3], const d
 
 struct raycast_search { /* state of a search for the first hit in one asset */
     const struct asset_view *view;
-    double origin[3], direction[3], low; /* the ray in coordinates of the asset file; low: smallest t of interest */
+    /* ray in coordinates of the asset file: origin + t direction; low: smallest t at which a hit counts */
+    double origin[3], direction[3], low;
     bool cut;
-    double limit; /* largest t of interest (the ray's parameter) */
+    double limit; /* largest t (the ray's parameter) at which a hit counts */
     struct raycast_hit *hit;
     int asset;
 };
@@ -197,7 +198,7 @@ static bool hits_cap(const struct scene *scene, const struct visibility *visibil
                      struct raycast_hit *hit)
 {
     int bodies = 0;
-    /* the ray starts in the space that is kept, so it enters through no section plane and meets no cap */
+    /* meets no cap, because the ray starts in the space that section planes keep, and so enters through no section plane */
     if (!(low > ray->low))
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {

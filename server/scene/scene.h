@@ -22,7 +22,7 @@ struct scene_asset {
     struct asset *file;                      /* prepared file, shared by all assets that use the same file */
     double placement[16];                    /* matrix from file coordinates to the plant frame (includes origin_m), column-major */
     double bounds_min_m[3], bounds_max_m[3]; /* axis-aligned bounding box in the plant frame */
-    struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
+    struct scene_sensor *sensors;            /* sensors of all groups on this asset, in the order of the tag list */
     size_t sensor_count;
     bool stray; /* true if a piece of the asset is far from the main part (scene/main_part.h) */
     /* stray_at_m: position of the asset's farthest corner outside the main part; stray_away_m: its distance from the main part,

@@ -14,7 +14,7 @@ struct asset_set { /* set of assets, by index in scene->assets; zero: empty */
 void asset_set_add(struct asset_set *set, int asset); /* asset: 0..ASSET_SET_MAX - 1 */
 bool asset_set_has(const struct asset_set *set, int asset);
 
-struct clip { /* section planes; the space on the inner side of all planes is kept */
+struct clip { /* section planes, which cut the model: only what lies on the inner side of all planes is shown */
     int plane_count;
     /* true: the planes are those of an axis-aligned box, in the order min x, max x, min y, max y, min z, max z */
     bool is_box;

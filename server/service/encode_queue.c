@@ -45,7 +45,7 @@ struct encode_job {
     bool heavy;
 };
 
-struct stream_work {                  /* encoding jobs and encoder of one encode stream */
+struct stream_work {                  /* encoding jobs and encoder of one encode stream (a sequence of packets that clients share) */
     struct encode_job *first, **last; /* the stream's jobs, oldest first, protected by the lock; the first job is running */
     /* encoder of the stream, for codecs that keep state between frames; only the running job uses this member and those below */
     struct encoder *encoder;
@@ -351,7 +351,7 @@ static bool same_coding(const struct request_ticket *ticket, void *arg)
            same_part(&a->part, &b->part);
 }
 
-/* Makes an encoding job from queue->plan. The caller holds the lock. */
+/* Makes a job that encodes the frame for these requests (tickets) as queue->plan says. The caller holds the lock. */
 static struct encode_job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
 {
     struct encode_plan *plan = &queue->plan;

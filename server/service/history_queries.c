@@ -26,7 +26,8 @@ static const int64_t PIECE_NS = 100 * NS_PER_MS;
 struct pending_query {
     struct history_query query;
     int next_tag; /* index of the next tag to read; for drift queries, of the next asset */
-    /* CSV output: true: the last line written has the columns for means of time buckets; false: those for single values */
+    /* only for answers in CSV: true: the last line written has the columns for means of time buckets; false: those for single
+       values */
     bool buckets;
     bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
     bool wanted;  /* true: the client requested the next piece of its answer */
@@ -228,7 +229,7 @@ static struct pending_query *take_next(struct history_queries *queries)
     return question;
 }
 
-/* Adds a finished piece of a query's answer to the list for the event loop. The caller holds the lock. */
+/* Adds a finished piece of a query's answer to the list from which the event loop takes answers. The caller holds the lock. */
 static void give(struct history_queries *queries, struct pending_query *question, struct history_answer *piece)
 {
     bool last = piece->last;

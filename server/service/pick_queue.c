@@ -38,7 +38,8 @@ void pick_queue_destroy(struct pick_queue **picks_ptr)
     *picks_ptr = NULL;
 }
 
-/* Returns the index of the client's query, or the list's count if the client has none. The caller holds the lock. */
+/* Returns the index of the client's pick query (what is at a pixel), or the list's count if the client has none. The caller
+   holds the lock. */
 static size_t find(const struct pick_queue *queue, uint64_t client)
 {
     size_t i = 0;

@@ -6,7 +6,7 @@
 
 /* maximum age of a cached frame, and thus the maximum error of the clock and of the ages of readings in the frame */
 static const int64_t KEPT_NS = 500 * NS_PER_MS;
-#define KEPT_BYTES ((size_t)32 * 1024 * 1024) /* limit on the bytes of all cached frames; a single larger frame is still kept */
+#define KEPT_BYTES ((size_t)32 * 1024 * 1024) /* limit on the bytes of all cached frames; a single frame larger than this is still kept */
 
 static size_t bytes_of(const struct frame *frame)
 {

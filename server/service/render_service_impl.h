@@ -9,7 +9,7 @@
 #include "service/time_accounts.h"
 
 struct render_client {
-    uint64_t id, number; /* id: of the client; number: sequence number of the client's newest request whose drawing has begun */
+    uint64_t id, number; /* id: id of the client; number: sequence number of the client's newest request whose drawing has begun */
     bool pending;        /* true: the drawing of `request` has not begun yet */
     bool has_content;
     bool has_depth; /* true: the client has the depth grid that belongs to the content last sent to it */
@@ -21,7 +21,8 @@ struct render_client {
     /* content: hash of what the newest frame for the client shows; content_number: sequence number of the request answered by this frame */
     uint64_t content, content_number;
     int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, indexed by kind of frame (scheduler_share()) */
-    struct time_account *account;       /* time account of the client's address, charged for drawing */
+    /* time account of the client's address, to which the drawing time for all its clients is charged */
+    struct time_account *account;
 };
 
 struct render_service {

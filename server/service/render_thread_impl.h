@@ -24,8 +24,8 @@ struct long_job {                                 /* long job: a frame that is d
     struct snapshot *snapshot;
     enum urgency urgency;
     int64_t asked_ns;
-    int64_t px, spent_ns;     /* px: number of pixels of the frame; spent_ns: drawing time so far */
-    uint64_t account;         /* id of the time account that is charged for drawing */
+    int64_t px, spent_ns;     /* px: number of pixels of the frame; spent_ns: time in which the frame was drawn so far */
+    uint64_t account;         /* id of the client address's time account, to which the drawing time is charged */
     int64_t account_spent_ns; /* drawing time charged to the address's account before the job began */
     /* true: later frames of the same view reuse what the job has drawn so far, so the job continues even if readings change */
     bool keeps;
@@ -37,7 +37,7 @@ struct render_thread {
     struct field *field;
     struct renderer *renderer;
     struct snapshot *snapshot; /* readings that the render thread took last */
-    bool stale; /* true: `snapshot` went with a submitted frame, so a new snapshot must be taken before it is used again */
+    bool stale; /* true: the readings in `snapshot` went with a submitted frame, so `snapshot` must be filled again before it is used */
     struct request_group same; /* scratch memory for a group of requests answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;

@@ -21,9 +21,10 @@ void request_group_add(struct request_group *group, const struct request_ticket 
    keep their order. */
 void request_group_split(struct request_group *group, bool (*belongs)(const struct request_ticket *ticket, void *arg), void *arg,
                          struct request_group *into);
-/* Returns whether a request wants the record of what the frame was drawn from. */
+/* Returns whether a request of the group wants the record of the readings that the frame was drawn from. */
 bool request_group_wants_record(const struct request_group *group);
-/* Returns whether a request wants the frame with its depth grid. */
+/* Returns whether a request of the group wants the frame with its depth grid (coarse depth, for showing the frame from another
+   camera). */
 bool request_group_wants_depth(const struct request_group *group);
 /* Frees the memory; the group is empty and can be reused. */
 void request_group_finish(struct request_group *group);

@@ -12,7 +12,7 @@ enum urgency { URGENCY_INPUT, URGENCY_DATA, URGENCY_REFINE, URGENCY_SNAPSHOT, UR
 
 struct scheduler {             /* zero-initialise */
     int64_t input_ns, long_ns; /* monotonic times when the last frame for an input, and the last long-running frame, were finished */
-    /* data_next: the next frame is for changed readings; step_next: the next turn is a step of a long-running frame */
+    /* data_next: the next frame is drawn for changed readings; step_next: the next turn draws a step of a long-running frame */
     bool data_next, step_next;
 };
 
@@ -30,9 +30,9 @@ bool scheduler_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns
    INT64_MAX: it has none. Returns URGENCY_COUNT if nothing is due before *wait_until_ns (INT64_MAX: nothing waits). */
 enum urgency scheduler_choose(const struct scheduler *scheduler, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns,
                               int64_t *wait_until_ns);
-/* Records that a frame of that class is complete. */
+/* Records that a frame for a request of that class (urgency) is complete. */
 void scheduler_done(struct scheduler *scheduler, enum urgency urgency, int64_t now_ns);
-/* Notes that a step of a long-running frame was drawn. */
+/* Records that a step of a long-running frame (refined frame, snapshot over HTTP) was drawn. */
 void scheduler_stepped(struct scheduler *scheduler);
 
 #endif

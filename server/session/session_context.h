@@ -29,7 +29,7 @@ struct session_context {
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
     int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts for all sessions; NULL: no caching */
-    bool saving;                           /* true: a reload is activating a saved tag list */
+    bool saving;                           /* true: a user's new tag list is saved, and the reload that activates it is still running */
     /* On a renderer (daemon that draws for a core): forwards a session's message to the core, which answers later. Returns
        false if the core is not connected. NULL: this daemon is not a renderer and acts on messages itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);

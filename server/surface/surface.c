@@ -21,7 +21,8 @@
 /* vertices closer than this, relative to the model's size, are welded (treated as one): the resolution of float positions */
 #define WELD_OF_SIZE 1e-6
 #define TOLERANCE_OF_SIZE 5e-4
-#define SAMPLES 15000.0        /* number of points that sampling should add to the model's vertices */
+/* number of points that sampling (adding points until edges are short) should add to the model's vertices */
+#define SAMPLES 15000.0
 #define SPACING_GROWTH 1.25    /* if sampling adds too many points, it is repeated with a maximum edge length larger by this factor */
 #define POINTS_PER_SPACING 2.7 /* number of points that halving edges adds in a square whose side is the maximum edge length; measured */
 

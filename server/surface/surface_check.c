@@ -13,8 +13,8 @@
 /* sqrt(t) is at least twice the size of the surface (largest distance) divided by this. On large surfaces, this enlarges t so
    that heat does not underflow */
 #define MAX_DECAY 500.0
-#define MAX_SOURCES 32 /* number of sources that are checked; they are spread evenly over all sources */
-#define BLOCK 8        /* number of sources for which the heat method solves at a time */
+#define MAX_SOURCES 32 /* number of sources (points from which distances are computed) that are checked, spread evenly over all sources */
+#define BLOCK 8        /* number of sources (points from which distances are computed) for which the heat method solves at a time */
 
 /* Returns the approximate size of the surface: in the component with most triangles, the distance from an arbitrary point to the point
  * farthest from it. */

@@ -8,7 +8,7 @@ int64_t backoff_next_ns(struct backoff *backoff, uint64_t random)
 {
     int64_t pause_ns = FIRST_NS << (backoff->failures < 5 ? backoff->failures : 5);
     backoff->failures += backoff->failures < 5;
-    /* multiplies by the golden ratio (in 64 bits), so that similar seeds give different random numbers */
+    /* mixes the bits by multiplying with the golden ratio (in 64 bits), so that similar seeds give different random numbers */
     random = (random ^ random >> 31) * 0x9E3779B97F4A7C15u;
     pause_ns += pause_ns / 1000 * (int64_t)((random >> 32) % 500); /* the jitter: makes the delay up to 50 % longer */
     return pause_ns < LONGEST_NS ? pause_ns : LONGEST_NS - (int64_t)((random >> 32) % 1000) * 1000000;

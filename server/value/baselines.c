@@ -63,7 +63,7 @@ void baselines_destroy(struct baselines **baselines_ptr)
     *baselines_ptr = NULL;
 }
 
-/* Returns the baseline with this name, or NULL. Call with the lock held. */
+/* Returns the baseline (saved readings of all tags) with this name, or NULL. Call with the lock held. */
 static struct baseline_slot *find_name(struct baselines *baselines, const char *name)
 {
     for (size_t i = 0; i < baselines->count; i++)
@@ -72,7 +72,7 @@ static struct baseline_slot *find_name(struct baselines *baselines, const char *
     return NULL;
 }
 
-/* Returns the baseline with this id, or NULL. Call with the lock held. */
+/* Returns the baseline (saved readings of all tags) with this id, or NULL. Call with the lock held. */
 static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
 {
     for (size_t i = 0; i < baselines->count; i++)
@@ -90,7 +90,7 @@ static size_t count_of(const struct baselines *baselines, bool named)
     return count;
 }
 
-/* Removes a baseline from the list. Call with the lock held. */
+/* Removes a baseline (saved readings of all tags) from the list. Call with the lock held. */
 static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
 {
     copy_unref(slot->copy);

@@ -18,7 +18,7 @@ static const int64_t ROUND_NS = 200 * NS_PER_MS;
 struct written {
     double value;
     uint32_t quality;
-    int64_t mono_ns; /* monotonic time of the result; INT64_MIN: no result was written yet */
+    int64_t mono_ns; /* monotonic time of the result that was written last; INT64_MIN: none was written yet */
 };
 
 struct derived_state {

@@ -50,7 +50,7 @@ struct modbus_source {
     struct source base;
     counter *reads_ok, *reads_failed, *connects, *up, *host;
     struct modbus_link *link;
-    /* --- below: used by the source's thread only */
+    /* --- below: members that only the source's thread uses */
     struct read_plan plan;
     /* true: the read plan has split blocks (requests), because the device refused some addresses or did not answer requests for them */
     bool plan_cut;
@@ -60,7 +60,7 @@ struct modbus_source {
     int64_t asked_ns;       /* monotonic time at which the last request to the device ended */
     int64_t answered_ns;    /* monotonic time of the device's last answer */
     bool link_up;
-    int fallen; /* number of units that have stopped answering since the last answer of any unit */
+    int fallen; /* number of Modbus units that have stopped answering since any unit of the source answered last */
     struct modbus_manners manners;
     struct log_pace pace;      /* rate limit of the log line that says that the source has no readings */
     bool loss_said;            /* true: the log says that the source has no readings, but not yet that they are back */

@@ -15,7 +15,7 @@
 #include "value/series.h"
 
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
-/* maximum delay of a sample: later ones are skipped, for example after the machine slept */
+/* maximum time by which a sample may be written late: samples later than this are skipped, for example after the machine slept */
 static const int64_t LATEST_NS = 10 * NS_PER_S;
 
 struct replay_lane { /* a tag and the series that it replays */

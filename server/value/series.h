@@ -32,7 +32,7 @@ double series_at(const struct series *series, double time_s, bool loop);
 struct series_names {
     char **at;
     size_t count, capacity;
-    bool whole; /* true: the whole file was read, so the list is complete */
+    bool whole; /* true: the file was read to its end, so the list of series is complete */
 };
 
 /* Lists the series of a file by reading its beginning. Returns false with the reason in `why` if the file cannot be read. */

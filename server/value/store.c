@@ -11,10 +11,12 @@
 #include "value/quality.h"
 
 struct held {
-    double value;                              /* last usable value */
-    uint32_t quality;                          /* quality that the tag's last sample states */
-    bool has_value, lost;                      /* has_value: `value` is set; lost: the tag could not be read since its last sample */
-    bool dead;                                 /* true: the tag is lost, and its last value must no longer be used */
+    double value;     /* last usable value */
+    uint32_t quality; /* quality that the tag's last sample states */
+    /* has_value: `value` is set; lost: the source could not read the tag since the tag's last sample */
+    bool has_value, lost;
+    /* true: the tag is lost, and its last value must not be used although it is recent (store_tags_dead()) */
+    bool dead;
     int64_t sampled_mono_ns;                   /* monotonic time of the tag's last sample, whether Good or Bad */
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value */
     int64_t changed_mono_ns;                   /* monotonic time at which a usable value last differed from the one before */
@@ -44,7 +46,7 @@ struct store {
         bool all; /* true: also called by store_tell_aged() */
     } listeners[STORE_LISTENERS];
     struct {
-        void (*changed)(void *arg); /* called when a reading, an alarm or a link has changed; NULL: not wanted */
+        void (*changed)(void *arg); /* callback: a reading, an alarm or the connection to a source has changed; NULL: not wanted */
         void *arg;
         bool told; /* true: changed() has been called since the last store_take(), so it is not called again */
     } watch;

@@ -11,15 +11,16 @@
 #include "base/refusal.h"
 
 struct kept_list_kind {
-    const char *file, *key; /* file: file name; key: name of the JSON member that contains the list */
-    const char *members;    /* names of the members that each entry must have, as words for a log message, such as "id, text and time_us" */
-    size_t most;            /* maximum number of entries */
+    /* file: name of the file in the history's folder; key: name of the JSON member in it that contains the list */
+    const char *file, *key;
+    const char *members; /* names of the members that each entry must have, as words for a log message, such as "id, text and time_us" */
+    size_t most;         /* maximum number of entries */
     /* names of the members that must be texts (among them `id`) and integers; both end with NULL */
     const char *texts[8], *integers[4];
-    bool (*good)(const json_t *entry); /* returns whether an entry with these members is valid */
+    bool (*good)(const json_t *entry); /* callback: returns whether the values of an entry that has all these members are valid */
 };
 
-/* list of entries; the owner of this struct may read `list`, but only the functions below change it */
+/* list of users' entries; the owner of this struct may read `list`, but only the functions below change it */
 struct kept_list {
     struct log *log;
     const struct kept_list_kind *kind;

@@ -15,15 +15,17 @@ enum { WALL_DESK_BYTES = 121, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
 #define WALL_REMOTE_FILE "walls.json"
 
 struct wall_place {
-    /* id of the wall, and area of the pane on its display; area "": the whole display */
+    /* id of the wall, and name of the area of its display that the pane covers; area "": the whole display */
     char wall[NAMED_VIEW_ID_BYTES], area[WALL_AREA_BYTES];
-    int display; /* number of the display, from 1; 0: none */
+    int display; /* number of the display on the wall, from 1; 0: no display */
 };
 
 struct wall_order {
     struct wall_place place;
-    const char *view, *title; /* address and title of a view, as in a named view; view "": the pane shows its own views */
-    bool held;                /* true: the pane stops changing its views. An order with neither `view` nor `held` releases the pane */
+    /* address (fields of the page's URL) and title of the view that the pane must show; view "": the pane shows the views that
+       the plant file gives it */
+    const char *view, *title;
+    bool held; /* true: the pane stops changing its views. An order with neither `view` nor `held` releases the pane */
     const char *desk;
 };
 

@@ -47,7 +47,7 @@ struct draw_batch {
 struct draw_batches { /* zero-initialise, then set log */
     struct log *log;
     struct draw_batch *at;
-    size_t count, from; /* count: number of batches; from: a new draw command may only join batches from this index on */
+    size_t count, from; /* count: number of batches; from: a new draw command may be added only to batches from this index on */
     struct draw_instance *instances;
     /* commands: draw commands in the order in which they were added; sorted: the same commands, ordered by batch */
     struct draw_command *commands, *sorted;
@@ -79,7 +79,7 @@ int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const stru
 /* Sorts the draw commands by batch, and uploads commands and instances to the GPU. places true: also uploads, for each command,
    its index in `sorted` (place_buffer). Logs and returns false when the GPU is out of memory. */
 bool draw_batches_upload(struct draw_batches *batches, bool places);
-/* Draws one batch. The caller has set the batch's state and bound its mesh. */
+/* Draws one batch. The caller has set the GL state that the batch needs and bound its mesh. */
 void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);
 
 /* Overwrites a GL buffer with the new data of a frame, and grows it if needed. *room: size of the buffer in bytes. Logs and

@@ -13,7 +13,7 @@ struct frame_tiles {
     /* next: index of the next cell (square of pixels) to draw, counted through both passes (enum gl_pass). span: number of
        cells in the tile that begins there; 0: not chosen yet */
     int next, span;
-    int *in_tile; /* indices of the assets that the current tile shows */
+    int *in_tile; /* indices of the assets that the current tile (rectangle of the frame) shows */
 };
 struct tile {
     int x_px, y_px, width_px, height_px; /* one tile: a rectangle in pixels, from the top left of the frame */

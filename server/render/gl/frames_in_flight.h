@@ -27,7 +27,7 @@ bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log
 void frames_in_flight_finish(struct frames_in_flight *frames_in_flight);
 /* Takes a free slot for a frame that is to be submitted to the GPU. Logs and returns NULL if all slots are taken. */
 struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in_flight, struct log *log);
-/* Frees a slot whose results have been read or are no longer wanted. Accepts NULL. */
+/* Frees a frame's slot once the frame's results have been read or are no longer wanted. Accepts NULL. */
 void frames_in_flight_give(struct frame_in_flight *in_flight);
 
 #endif

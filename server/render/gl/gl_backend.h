@@ -11,7 +11,8 @@
 #include "render/gl/targets.h"
 #include "render/render_backend.h"
 
-enum gl_pass { GL_SURFACES, GL_EDGES, GL_PASSES }; /* passes in which a frame is drawn tile by tile: surfaces, then edges */
+/* passes in which a frame is drawn tile by tile (a tile is a rectangle of the frame): surfaces, then edges */
+enum gl_pass { GL_SURFACES, GL_EDGES, GL_PASSES };
 
 struct gl_backend {
     struct surface_pass surface_pass;

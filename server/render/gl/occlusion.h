@@ -10,7 +10,8 @@
 
 struct occlusion_box { /* layout that shaders/occlusion.vert reads */
     float clip_from_box[16];
-    /* first_place, place_count: range of the asset's draw commands (render/gl/draw_batches.h) */
+    /* range of the asset's draw commands, which the test of its box enables: first_place: index of the first in
+       draw_batches.sorted; place_count: number of commands */
     uint32_t first_place, place_count, unused[2];
 };
 struct occlusion_asset { /* occlusion state of one visible asset; one extra element at the end holds the number of all boxes */
@@ -25,7 +26,7 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
     struct occlusion_box *boxes;
     struct occlusion_asset *assets;
     size_t box_count, asset_count;
-    size_t box_capacity, asset_capacity; /* capacity of `boxes` and of `assets`, in elements */
+    size_t box_capacity, asset_capacity; /* number of elements for which `boxes` and `assets` have room */
     size_t box_room;                     /* size of the GPU buffer box_buffer in bytes */
 };
 

@@ -7,8 +7,10 @@
 
 enum { TARGETS = 6 };
 struct targets {               /* zero-initialise */
-    struct target at[TARGETS]; /* free targets (not in use by a frame), least recently used last; width 0: empty */
-    size_t bound_bytes;        /* memory limit; one target is kept even if it exceeds the limit; 0: at most TARGETS targets, of any size */
+    struct target at[TARGETS]; /* render targets that no frame uses now, least recently used last; width 0: the element is empty */
+    /* limit in bytes on the memory of free targets; one target is kept even if it exceeds the limit; 0: at most TARGETS
+       targets, of any size */
+    size_t bound_bytes;
 };
 
 /* Takes a render target of the given size from the cache, or creates one; the caller owns it until targets_give(). Logs and
@@ -16,7 +18,7 @@ struct targets {               /* zero-initialise */
 bool targets_take(struct targets *targets, struct log *log, int width_px, int height_px, int samples, struct target *out);
 /* Puts a render target back into the cache; if the cache is full, the least recently used target is deleted. */
 void targets_give(struct targets *targets, const struct target *target);
-/* Returns the bytes of GPU memory that the free targets take. */
+/* Returns the bytes of GPU memory that the free render targets (those that no frame uses) take. */
 size_t targets_bytes(const struct targets *targets);
 /* Sets the memory limit of the cache, and deletes free targets that exceed it. */
 void targets_bound(struct targets *targets, size_t bytes);

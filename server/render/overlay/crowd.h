@@ -8,7 +8,7 @@
 struct crowd_item {
     double x, y, depth_m;
     bool occluded;
-    bool kept; /* true: the marker is always drawn, however many other markers are near */
+    bool kept; /* true: the marker must be drawn, even if it overlaps many other markers */
     bool held; /* true: the marker was drawn in the previous frame */
 };
 

@@ -111,7 +111,7 @@ void labels_place(const struct label_item *items, size_t count, const struct lab
     mem_free(order);
 }
 
-/* Returns the distance in pixels from the centre of an item's marker to a label. */
+/* Returns the distance in pixels from the centre of a sensor's marker to the nearest point of a label's box. */
 static double label_distance(const struct label_item *item, const struct label_box *box)
 {
     return hypot(fmax(fmax(box->x - item->x, item->x - box->x - box->width), 0),

@@ -155,7 +155,8 @@ static void draw_rest(struct pen *pen)
     bool shared = pen->frame->view.split && overlay_legend_is_shared(pen);
     for (int half = shared ? 1 : 0; half < halves; half++) {
         pen_choose_half(pen, half);
-        if (pen->view.look != LOOK_MATERIALS) /* LOOK_MATERIALS: a half of the view that shows no field needs no legend */
+        /* omits the legend of a half of the view that shows materials (LOOK_MATERIALS), because it shows no field values */
+        if (pen->view.look != LOOK_MATERIALS)
             overlay_legend(pen);
     }
     if (!pen->bare)

@@ -118,7 +118,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
-    /* only arrows have a row that explains their length; the length of strokes (short streamlines) has no meaning */
+    /* a row that explains the length is needed only for arrows; the length of strokes (short streamlines) has no meaning */
     if (overlay_has_arrows(pen)) {
         if (view->directions == DIRECTIONS_ARROWS)
             legend->rows[legend->row_count++] = ROW_ARROW;

@@ -6,8 +6,8 @@
 #include "field/directions.h"
 #include "render/plan/fields.h"
 
-struct arrow_set {                  /* arrows of one asset; zero-initialise, free with arrows_finish() */
-    struct direction_place *places; /* positions, ordered so that the first n positions, for any n, are evenly spread */
+struct arrow_set {                  /* arrows that show the field's directions on one asset; zero-initialise, free with arrows_finish() */
+    struct direction_place *places; /* positions of arrows, ordered so that the first n positions, for any n, are evenly spread */
     struct direction *found;
     size_t count;
     double spacing_m; /* approximate distance in metres between neighbouring arrows if all are drawn */

@@ -28,7 +28,7 @@ struct isoline_set { /* points of one asset */
 };
 
 struct isolines {
-    /* by asset: points on isolines (possible label positions); `arrows` and `strokes` are indexed by asset, too */
+    /* by asset: points on isolines, where labels of isolines may be placed; `arrows` and `strokes` are indexed by asset, too */
     struct isoline_set *sets;
     struct arrow_set *arrows;
     struct stroke_set *strokes;

@@ -20,12 +20,13 @@ struct fields_entry {
     /* value of scalars->travel (sum of all changes so far) when the shown values were computed, less the error known then. `scalars->travel
        - travel` is an upper bound of the error of any shown value */
     double travel;
-    uint64_t content; /* hash of the first `hashed` values in `shown`, as many as the last request needed */
+    uint64_t content; /* hash of the first `hashed` values in `shown`: the values that the last fields_get() requested */
     size_t hashed;    /* number of values in `shown` that the hash `content` covers; SIZE_MAX: `content` is out of date */
     /* sensors of a field that is evaluated at pixels; count 0: the field is interpolated between vertices, from `shown` */
     struct pixel_field pixels;
     struct scalar *shown;
-    size_t count, ready; /* count: number of the asset file's vertices; ready: number of values, from the first on, that `shown` holds */
+    /* count: number of the asset file's vertices; ready: number of vertices, from the first on, whose values `shown` holds */
+    size_t count, ready;
     struct pool_slice *slice;
     bool uploaded;  /* true: `slice` (range of a GPU buffer) holds the shown values */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
@@ -45,7 +46,7 @@ struct fields {
     struct field *field;
     struct pool *pool;
     struct fields_entry **entries;
-    struct fields_entry lost; /* placeholder entry for all fields that do not fit in memory */
+    struct fields_entry lost; /* placeholder that shows no data, in place of the entries of fields that do not fit in memory */
     size_t count, capacity, bytes, bound_bytes;
     /* uses: number of fields_get() lookups so far; trimmed: value of `uses` at the last fields_trim(), after which looked-up entries are
        not evicted */

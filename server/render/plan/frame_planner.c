@@ -116,7 +116,8 @@ bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *pla
     int64_t begin_ns = clock_mono_ns();
     bool ready = true;
     if (budget_ns == INT64_MAX)
-        /* without a time limit, frame_plan_complete() later computes the fields of many assets in parallel */
+        /* computes the fields here only if there is a time limit; otherwise frame_plan_complete() later computes the fields of
+           many assets in parallel */
         return true;
     for (size_t i = 0; i < plan->visible_count && ready && plan->view.look != LOOK_MATERIALS; i++) {
         size_t count = fields_vertices(planner->fields, plan->visible[i], &plan->view.field, plan->vertex_counts[i]);

@@ -78,7 +78,7 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
         const struct field_sensor *from = &sensors[i];
         blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .column = from->column };
         memcpy(blocks[i].place_m, from->surface_m, sizeof(from->surface_m));
-        /* Sensors that a trial moved to this asset are ignored: the asset file has no distances for them. */
+        /* ignores sensors that a user's trial moved to this asset, because the asset file has no distances from them */
         bool has_column = from->column < reference->gpu_scene->scene->assets[asset].file->view.header->sensor_count;
         blocks[i].state = (from->configured ? PIXEL_CONFIGURED : 0) | (from->usable ? PIXEL_USABLE : 0);
         blocks[i].state = has_column ? blocks[i].state | (from->uncertain ? PIXEL_UNCERTAIN : 0) : 0;

@@ -38,7 +38,8 @@ SOFT_INLINE void edge_init(struct raster_edge *edge, const struct soft_vertex *p
     *edge = (struct raster_edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
 }
 
-/* Returns the terms of the edge function that are the same for all pixels of a row. y: y coordinate of the row's pixel centres. */
+/* Returns the part of a triangle edge's function (edges.h) that is the same for all pixels of a row of the frame. y: y
+   coordinate of the row's pixel centres. */
 SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
 {
     return edge->dx * (y - edge->y) + edge->dy * edge->x;

@@ -129,7 +129,7 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
 /* Elevations above the horizon along a row of pixels, as columns of the backdrop table. They are interpolated linearly within a
    stretch of raster->stretch_px pixels (choose_stretch bounds the error). */
 struct heights {
-    float first, step; /* elevation at the centre of the first pixel, and its change per pixel */
+    float first, step; /* elevation above the horizon at the centre of the stretch's first pixel, and its change per pixel */
 };
 
 static float height_at(const struct raster *raster, float x, float y)

@@ -10,9 +10,10 @@
 #include "render/matrix.h"
 #include "render/gl/ghosts.h"
 
-/* margin in pixels around the projected bounding boxes of triangles, because boxes and vertices round differently */
+/* margin in pixels around the projected bounding boxes of parts (groups of triangles), because boxes and vertices round
+   differently */
 #define SLACK_PX 0.02f
-/* relative margin that brings a bounding box's nearest depth nearer to absorb rounding errors */
+/* fraction by which a bounding box's nearest depth is moved nearer, to absorb rounding errors */
 #define SLACK_DEPTH 1e-5f
 /* depth used for points in front of the near plane; larger than any real depth, so that they count as nearest */
 #define IN_FRONT_OF_NEAR 2.0f
@@ -42,7 +43,7 @@ SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *me
         nearest = depth[i] > nearest ? depth[i] : nearest;
     }
     const float slack = SLACK_PX + raster->reach_px;
-    left += 0.5f - slack; /* from here on, left, last, top and bottom bound the pixels whose centres lie within the box */
+    left += 0.5f - slack; /* from here on, left, last, top and bottom enclose the centres of all pixels that the box may cover */
     top += 0.5f - slack;
     last += 0.5f + slack;
     bottom += 0.5f + slack;

@@ -29,7 +29,8 @@ SOFT_INLINE lanes pixel_square(const struct pixel_sensor *sensor, const lanes at
     return x * x + y * y + z * z;
 }
 
-/* Returns the squared distance from each of eight points to the nearest sensor of each state in the list. */
+/* Returns the squared distances from each of eight points to the nearest used sensor, the nearest lost sensor and the nearest
+   sensor without alarm limits, of those in the list. */
 SOFT_INLINE struct eight_nearest pixel_nearest(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3])
 {
     lanes far2 = (lanes){ 0 } + PIXEL_FAR2;
@@ -85,8 +86,8 @@ SOFT_INLINE lanes pixel_polynomial(const float of[PIXEL_TERMS], const lanes u[3]
     return of[0] + x + u[1] * (of[2] + u[1] * of[7] + u[2] * of[8]) + u[2] * (of[3] + u[2] * of[9]);
 }
 
-/* Adds the polynomials that replace a list's far sensors to the sums of weights and values. part: for each point, the factor that converts
-   the polynomials to the unit of the weights at that point (2^top / unit). */
+/* Adds the polynomials that replace a list's far sensors to the sums of weights and of weighted values. part: for each point,
+   the factor that converts the polynomials to the unit of the weights at that point (2^top / unit). */
 SOFT_INLINE void pixel_add_far(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2, lanes part,
                                struct eight_sums *sums)
 {

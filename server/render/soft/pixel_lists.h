@@ -22,10 +22,11 @@ struct pixel_cell {        /* the pixels of one cell (a square with sides of CEL
 struct pixel_list {
     /* indices in field->sensors of the near sensors, which are evaluated at each pixel of the square; NULL: the first `count` sensors */
     const uint32_t *sensors;
-    size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
+    size_t first;            /* index in pixel_lists.sensors of the first sensor of this list */
     int count;
     bool all_used;  /* true: all near sensors of the list, which are evaluated at each pixel, have a usable reading */
-    bool has_far;   /* true: at least one sensor with a reading is not in the list; the polynomials below approximate its weight */
+    /* true: at least one sensor with a reading is too far away to be in the list; the polynomials below approximate its weight */
+    bool has_far;
     /* true: at least one far sensor (replaced by a polynomial) has a reading of quality Uncertain, so pixels may be marked as uncertain */
     bool has_marks;
     /* Polynomials that replace sums over the far sensors, all times 2^-top (`unit` is 2^top). total: sum of the weights;

@@ -112,8 +112,8 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
                   struct frame *frame)
 {
     struct raster *raster = &soft->preview;
-    /* a preview with isolines keeps no visibility buffer: labels of isolines need the depth of each pixel, which visibility buffers of
-       previews do not store */
+    /* a preview with isolines is always drawn again: labels of isolines need the depth of each pixel, which visibility buffers
+       of previews do not store */
     bool lined = has_lines(context) || points->count > 0;
     if (!lined && soft_resolve_again(soft, context, points, frame))
         return true;

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-enum { WHOLE = 8 }; /* number of bits per colour channel */
+enum { WHOLE = 8 }; /* number of bits in one colour channel: materials are compared by all of their bits */
 
 struct ramp_search {
     const uint32_t *muted, *own;
@@ -68,7 +68,7 @@ size_t ramp_rows_pack(uint32_t *muted, uint32_t *own, size_t count, size_t steps
         rows.bits--;
     size_t packed = 0;
     for (size_t i = 0; i < count; i++) {
-        if (first[i] != i) { /* an earlier material has the same ramp, and its row is already packed */
+        if (first[i] != i) { /* an earlier material has an equal colour ramp, whose row is already in the packed table */
             row_of_material[i] = row_of_material[first[i]];
             continue;
         }

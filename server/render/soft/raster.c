@@ -23,7 +23,8 @@ struct setup {
     float x, y; /* position of the face's first corner in pixels; the linear functions below (struct plane) are relative to it */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
-    /* strength of each pattern at a pixel, 0..1, as a linear function of the position; set only if the face has flags */
+    /* strength at a pixel, 0..1, of the patterns that mark no data, uncertain values and missing limits, as a linear function
+       of the position; set only if the face has flags */
     struct plane no_data, uncertain, no_limits;
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
@@ -129,7 +130,7 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink 
     return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
 }
 
-/* Narrows the range left..right of a pixel row's columns to those inside the face, plus one column at each end. */
+/* Narrows the range left..right of columns in a row of pixels to those inside the face, plus one column at each end. */
 SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
 {
     for (int e = 0; e < 3; e++) {
@@ -321,7 +322,8 @@ static void count_face(const struct soft_tile *tile, const struct soft_face *fac
         float sides[3];
         for (int e = 0; e < 3; e++)
             sides[e] = edge_row(&edges[e], (float)row + 0.5f);
-        /* blocks of LANES pixels begin at multiples of LANES, so that they do not overlap and no pixel is counted twice */
+        /* processes blocks of LANES pixels that begin at multiples of LANES: blocks do not overlap, so no pixel is counted
+           twice */
         for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) {
             lanes x = LANES_IOTA + ((float)column + 0.5f);
             lanes_int side = edge_side(&edges[0], sides[0], x) | edge_side(&edges[1], sides[1], x) | edge_side(&edges[2], sides[2], x);

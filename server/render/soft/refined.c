@@ -244,8 +244,8 @@ static void ink_some(void *arg, size_t begin, size_t end)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
-/* Chooses the range of work items (bands or rows) to process in this step: `some` items per core, of `all` items in total.
-   Returns true if the range includes the last item. */
+/* Chooses which work items (bands or rows of the frame) this step processes: from *begin to *end - 1, `some` items per core, of
+   `all` items in total. Returns true if the last item is among them. */
 static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
 {
     some *= (size_t)workers_count(refined->raster.soft->workers);

@@ -390,11 +390,12 @@ SOFT_INLINE void evaluate_fields(const struct raster *raster, const struct soft_
             evaluate_eight(raster, rect, &ink, column, row);
 }
 
-/* Writes the colours of the pixels left..right of a row. out: address of the pixel at column 0 of the row. */
+/* Writes the colours of the pixels in columns left to right of a row of the preview. out: address of the pixel at column 0 of
+   the row. */
 SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
 {
     struct heights heights = { 0 };
-    struct sun_aim aims[AIMS]; /* ring buffer of started shadow lookups; index: column / LANES, modulo AIMS */
+    struct sun_aim aims[AIMS]; /* ring buffer of shadow lookups that are started but not finished; index: column / LANES, modulo AIMS */
     for (int column = left - BOUNDS_AHEAD; column <= right; column += LANES) {
         int aimed = column + BOUNDS_AHEAD, bounded = column + SHADOWS_AHEAD;
         if (aimed <= right)

@@ -121,7 +121,7 @@ SOFT_INLINE void wear(const struct refined *refined, const struct refined_item *
 struct lit { /* eight surfaces */
     struct eight_points spot;
     struct pbr_surface surface;
-    vec v, l, glow; /* v, l: unit vectors towards the eye and the sun; glow: light that the surface emits */
+    vec v, l, glow; /* v, l: unit vectors from the surface point towards the eye and the sun; glow: light that the surface emits */
 };
 
 /* Computes the surface points of eight surfaces, their material, and the visible part of the sun. alphas: receives their

@@ -14,7 +14,7 @@ struct eight_points {    /* eight surface points */
     lanes material[8];
     lanes x, y, depth; /* position in the frame */
     lanes weights[3];
-    lanes_int back;     /* -1: the surface faces away from the eye */
+    lanes_int back;     /* -1: the surface's front faces away from the eye; else 0 */
     lanes_int mirrored; /* -1: the surface belongs to a mesh whose placement mirrors it, which reverses the winding; else 0 */
     lanes_int cut;      /* -1: a section plane cuts the mesh, so back faces show the inner side; else 0. Set together with the material */
     vec normal;

@@ -75,7 +75,7 @@ static bool is_hidden(const struct soft_tile *tile, const struct soft_rect *bloc
     return true;
 }
 
-/* Returns the rectangle that encloses all faces in tile->faces. */
+/* Returns the smallest rectangle of pixels that encloses all faces (triangles) of the tile (tile->faces). */
 static struct soft_rect faces_rect(const struct soft_tile *tile)
 {
     struct soft_rect rect = { INT16_MAX, INT16_MAX, 0, 0 };

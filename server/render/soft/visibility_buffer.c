@@ -223,7 +223,8 @@ static float carried_of(const struct scalar *scalar, const float *scale)
 
 struct reading_job {
     struct visibility_buffer *buffer;
-    const struct scalar *scalars; /* the field's values at the asset's vertices; NULL: the whole asset has no data */
+    /* values of the field at the asset's vertices, to be copied to the visible ones; NULL: the whole asset has no data */
+    const struct scalar *scalars;
     const float *scale;
     uint32_t first_vertex;
 };

@@ -11,7 +11,7 @@
 #include "render/soft/visibility_buffer.h"
 #include "shaders/constants.glsl"
 
-static const float WEIGHT = 1 / 65535.0f; /* factor that converts a corner's 16-bit weight to 0..1 */
+static const float WEIGHT = 1 / 65535.0f; /* factor that converts the weight of a triangle's corner, stored in 16 bits, to 0..1 */
 static const float SLACK = 1e-5f, COLUMNS_OF_RANGE = COLORMAP_PLACES / (1 + 2 * 1e-5f);
 
 static inline float clamped(float x, float low, float high)

@@ -18,7 +18,8 @@ static struct visibility_slot *find(struct visibility_store *store, uint64_t sha
     return NULL;
 }
 
-/* Returns the least recently used slot. empty_too: true: empty slots are also considered, and count as older than all others. */
+/* Returns the least recently used slot for a visibility buffer. empty_too: true: empty slots are also considered, and count as
+   older than all others. */
 static struct visibility_slot *oldest(struct visibility_store *store, bool empty_too)
 {
     struct visibility_slot *found = NULL;

@@ -33,7 +33,8 @@ struct admission {
     /* drawing statistics of the last ADMISSION_WINDOWS seconds, newest last; `now`: statistics of the current second */
     struct admission_window windows[ADMISSION_WINDOWS], now;
     int64_t begin_ns; /* monotonic time when the window `now` began */
-    /* content id of the last frame counted. Clients that share a frame report it one after the other; with this id it counts once */
+    /* content id of the frame counted last. Several clients report a frame that they share, one after the other; with this id
+       it is counted once */
     uint64_t last_content;
     int64_t pixels;               /* number of pixels of all views of all addresses */
     struct address_share *shares; /* linked list of the client addresses that have sessions */

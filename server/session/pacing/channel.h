@@ -12,9 +12,9 @@
    one or two samples; a slow network stays slow. So the minimum of the last two samples counts, and of the last three for
    decoding. */
 enum { CHANNEL_LAST = 3 };
-struct channel_last { /* ring buffer of the last samples of one figure; zero-initialise */
+struct channel_last { /* ring buffer of the last samples of one measured quantity, such as the round trip; zero-initialise */
     double at[CHANNEL_LAST];
-    int count; /* number of samples so far, reduced before it can overflow */
+    int count; /* number of samples so far; kept small once the buffer is full, so that it cannot overflow */
 };
 
 struct channel { /* estimate for the connection to one client; zero-initialise; a member that is 0 was not measured yet */
@@ -28,7 +28,7 @@ struct channel { /* estimate for the connection to one client; zero-initialise; 
 };
 
 struct channel_ack {
-    size_t bytes;    /* bytes of this frame and of the earlier frames covered by the acknowledgement */
+    size_t bytes;    /* number of bytes of this frame and of the earlier frames that the acknowledgement covers */
     int64_t sent_ns; /* monotonic time when the first of the acknowledged frames was sent */
     int64_t now_ns;
     int64_t decode_ns; /* decoding time as reported by the client; negative: not reported */

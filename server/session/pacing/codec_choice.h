@@ -15,10 +15,12 @@ struct codec_facts {
 
 struct codec_choice { /* zero-initialise, which chooses H.264 */
     bool jpeg;
-    int64_t against_ns; /* monotonic time since which codec_facts have favoured the unused codec; 0: they favour the one in use */
+    /* monotonic time since which bandwidth and processor load (codec_facts) have favoured the codec that is not in use; 0: they
+       favour the one in use */
+    int64_t against_ns;
 };
 
-/* Switches to the other codec once the facts have favoured it for long enough. */
+/* Switches to the other codec (H.264 or JPEG) once bandwidth and processor load have favoured it for long enough. */
 void codec_choice_update(struct codec_choice *choice, const struct codec_facts *facts, int64_t now_ns);
 
 struct cpu_meter {       /* reads the processors' load from /proc/stat; zero-initialise */

@@ -10,8 +10,9 @@
 /* limits on the number of frames in flight to one client: from PACER_LEAST, growing with the round-trip time, to PACER_MOST */
 enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
-struct pacer_note {    /* facts about a sent frame, needed when the frame is acknowledged */
-    /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is refined, in full quality */
+struct pacer_note {    /* properties of a sent frame that are needed when the client acknowledges the frame */
+    /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is a refined one in full
+       quality */
     bool moving, full;
     int step;
     bool of_data; /* true: the frame was made because a reading changed; false: because of an input */
@@ -32,7 +33,8 @@ struct pacer {                              /* limits the frames under way to on
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
-    bool cut;                  /* true: the newest frame was cut short, and the end of its WebSocket message must still be written */
+    /* true: the rest of the newest frame is not sent, and the end of its WebSocket message must still be written */
+    bool cut;
     int64_t moved_on_ns;       /* monotonic time of the client's last acknowledgement, or when its socket last accepted bytes */
     struct pacer_flight acked; /* the newest frame that the client has acknowledged */
     struct channel channel;
@@ -55,7 +57,7 @@ void pacer_dropped(struct pacer *pacer);
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns);
 /* Notes that the socket accepted a part of the newest frame. all: true: this was the frame's last part. */
 void pacer_wrote(struct pacer *pacer, bool all, int64_t now_ns);
-/* Notes that the newest frame was cut short, so the client will not acknowledge it. */
+/* Records that the rest of the newest frame is not sent, so that the client will not acknowledge the frame. */
 void pacer_gave_up(struct pacer *pacer);
 /* Records the acknowledgement of frame seq, which covers all earlier frames too, and updates the channel estimate and the quality ladder.
    decode_ns: decoding time reported by the client; negative: not reported. Returns PACER_ACK_NEW, PACER_ACK_OLD if the frame was

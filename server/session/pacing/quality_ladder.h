@@ -25,14 +25,17 @@ struct quality_ladder { /* chooses the quality and size of one client's frames; 
        a larger picture; decoding takes too long. 0: the condition does not hold now */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
     int64_t up_ns, down_ns; /* monotonic times of the ladder's last step up and last step down */
-    int64_t patience_ns;    /* delay in nanoseconds before the ladder may step up again */
+    /* time in nanoseconds that conditions must hold before the ladder may step up again; doubles if the last step up did not
+       hold */
+    int64_t patience_ns;
 };
 
 /* Initialises the ladder at QUALITY_LADDER_FIRST. */
 void quality_ladder_init(struct quality_ladder *ladder);
-/* Chooses the step of the first frame, which has `pixels` pixels, from what the channel has measured so far. */
+/* Chooses the quality step of the client's first frame, which has `pixels` pixels, from what its channel (round trip,
+   bandwidth) has shown so far. */
 void quality_ladder_begin(struct quality_ladder *ladder, const struct channel *channel, double pixels);
-/* Returns the quality and scale of a step, at the ladder's own picture size. */
+/* Returns the encoding quality and the scale of pictures at a quality step, for the picture size that the ladder has chosen. */
 struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
 /* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the best step that
    at least three quarters of the viewers can receive. The step is worse if sending its frames to all would occupy the event
@@ -42,7 +45,7 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
 /* Returns the step for this client: the common one, or the client's own step if that is much worse. common negative: the
    client's own step. */
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
-/* Records that a preview of that step and size in bytes was acknowledged, and adjusts the step. */
+/* Records that the client acknowledged a preview of that quality step and size in bytes, and adjusts the ladder's step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
 /* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. Used for the
    ladder of a picture over many displays: it has more pixels than any client's picture, so making it may be the bottleneck. */

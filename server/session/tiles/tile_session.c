@@ -7,11 +7,12 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* how long the wall waits for a tile to acknowledge its frame before the tile is dropped */
+/* how long the other displays of the wall wait for a tile to acknowledge its frame before the tile is dropped */
 static const int64_t MAX_LATE_NS = 3 * NS_PER_S;
-/* OUT_NS: how long a slow tile is dropped; doubled each time up to MAX_OUT_NS */
+/* OUT_NS: how long a slow tile (display) is dropped from the wall's picture; doubled each time up to MAX_OUT_NS */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
-static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* a slow tile that has kept up for this long before is dropped for OUT_NS only */
+/* time for which a tile must have kept up for its next dropping to last only OUT_NS again */
+static const int64_t KEPT_UP_NS = 60 * NS_PER_S;
 
 bool session_is_tile(const struct session *session)
 {
@@ -41,7 +42,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    /* requests a picture even if its content is the same, because the burn-in shift makes the tile show other pixels */
+    /* requests a picture even if its content is unchanged, because the burn-in shift has moved the pixels that the tile shows */
     session->demand.data = true;
 }
 

@@ -32,9 +32,9 @@ struct resumed {
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out);
 /* Returns whether a connected session has that number. */
 bool resumes_has_live(const struct resumes *resumes, uint64_t number);
-/* Drops the views of all lost connections, so that no lost client can resume. Secrets of open connections stay valid. */
+/* Drops the views of all lost connections, so that none can be resumed. Secrets of open connections stay valid. */
 void resumes_forget_gone(struct resumes *resumes);
-/* Removes the entry of a secret, which becomes invalid. */
+/* Removes the view that the secret resumes from the list, so that the secret becomes invalid. */
 void resumes_forget(struct resumes *resumes, const char *secret);
 
 #endif

@@ -16,7 +16,7 @@ struct laplacian_slope { /* by triangle: gradients of the hat functions of its t
 
 struct laplacian {
     const struct intrinsic *in;
-    uint32_t *row_of; /* row of each point in the matrices; TRIMESH_NONE: the point has no triangle */
+    uint32_t *row_of; /* by point: index of its row in the matrices; TRIMESH_NONE: the point has no triangle */
     size_t row_count;
     struct laplacian_slope *slopes; /* by triangle */
     double *mass_m2;                /* by row: a third of the area of all triangles at the row's point */

@@ -40,7 +40,8 @@ void propagation_finish(struct propagation *propagation);
 /* State of one propagation (from one source), used by one thread. Initialise with zeros; may be reused for further sources. */
 struct propagation_front {
     float *distance_m; /* per point; INFINITY: not reached */
-    float *straight_m; /* by point: straight-line distance from the source in metres, a lower bound of the geodesic distance */
+    /* by point: straight-line distance in metres from the source of the propagation, a lower bound of the geodesic distance */
+    float *straight_m;
     char *settled;
     uint32_t *buckets;
     struct propagation_item {

@@ -11,8 +11,7 @@
 
 #define LEAF_TRIS 4u
 /* maximum distance between the intersection as computed on the segment and in the triangle, as a fraction of the longest side
-   of both. If the distance is larger, segment and triangle are nearly parallel, so that only rounding decides where they meet.
-   */
+   of both. If the distance is larger, segment and triangle are nearly parallel, so that only rounding decides where they meet. */
 #define SAME_PLACE 1e-6
 
 static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double low[3], double high[3])
@@ -31,7 +30,7 @@ static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double
         }
 }
 
-/* Moves the `half` triangles with the lowest centres on the axis to the front of the range (quickselect). */
+/* Moves the `half` triangles whose centres are lowest along the axis to the front of the range (quickselect). */
 static void split_at(struct bvh *bvh, uint32_t first, uint32_t count, uint32_t half, int axis)
 {
     uint32_t *v = bvh->order + first;

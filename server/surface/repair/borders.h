@@ -10,7 +10,7 @@ struct borders {
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;
-    uint32_t *slot; /* by mesh point: its index in `points`; TRIMESH_NONE: it is on no border */
+    uint32_t *slot; /* by mesh point: index of the point in `points`; TRIMESH_NONE: the point is on no border edge */
     /* by border point: length of the shortest edge of any triangle at it, which limits the gaps that are closed there */
     double *shortest_m;
     /* edges at the border points: those at border point i have the indices at[first[i]] to at[first[i + 1] - 1] in `edges` */

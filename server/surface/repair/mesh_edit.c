@@ -79,7 +79,7 @@ struct crossing_lists {
     uint32_t *edge_first, *tri_first;
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
-    uint32_t *target; /* by point: index of the point that replaces it */
+    uint32_t *target; /* by mesh point: index of the point that replaces it when points are merged */
     /* lists of the points to connect each point to (after replacement) by an edge; NULL: no edges are requested */
     uint32_t *partner_first, *partners;
     /* by point after replacement: 1 + its index in the triangulation of the current face; 0: the triangulation does not have it */

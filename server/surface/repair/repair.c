@@ -35,7 +35,7 @@ struct seams {
        point is merged with that end in another round) */
     double tolerance_m, end_m;
     bool fits;            /* true: the current round joins only borders with nearly no gap between them */
-    struct nearest_edge { /* by border point: the nearest position on the border edges, except those that end at the point */
+    struct nearest_edge { /* by border point: the nearest position on another border edge, excluding the edges that end at the point */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -274,7 +274,7 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
 
 /* --- rims ------------------------------------------------------------------------------------------------------------------- */
 
-/* Copies the triangles with hidden[tri] == which to the mesh `to`. */
+/* Copies the triangles whose element of `hidden` equals `which` to the mesh `to`. */
 static void copy_triangles(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
 {
     *to = (struct trimesh){ .points = from->points, .point_count = from->point_count };

@@ -52,7 +52,8 @@ static bool runs_straight(const struct hanging *h, uint32_t p, uint32_t a)
     return false;
 }
 
-/* Inserts into edge a-b, whose index is `number`, those border points that lie on it and are connected with a by a border edge. */
+/* Inserts border points into edge a-b, whose index is `number`: those that lie on the edge and that a border edge connects with
+   a. */
 static void look_from(struct hanging *h, uint32_t a, uint32_t b, uint32_t number)
 {
     const struct borders *borders = h->borders;

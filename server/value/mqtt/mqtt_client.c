@@ -23,7 +23,8 @@
 enum { TOPICS_AT_ONCE = 8 };         /* maximum number of topics in one subscribe request; some brokers refuse more */
 enum { SESSION_KEPT_S = 7 * 86400 }; /* time in seconds for which the broker keeps a persistent session after a disconnection */
 static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
-static const int64_t CHORES_NS = 500 * NS_PER_MS; /* interval at which libmosquitto is called to check its keep-alive timer */
+/* interval at which libmosquitto is called to send keep-alive messages when they are due */
+static const int64_t CHORES_NS = 500 * NS_PER_MS;
 
 struct mqtt_client {
     struct mosquitto *library;
@@ -37,7 +38,7 @@ struct mqtt_client {
     _Atomic int status; /* status: result code of the attempt to connect; errno_then: errno at that time */
     int errno_then;
     char said[160]; /* text of the last error that libmosquitto logged */
-    /* --- below: used only by the thread that calls mqtt_client_serve() */
+    /* --- below: members that only the thread that calls mqtt_client_serve() uses */
     int refusal; /* reason code of the broker's refusal of the connection; 0: none */
     char *const *topics;
     size_t topic_count, acknowledged;

@@ -15,7 +15,7 @@ struct mqtt_source {
     struct source base;
     counter *messages_ok, *messages_refused, *samples, *connects, *up, *host, *gaps, *historical, *rebirths;
     char *client_id;
-    /* --- below: used only by the source's thread */
+    /* --- below: members that only the source's thread uses */
     struct mqtt_topics topics;
     struct stamped_writer writer;
     struct sparkplug *sparkplug; /* decoder of Sparkplug messages; NULL: the source's messages have another form */

@@ -24,13 +24,13 @@ enum { REFUSALS_SAID = 8 }; /* maximum number of log lines per session about ref
 struct opcua_source {
     struct source base;
     counter *samples, *connects, *up, *host, *refused;
-    /* --- below: used only by the source's thread */
+    /* --- below: members that only the source's thread uses */
     struct opcua_nodes nodes;
     struct stamped_writer writer;
     struct host_turn turn;
     bool link_up, link_known;
     int refusals_said, deadbands_said;
-    bool *wrong; /* by node: true while the log's last word is that the node's value is not a number */
+    bool *wrong; /* by node: true: the last log line about the node says that its value is not a number */
     int64_t skew_said_ns;
     struct log_pace missed_pace; /* rate limit of the log line about lost notifications */
 };

@@ -21,8 +21,8 @@ struct opcua_client {
     char said[160];                  /* text of the last error that open62541 logged */
     UA_Client *library;              /* open62541's client for the open secure channel; NULL: no channel is open */
     UA_EndpointDescription endpoint; /* endpoint that was chosen, whose certificate has been checked */
-    bool lost;                       /* the subscription has ended, so a new session is needed */
-    bool missed;                     /* notifications were lost since all nodes were last read */
+    bool lost;                       /* true: the subscription has ended, so a new session is needed */
+    bool missed;                     /* true: notifications of changed values were lost since all nodes were last read */
     uint32_t max_items, max_reads;   /* maximum number of nodes per request, when monitoring and when reading; 0: not known yet */
     UA_UInt32 subscription;
     double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */
