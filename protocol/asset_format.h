@@ -151,7 +151,7 @@ struct asset_parts {
     const uint32_t *indices;
     const struct asset_primitive *primitives;
     const struct asset_level *levels;     /* levels of detail; NULL: the asset has one level, with all primitives */
-    const struct asset_cluster *clusters; /* NULL: one cluster for each primitive */
+    const struct asset_cluster *clusters; /* clusters (groups of adjacent triangles); NULL: one cluster for each primitive */
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;

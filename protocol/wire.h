@@ -40,9 +40,10 @@ struct wire_frame { /* header of the binary message with a frame; the members ar
     uint64_t data_time_us, sent_time_us;
     /* durations in microseconds: from client input to start of rendering, computing the field, rendering, encoding */
     uint32_t wait_us, field_us, render_us, encode_us;
-    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the view that the payload contains */
+    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the view, in pixels, whose picture is the payload */
     uint16_t full_width_px, full_height_px;
-    float eye_m[3], target_m[3], up[3]; /* camera of this frame, in plant coordinates */
+    /* camera of this frame in plant coordinates: position of the eye, point that it looks at, up direction; metres */
+    float eye_m[3], target_m[3], up[3];
     float fov_deg;                      /* vertical field of view in degrees, 1..120; 0: orthographic, and height_m applies */
     float height_m;                     /* height of the visible area of an orthographic picture, metres; 0: perspective */
 };
@@ -51,7 +52,7 @@ struct wire_frame { /* header of the binary message with a frame; the members ar
 struct wire_depth {
     uint16_t flags;
     uint32_t payload_bytes, seq;
-    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the picture that the grid covers */
+    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the picture, in pixels, that the grid covers */
     uint16_t full_width_px, full_height_px;
     uint16_t columns, rows; /* of cells */
     uint8_t cell_px, mask_side;

@@ -2,7 +2,8 @@
 // Occlusion culling: runs only for visible fragments of an asset's bounding box, and enables the asset's draw commands in the command
 // buffer.
 layout(early_fragment_tests) in;
-layout(location = 0) flat in uvec2 commands_here; // index of the asset's first draw command, and count of its commands
+// index of the asset's first draw command in the command buffer, and number of its commands
+layout(location = 0) flat in uvec2 commands_here;
 struct Command {
     uint count, instances, first_index;
     int base_vertex;

@@ -2,7 +2,8 @@
 // Occlusion culling (render/gl/occlusion.h): draws the bounding boxes of assets, each as a triangle strip of 14 vertices.
 layout(location = 0) in mat4 clip_from_box; // maps the unit cube to clip space
 layout(location = 4) in uvec2 commands_of;
-layout(location = 0) flat out uvec2 commands_here; // index of the asset's first draw command, and count of its commands
+// index of the asset's first draw command in the command buffer, and number of its commands
+layout(location = 0) flat out uvec2 commands_here;
 
 void main()
 {

@@ -10,7 +10,8 @@ struct video_branch {
     const char *name;
     char *text; /* pipeline description that follows OUTPUTS_SOURCE */
     struct outputs *outputs;
-    void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* called before the pipeline starts to play */
+    /* callback that sets up the new pipeline before it starts to play */
+    void (*prepare)(struct video_branch *branch, GstElement *pipeline);
     const struct video_options *options;
     GstElement *pipeline; /* pipeline of this output; NULL: it has failed and is restarted at again_us */
     gint64 again_us;

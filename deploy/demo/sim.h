@@ -33,7 +33,7 @@ void sim_update(struct sim *sim);
 /* Returns the simulated device of a tag, and its Modbus unit identifier in *unit; NULL if the tag's source is not Modbus TCP. */
 struct sim_device *sim_device_of(const struct sim *sim, const struct plant_tag *tag, int *unit);
 
-/* Executes a line from the control port; arg: struct sim. */
+/* Executes the command in the first complete line received on the control port, and answers it; arg: struct sim. */
 sim_take sim_control_take;
 extern const char sim_control_help[];
 

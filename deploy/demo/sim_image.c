@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Registers of a simulated device by unit and table, with a flag for each register that exists. */
+/* Registers of a simulated device by Modbus unit identifier and register table, with a flag for each register that exists. */
 #include "sim_image.h"
 
 #include "base/mem.h"

@@ -11,7 +11,7 @@
 
 struct sim_unit;
 struct sim_image {               /* zero-initialise */
-    struct sim_unit *units[256]; /* registers of each unit, by unit identifier; NULL: the device lacks the unit */
+    struct sim_unit *units[256]; /* registers of each Modbus unit, by unit identifier; NULL: the device lacks the unit */
 };
 
 void sim_image_finish(struct sim_image *image);
@@ -23,7 +23,7 @@ bool sim_image_set(struct sim_image *image, int unit, const struct plant_tag *ta
 void sim_image_fail(struct sim_image *image, int unit, const struct plant_tag *tag, bool failing);
 /* Returns 0, or the Modbus exception code of the reply to a request for these registers. */
 int sim_image_refusal(const struct sim_image *image, int unit, enum register_table table, int first, int count);
-/* Returns the registers of a unit for libmodbus; NULL if there is no such unit. */
+/* Returns the registers of a Modbus unit for libmodbus; NULL if there is no such unit. */
 modbus_mapping_t *sim_image_mapping(struct sim_image *image, int unit);
 
 #endif

@@ -264,7 +264,7 @@ int plant_draft_write(const struct plant_draft *draft)
 /* Writes the starter plant's model, a person made of boxes, as GLB: feet on the ground at the origin, facing the viewer, Y up. */
 static int write_person(const char *path)
 {
-    static const float parts[][2][3] = { /* centre and size in metres of each box */
+    static const float parts[][2][3] = { /* boxes that form the person: centre and size of each, metres */
                                          { { -0.1f, 0.42f, 0 }, { 0.14f, 0.84f, 0.16f } }, { { 0.1f, 0.42f, 0 }, { 0.14f, 0.84f, 0.16f } },
                                          { { 0, 1.14f, 0 }, { 0.4f, 0.6f, 0.22f } },       { { -0.26f, 1.1f, 0 }, { 0.1f, 0.64f, 0.12f } },
                                          { { 0.26f, 1.1f, 0 }, { 0.1f, 0.64f, 0.12f } },   { { 0, 1.48f, 0 }, { 0.1f, 0.08f, 0.1f } },

@@ -85,7 +85,7 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
         double sum = 0;
         for (int i = 0; i < 3; i++)
             sum += (double)at->weights[i] * u[row_of[at->points[i]]];
-        share[v] = (float)max_of(sum, 0); /* a negative sum is a rounding error */
+        share[v] = (float)max_of(sum, 0); /* clamps rounding errors: a weight is never negative */
     }
     for (size_t other = 0; other < influence->count; other++) {
         const struct influence_disc *disc = &conduct->mesh->discs[other];

@@ -36,7 +36,7 @@ struct influence_making {
     struct cloud_heat *cloud; /* point cloud for distances by heat, created for the first group that requests them; NULL: not created yet */
     struct influence_header header;
     struct influence_entry *entries;
-    struct influence *found; /* by entry: the influence computed for it */
+    struct influence *found; /* by entry of the influence file: the sensors' weights computed for it */
     size_t capacity, found_capacity;
 };
 

@@ -14,7 +14,8 @@
 
 struct text_report {
     const struct prepare *prepare;
-    /* the assets that the report lists: those with problems first, then the slowest to build; without texts */
+    /* one entry per asset, in the order of the tables: assets with problems first, then the slowest to build; the entries'
+       texts are not set */
     struct report_concern *order;
     size_t count, rows;
     FILE *out;

@@ -234,7 +234,8 @@ struct packed_findings {
     size_t count, rest_count;
 };
 
-/* rest: receives the optional numbers of the finding, whose flags are returned. */
+/* Packs a finding (measured error): rest receives its optional numbers in 16-bit parts. Returns the flags that say which
+   optional numbers there are. */
 static unsigned char pack_finding(const struct subdiv_cache_entry *found, uint16_t rest[REST_MAX])
 {
     unsigned kind = found->jumps ? JUMPS : 0;

@@ -216,7 +216,7 @@ struct line { /* sample points along a mesh edge, in order from its end a to its
     double t[POINTS];
     const float *interp[POINTS], *geodesic_m[POINTS];
     int count;
-    float *room; /* buffer for the samples of further points */
+    float *room; /* buffer for the distances and samples of points that are still to be added to the line */
     struct interp_norm *norms;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs all viewers that do not decode frames, in one epoll loop. */
+/* Runs all viewers (simulated clients) that do not decode frames, in one epoll loop. */
 #include "load_generator.h"
 
 #include <errno.h>

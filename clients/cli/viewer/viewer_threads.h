@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs viewers on a few threads, several viewers on each. */
+/* Runs viewers (simulated clients) on a few threads, several viewers on each. */
 #ifndef CLI_VIEWER_VIEWER_THREADS_H
 #define CLI_VIEWER_VIEWER_THREADS_H
 #include "viewer.h"

@@ -99,7 +99,7 @@ viewport.onDrawn = (newPicture, isWarped) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-for (const id of ['display', 'more', 'picture-panel', 'views']) // labels make room for an open panel
+for (const id of ['display', 'more', 'picture-panel', 'views']) // moves labels aside when one of these panels opens or closes
     new MutationObserver(refresh).observe(byId(id), { attributeFilter: ['class'] });
 setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age of the value on the sensor's card
 

@@ -13,7 +13,7 @@ const NEAR_M = 0.02; // metres: the part of a handle's line that is nearer to th
 const STEEP = 0.03;
 
 const isSound = ({ direction, at, low, high, corners }) => [at, low, high].every(Number.isFinite) && [direction, ...corners].every(finite);
-// Returns the moved clip, or `before` if the moved one is not finite.
+// Returns the changed clip (section planes or clip box), or `before` if a number in the changed one is not finite.
 const soundOr = (moved, before) =>
     ((moved.planes ?? [moved.box.min, moved.box.max]).flat().every(Number.isFinite) ? moved : before);
 
@@ -74,7 +74,7 @@ export function gripsOf(clip, bounds) {
     return clip?.box ? [0, 1, 2].flatMap((i) => [false, true].map((high) => sideGrip(clip.box, i, high, bounds))).filter(isSound) : [];
 }
 
-// Returns the clip with a handle moved, within its limits.
+// Returns the clip (section planes or clip box) after its handle has moved to the position `to`, within the handle's limits.
 export function moveGrip(clip, { index, size, turned, direction, low, high }, to) {
     const at = Math.max(low, Math.min(high, to));
     if (clip.planes) {

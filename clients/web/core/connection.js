@@ -37,7 +37,7 @@ export class Connection {
     lostAt;
     // Time of the last user activity by Date.now(), because that clock continues while a machine sleeps.
     activeAt = Date.now();
-    // Maximum random addition to the first wait after a lost connection.
+    // Maximum random addition, in milliseconds, to the first wait after a lost connection.
     spreadMs = 0;
     unopened = 0;
     blocked = '';

@@ -55,7 +55,7 @@ function putPoint(put, [us, value, quality], before, step) {
 // ends without a value (`last` null) breaks the line, even at the end of the series.
 function putInterval(put, [us, low, , mean, first, last], length, before, after) {
     const adjoins = (other) => other && other[1] !== null && Math.abs(other[0] - us) <= length * 1.001;
-    if (low === null && first !== null) // the previous value holds until the start of the interval
+    if (low === null && first !== null) // the interval ends the previous value: draws that value until just before the interval begins
         put(us - 1, first);
     if (low === null)
         return put(us, null);

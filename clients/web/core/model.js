@@ -30,7 +30,7 @@ export class Model {
         // true: a past instant is shown (stop())
         this.stopped = false;
         this.clockSet = true; // true: the server's clock is synchronised
-        this.clockErrorMs = null; // maximum error of the server's clock; null: unknown
+        this.clockErrorMs = null; // maximum error of the server's clock in milliseconds; null: unknown
         this.leapS = 0; // leap second announced for the end of the month: 1: will be inserted, -1: will be removed, 0: none
         // { ms, at }: at the time `at`, each good or uncertain reading was at most `ms` old; null: unknown
         this.oldest = null;

@@ -214,7 +214,8 @@ function TrendPane(pane, context) {
         const isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
         element.classList.toggle('unshown', awaited.length === 0 || isEmpty);
         setText(why, [['walls.untrended', awaited], ['trends.unknown', unknown]].filter(([, names]) => names.length > 0)
-            .map(([key, names]) => say(key, { tags: names.join(', ').replaceAll('-', '\u2011') })) // lines do not break within names
+            // replaces hyphens by non-breaking ones, so that lines do not break within names
+            .map(([key, names]) => say(key, { tags: names.join(', ').replaceAll('-', '\u2011') }))
             .join(' · '));
         if (begun === page || !page?.session.model)
             return;

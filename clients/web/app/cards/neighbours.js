@@ -74,7 +74,8 @@ export class Disagreeing {
         const { params } = this.session;
         if (!params)
             return;
-        if (params.group !== this.group) { // rows of another quantity would mislead until the answer arrives
+        // clears the list when another sensor group is shown: rows of another quantity would mislead until the answer arrives
+        if (params.group !== this.group) {
             this.group = params.group;
             this.fill([]);
             this.drifting.hidden = true;

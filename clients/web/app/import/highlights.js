@@ -81,7 +81,7 @@ export class Highlights {
     write(text, x, y) {
         const c = this.overlay.context;
         if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
-            return; // the asset's name would be outside the picture
+            return; // writes no name if the asset is outside the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
         const left = Math.min(Math.max(4, x - width / 2), this.overlay.wide - width - 4), bottom = Math.max(24, y);

@@ -69,7 +69,7 @@ export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', 
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
-// Returns [title, suffix, note] of the shown quantity.
+// Returns the legend's [title, suffix, note] for the shown group and the parameter `show`.
 export function titleOf({ model }, params) {
     const name = quantityText(model.group(params.group));
     const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // used until coverage.js is loaded
