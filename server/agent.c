@@ -55,7 +55,7 @@ static void answer(struct agent *agent)
         state.has_core = false;
     pthread_mutex_unlock(&agent->thread.lock);
     int count = print_line(&state, line, sizeof(line));
-    (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* result ignored: the line always fits into the buffer of a new socket */
+    (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* ignores the result: a new socket has enough buffer space for the whole line */
     close(fd);
 }
 

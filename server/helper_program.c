@@ -28,9 +28,9 @@ static const int64_t KILL_AFTER_NS = 30 * NS_PER_S;
 struct helper {
     const struct helper_params *params;
     pid_t child;
-    int ends[PIPES][2];  /* descriptors of the pipes; -1: closed */
-    struct text written; /* text that the program has printed on stderr */
-    char *cgroup;        /* path of the program's cgroup; NULL: none */
+    int ends[PIPES][2];  /* [pipe]: descriptors of the pipe's two ends; -1: that end is closed */
+    struct text written; /* text that the child process has printed on stderr so far */
+    char *cgroup;        /* path of the cgroup that limits the child process; NULL: it has no cgroup of its own */
     int64_t until_ns, kill_ns;
     /* told: stop() asked for the program's end; timed_out: the program was told to end because its time limit was over */
     bool told, timed_out;

@@ -36,8 +36,8 @@ struct import_job {
 };
 
 struct arguments { /* zero-initialise */
-    const char **at; /* the program's arguments; NULL ends the list */
-    char **own;      /* arguments that the list owns and frees */
+    const char **at; /* array of the program's arguments; an element NULL ends it */
+    char **own;      /* elements of `at` that were allocated for this list, which frees them */
     size_t count, capacity, owned, own_capacity;
 };
 

@@ -21,7 +21,7 @@ struct plant_runtime_context { /* objects that a reload does not replace */
     struct log *log;
     struct counters *counters;
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
-    struct file_writer *file_writer; /* thread that writes users' changes to disk */
+    struct file_writer *file_writer; /* thread that writes files for users' changes, so that the event loop need not wait for the disk */
     struct workers *workers;
     struct plant_clock *clock;   /* the plant's clock */
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
@@ -34,7 +34,7 @@ struct plant_runtime {
     const struct plant_runtime_context *context;
     struct plant *plant;
     struct plant_services services; /* services of the plant; on a daemon that follows a core, core_link takes the place of `sources` */
-    struct publisher *publisher;    /* publishes readings over MQTT; NULL: nothing is published */
+    struct publisher *publisher;    /* thread that publishes readings and alarms to an MQTT broker; NULL: nothing is published */
     struct source **sources;        /* sources of readings, with the same indices as plant->sources */
     struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */
     /* time spans whose points were not yet read from PostgreSQL when a reload begins; the historian of the next runtime reads

@@ -33,12 +33,14 @@ struct reload {
     struct net *net;
     struct supervision *supervision;
     struct plant_import *import;   /* importer of plants; NULL: import is off */
-    int64_t begun_ns;              /* monotonic time when the running reload was begun */
-    uint64_t following;            /* value of `follows` in the request for the running reload */
-    char expected[17];             /* value of `expects` in the request for the running reload */
+    int64_t begun_ns;              /* monotonic time when the reload that is running began */
+    /* value that the member `follows` below had when the running reload began: the connection that must end first */
+    uint64_t following;
+    /* value that the member `expects` below had when the running reload began: the hash that the configuration must have */
+    char expected[17];
     char by[TOKEN_NAME_BYTES];     /* user who requested the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
-    const char *kept;              /* path of the tag list's previous version, which is kept */
+    const char *kept;              /* path under which the previous version of the tag list is kept */
     struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
     /* held while a reload replaces the runtime, and while this core becomes the leader (which polls devices), so that these
        never overlap */
@@ -54,7 +56,7 @@ struct reload {
     /* number of the connection to this daemon's core. The core ends that connection once it has loaded the plant too, and only
        then the reload continues; 0: the reload does not wait for the core */
     uint64_t follows;
-    char expects[17];           /* hash that the new configuration must have; empty: any */
+    char expects[17];           /* hash that the configuration must have after the reload (plant file and tag list); empty: any */
     char who[TOKEN_NAME_BYTES]; /* user who requested the next reload */
     struct tag_save *save;      /* tag list that the next reload saves; NULL: none */
 };

@@ -18,7 +18,7 @@ enum server_role { SERVER_ALL, SERVER_CORE, SERVER_RENDER };
 struct server_params {
     const char *plant_path;
     const char *address; /* numeric address to listen on */
-    int port;            /* port to listen on; 0: any free one */
+    int port;            /* TCP port on which the daemon listens; 0: any free port */
     int socket_fd;       /* listening socket that the service manager opened and passed on; -1: none */
     enum gl_kind gl;
     struct gl_device gl_device;

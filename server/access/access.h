@@ -10,8 +10,8 @@
 enum { ACCESS_MAX_NAMES = 16 };
 
 struct access_network {
-    uint8_t address[16]; /* network address; an IPv4 address is stored as ::ffff:a.b.c.d */
-    int bits;            /* length of the network prefix in bits, 1..128 */
+    uint8_t address[16]; /* address of the network; bits after the prefix do not count; an IPv4 address is stored as ::ffff:a.b.c.d */
+    int bits;            /* length in bits of the network's prefix (the part that all its addresses share), 1..128 */
 };
 
 struct access_params {
@@ -41,7 +41,7 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
 bool access_host_name(const char *host, char *out, size_t size);
 /* Returns true if the host name is localhost, 127.x.x.x or ::1, which mean this machine. */
 bool access_name_is_local(const char *name);
-/* Returns true if the name is a numeric IP address. */
+/* Returns true if the host name is a numeric IP address instead of a name. */
 bool access_name_is_address(const char *name);
 /* Returns true if a web page of that origin may connect to that host: either it comes from the same host and scheme, or
    params->origins lists its origin. An empty origin is allowed, because such a request does not come from a browser. secure:

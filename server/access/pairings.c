@@ -28,7 +28,7 @@ struct pairings {
     struct kept_list kept; /* content of devices.json, the list of paired devices, each { id, hash, wall, display, from, by, time_us } */
     struct pending_pairing waiting[PAIRINGS];
     size_t count;
-    uint64_t number;  /* increases whenever the list of waiting devices changes */
+    uint64_t number;  /* sequence number of the list of waiting devices; increases with each change of the list */
     int64_t wrong_ns; /* monotonic start of the current minute, in which wrong digits are counted */
     int wrong;
 };
@@ -184,8 +184,8 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
 }
 
 /* Frees an entry in the full table of waiting devices, so that a few addresses cannot lock out the others. The address with the
-   most waiting devices loses its newest one, if it has at least two more than the requesting address, which has `from`. Returns
-   false if no address has that many. */
+   most waiting devices loses its newest one. This requires that it has at least two more than the address that requests an
+   entry, which has `from` waiting devices. Returns false if no address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {
     size_t most = from + 1, victim = pairings->count;

@@ -44,7 +44,7 @@ struct alarm_service {
     struct journal_entry *rows; /* ring buffer of the newest journal rows; NULL: there is no journal */
     uint64_t row_count;         /* number of journal rows since the start, including those overwritten in the ring buffer */
     bool ending, lost;          /* ending: the journal is being closed; lost: it was closed before all rows were on disk */
-    void (*changed)(void *arg); /* callback after alarms have changed; NULL: no listener */
+    void (*changed)(void *arg); /* function that is called after alarms have changed; NULL: none */
     void *changed_arg;
 };
 

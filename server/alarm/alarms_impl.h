@@ -18,7 +18,7 @@ struct last_sample { /* newest sample of a tag */
     bool sampled, bad;
 };
 
-struct gravest { /* kind and state of the most urgent alarm of a tag */
+struct gravest { /* most urgent alarm of a tag: its kind and its state */
     uint8_t kind, status;
 };
 
@@ -29,7 +29,7 @@ struct alarms {
     size_t count, capacity;
     struct feed *feeds; /* dependencies of alarms on the samples of tags, sorted by tag */
     size_t feed_count, feed_capacity;
-    int *by_tag; /* indices in `list` of all alarms, sorted by tag */
+    int *by_tag; /* [position]: index in `list`; contains all alarms, sorted by tag */
     /* [tag], with one extra element at the end: position of the tag's first entry in `feeds` and in by_tag */
     int *first_feed, *first_alarm;
     struct last_sample *seen;

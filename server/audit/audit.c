@@ -17,7 +17,7 @@ enum { MAX_QUEUED = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
 struct queued_entry {
-    struct audit_entry entry; /* the entry's texts are in the same allocation, directly after the struct */
+    struct audit_entry entry; /* the entry; its texts follow this struct in the same block of memory, so they need no free of their own */
     int64_t utc_us;
     bool said; /* true: the entry is already in the log, because the audit file could not be written */
     struct queued_entry *next;

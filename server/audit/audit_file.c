@@ -58,8 +58,8 @@ static int find_chain(struct audit_file *file, char **finding)
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
-/* Returns true if the audit file is empty because its predecessor was just rotated: the line that PATH.head names is the last
-   one of a full file, so no line is missing. */
+/* Returns true if the audit file is empty because the last full file was just renamed. PATH.head then names the last line of
+   that full file, so it does not mean that lines are missing. */
 static bool is_rotated(const struct audit_file *file, const struct audit_chain *head)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, head->seq);

@@ -20,7 +20,7 @@ struct syslog_message {
     const char *event;
     bool good; /* true: the audited action was done; false: it was refused or failed */
     int64_t utc_us;
-    const char *line; /* the audit line to send, `count` bytes */
+    const char *line; /* the audit line to send: `count` bytes, not 0-terminated */
     size_t count;
 };
 /* Appends a syslog message to `out`, preceded by its length (octet counting, RFC 5425). No input or output. */

@@ -13,7 +13,7 @@ struct thread {
     bool started;
     pthread_mutex_t lock;
     pthread_cond_t wake; /* timed waits use clock_mono_ns() */
-    bool stopping;       /* protected by the lock; true: the thread must end */
+    bool stopping;       /* true: the thread must end; protected by the lock */
 };
 
 /* Initialises lock and condition variable. End with thread_finish(). */

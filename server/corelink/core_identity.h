@@ -10,7 +10,7 @@
 #define CORE_PATH "/core"
 
 struct core_identity {
-    /* version: the program's; plant: its name; configuration: hash of plant file and tag list */
+    /* version: version of the program; plant: name of the plant; configuration: hash of plant file and tag list */
     const char *version, *plant, *configuration;
 };
 

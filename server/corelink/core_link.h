@@ -19,14 +19,14 @@ struct core_link_params {
     struct counters *counters;
     const struct plant *plant;
     struct store *store;
-    struct plant_clock *clock;           /* clock to synchronise with the core's */
+    struct plant_clock *clock;           /* this renderer's clock of the plant, which the link adjusts to the core's clock */
     /* alarm service that mirrors the core's alarms; plant, store and alarm service must outlive the link */
     struct alarm_service *alarm_service;
     /* URL ws://HOST:PORT or wss://HOST:PORT of each core that may be the leader; tried in turn */
     const char *urls[CORE_URLS];
     int url_count;
     const char *token_path, *ca_path; /* token_path: token file, NULL: none; ca_path: file of trusted certificates, NULL: the system's */
-    const char *version, *node;       /* version of this program; this renderer's name in the core's log */
+    const char *version, *node;       /* version: version of this program; node: name of this renderer, for the core's log */
     /* standby core only: promises the leader, when asked, not to take the lead. NULL: this node is a renderer */
     struct lease_keeper *keeper;
     struct historian *historian;      /* standby core only: records the leader's samples. NULL: nothing is recorded */

@@ -22,7 +22,7 @@ void core_samples_end(struct core_samples **samples); /* Frees the queue and set
    queue is empty and nothing was appended; -1: the queue overflowed and samples are lost. */
 int core_samples_write(struct core_samples *samples, struct text *out);
 
-/* Returns true if a message contains samples (core_samples_write()). */
+/* Returns true if the message was made by core_samples_write(), so that it contains samples. */
 bool core_samples_is(const void *bytes, size_t count);
 /* Parses a message with samples into *out (free with mem_free()), with times of this machine's monotonic clock. Returns NULL,
    or what is wrong with the message (static text). */

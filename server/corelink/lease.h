@@ -19,13 +19,13 @@
 
 /* time without a renewal after which a follower may bid for the lease */
 #define LEASE_NS (3 * INT64_C(1000000000))
-#define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* how long a leader may act after sending a request that is confirmed */
+#define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* time for which a leader may act after it has sent a request that is then confirmed */
 #define LEASE_RENEW_NS (500 * INT64_C(1000000)) /* interval between renewals */
 #define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval at which a follower reads the row in the database */
 enum { LEASE_NODE_BYTES = 64 };
 
-struct lease_row {    /* the lease's row in the database */
-    int64_t epoch;    /* number that increases with each new leader */
+struct lease_row {    /* the row in the database that says which core leads */
+    int64_t epoch;    /* number of the present leadership: increases each time another core becomes the leader */
     int64_t beat;     /* version of the row; increases with each change of the row */
     int64_t instance; /* random number of the leader's process; distinguishes a restarted core from its former process */
     /* unique names of the cores. leader empty: the last leader gave the lease, to `standby` if that is not empty. standby empty: there is

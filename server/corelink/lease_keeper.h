@@ -17,7 +17,7 @@
 struct lease_keeper_params {
     struct log *log;
     struct counters *counters;
-    const struct plant_postgres *postgres; /* database with the lease's row; copied */
+    const struct plant_postgres *postgres; /* database that contains the row of the lease; the settings are copied */
     const char *plant, *node;              /* plant: name of the plant; node: unique name of this node (lease_name()). Both are copied */
     /* while this file exists, the leader names itself as standby, so that no other core may bid (path is copied; NULL: no such file) */
     const char *maintenance_path;
@@ -38,7 +38,7 @@ bool lease_keeper_start(struct lease_keeper *keeper); /* starts the thread. Retu
 /* If this node still leads, gives the lease to any node; then frees the keeper. The caller must have stopped all work that only
    a leader may do. Sets *keeper to NULL; accepts a pointer to NULL. */
 void lease_keeper_destroy(struct lease_keeper **keeper);
-bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns true if this node leads. */
+bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns true if this core is the leader at the moment. */
 
 bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns true if this node leads and no other core may take over. */
 
@@ -63,7 +63,8 @@ void lease_keeper_give(struct lease_keeper *keeper, const char *standby);
 bool lease_keeper_is_taken(struct lease_keeper *keeper);
 
 /* --- for a follower --- */
-const char *lease_keeper_id(const struct lease_keeper *keeper); /* Returns the ID part of this node's name; valid as long as the keeper. */
+/* Returns the ID part of this core's name "NODE ID"; valid as long as the keeper exists. */
+const char *lease_keeper_id(const struct lease_keeper *keeper);
 /* Sets why the leader refuses this core as its standby, which keeps this core from taking over. NULL: the leader does not
    refuse it, or this node has loaded its plant since. Copies the text. */
 void lease_keeper_set_refused(struct lease_keeper *keeper, const char *why);

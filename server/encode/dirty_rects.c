@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two frames tile by tile and covers the differing tiles with rectangles. */
+/* Compares two frames tile by tile, and covers the tiles that differ with rectangles. */
 #include "encode/dirty_rects.h"
 
 #include <stdlib.h>

@@ -16,7 +16,7 @@ struct encoder_impl {
     void (*destroy)(struct encoder *encoder);
 };
 
-struct encoder { /* common to all codecs; first member of each codec's own struct */
+struct encoder { /* the members that all codecs have; each codec's own struct begins with this struct */
     const struct encoder_impl *impl;
     struct log *log;
     struct packet *ready; /* packet from send() that encoder_receive() has not returned yet; NULL: none */

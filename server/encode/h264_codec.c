@@ -27,13 +27,14 @@ static const struct library libraries[] = {
     { "libopenh264", "rc_mode=quality allow_skip_frames=0", false },
 };
 static const struct library other_library = { "", "", false };
-static const int64_t DEFAULT_BITS_PER_PX_S = 4; /* bits per pixel and second, for encoders that need a bit rate */
+/* default bit rate, in bits per pixel and second, for encoders that cannot encode with constant quality */
+static const int64_t DEFAULT_BITS_PER_PX_S = 4;
 enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MAX_THREADS = 8 };
 
 struct h264_codec {
     const AVCodec *codec;
     const struct library *library;
-    AVCodecContext *context; /* libavcodec context for the size of the newest frame */
+    AVCodecContext *context; /* libavcodec's encoder; it is created again when the size of the frames changes */
     AVFrame *picture;
     AVPacket *out;
     struct h264_upload *upload;

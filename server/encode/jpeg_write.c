@@ -27,7 +27,8 @@ static void fail(j_common_ptr codec)
     longjmp(writer->failed, 1);
 }
 
-static void start(j_compress_ptr codec) /* no-op: set_room() has already set the output buffer */
+/* called by libjpeg before it writes; does nothing, because set_room() has already set the output buffer */
+static void start(j_compress_ptr codec)
 {
     (void)codec;
 }
@@ -55,7 +56,8 @@ struct jpeg_writer *jpeg_writer_create(void)
         mem_free(writer);
         return NULL;
     }
-    jpeg_create_compress(&writer->codec); /* jpeg_create_compress() preserves the members err and client_data */
+    /* initialises the compressor; jpeg_create_compress() keeps the members err and client_data, which are set already */
+    jpeg_create_compress(&writer->codec);
     writer->to = (struct jpeg_destination_mgr){ .init_destination = start, .empty_output_buffer = need_room, .term_destination = start };
     writer->codec.dest = &writer->to;
     return writer;

@@ -10,7 +10,8 @@
 #include "base/math/simd.h"
 
 enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* width and height of a tile, in chroma samples */
-enum { COLOUR = 16 };                              /* smallest chroma, in 8-bit steps from grey, at which a pixel counts as coloured */
+/* a pixel counts as coloured if its chroma differs from grey by at least this many steps of 8-bit chroma */
+enum { COLOUR = 16 };
 static const float GREY = 4; /* weight of a grey pixel in the mean; a coloured pixel's weight is this plus the square of its chroma */
 
 size_t planes_bands(int height_px)

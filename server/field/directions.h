@@ -15,7 +15,7 @@
 #define DIRECTION_LEAST 0.2
 
 struct sensor_direction {
-    float vector[3]; /* vector in the axes of the asset file; its length is the reading's value */
+    float vector[3]; /* the sensor's vector in the axes of the asset file: its direction is measured, its length is the reading's value */
     bool configured; /* the sensor has a direction */
     bool known;      /* true: reading and direction are usable (quality Good or Uncertain) */
     bool uncertain;
@@ -27,7 +27,7 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 struct direction_place { /* a point on a triangle of the asset file */
     uint32_t corners[3];
     float weights[3], normal[3];
-    uint32_t triangle; /* index of the triangle, for the caller's use; directions_find() ignores it */
+    uint32_t triangle; /* index of the triangle; for callers that need it, because directions_find() does not read it */
 };
 struct direction {
     float along[3]; /* direction of the interpolated vector: a unit vector tangent to the surface, in the axes of the asset file */
@@ -40,7 +40,7 @@ struct direction_sources { /* vectors of an asset's sensors, from which directio
     const struct sensor_direction *sensors; /* from directions_read() */
     size_t sensor_count;
 };
-/* Computes the interpolated direction at each of `count` points of the surface. */
+/* Computes the direction of the interpolated vector at each of `count` points of the surface. */
 void directions_find(const struct direction_sources *sources, const struct direction_place *places, size_t count, struct direction *out);
 
 #endif

@@ -102,7 +102,7 @@ struct field_place {
     double parts[3];
 };
 struct field_point {
-    double value; /* value in the unit of the shown quantity */
+    double value; /* value of the field at the point, in the unit of the quantity that is shown */
     bool no_data, uncertain;
     double drawn_error; /* error bound of the values drawn on this triangle, in the unit of `value`; 0: less than 1/255 of the range */
 };

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #define KERNEL_BLOCK 256         /* number of vertices processed together, so that their data stays in the L1 cache */
-#define KERNEL_COLUMNS 8         /* number of columns (a column is one sensor's weights) added in one pass */
+#define KERNEL_COLUMNS 8         /* maximum number of columns (one sensor's weights at a block of vertices) that one call adds to a sum */
 #define KERNEL_LINE 16           /* floats per cache line */
 #define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay; beyond it, exponents would overflow the loops' integer conversions */
 
@@ -21,7 +21,7 @@ void kernel_euclidean(const float (*positions_m)[3], size_t count, const float p
 /* Takes the distances of all vertices from one sensor: lowers near_m[i], the distance from vertex i to the nearest sensor so
    far, to distance_m[i] if that is smaller. */
 void kernel_nearest(const float *restrict distance_m, size_t count, float *restrict near_m);
-/* Returns the largest finite distance, or most_m if that is larger. */
+/* Returns the largest finite one of `count` distances, but at least most_m. */
 float kernel_largest(const float *distance_m, size_t count, float most_m);
 
 /* Call once for each sensor: raises top[i] to the sensor's strength if no sensor is nearer to vertex i. Afterwards top[i] is
@@ -43,9 +43,9 @@ struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
     float reach_m, strength, decay;
-    float power;            /* exponent of the distance, for interpolation shepard */
-    const float *near_log2; /* log2 of near_m, for interpolation shepard with a power other than 2 */
-    bool alike;             /* for interpolation shepard: all strengths are equal */
+    float power;            /* power p of the distance in the interpolation shepard */
+    const float *near_log2; /* [vertex]: log2 of near_m; only for the interpolation shepard with a power other than 2 */
+    bool alike;             /* true: all sensors have the same strength; only for the interpolation shepard */
     float radius_m;         /* radius R, for interpolation paper */
 };
 /* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the
@@ -74,7 +74,8 @@ struct kernel_value {
 /* Applies the rule of struct kernel_value to each vertex's sum and weight. */
 void kernel_value(const struct kernel_value *rule, const double *restrict sum, const float *restrict weight, size_t count,
                   float *restrict value);
-/* Stores values into scalars. Returns the largest change, and sets *changed if any differs. */
+/* Stores the values of vertices in their scalars. Returns the largest change of a value, and sets *changed if any value
+   differs. */
 float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed);
 /* Equivalent to kernel_add() on a sum of zeros, kernel_value() and kernel_store(), in one pass and with identical bits, for
    fewer than KERNEL_COLUMNS sensors. Returns the largest change, and sets *changed if any value differs. */

@@ -11,9 +11,9 @@ struct layout_sensor {
     int tag;               /* index in plant->tags */
     uint32_t column;       /* index of the sensor in the asset file; trial sensors have indices from the file's number of sensors on */
     float surface_m[3];    /* position of the sensor in metres, in the coordinates of the asset file */
-    uint32_t vertex;       /* index of the vertex nearest to the sensor */
+    uint32_t vertex;       /* index of the asset file's vertex that is nearest to the sensor */
     bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m instead of the file */
-    const float *tried_m;  /* geodesic distance of each vertex; NULL: not known yet */
+    const float *tried_m;  /* [vertex]: geodesic distance from a trial sensor; NULL: not computed yet */
     /* by vertex: distance from the sensor in metres along the surface, computed by the heat method; NULL: plantcast-prep has
        not computed heat distances for this group */
     const float *heat_m;
@@ -23,9 +23,9 @@ struct layout_sensor {
 /* Points at which distances from the sensors are wanted, each inside a triangle of the asset file. */
 struct layout_points {
     float (*positions_m)[3];
-    uint32_t (*corners)[3]; /* [point]: vertices at the corners of its triangle */
-    float (*parts)[3];      /* [point]: barycentric coordinates in its triangle */
-    float (*away_m)[3];     /* [point]: straight-line distances from the corners of its triangle */
+    uint32_t (*corners)[3]; /* [point]: indices of the vertices at the three corners of the triangle that contains the point */
+    float (*parts)[3];      /* [point]: barycentric coordinates of the point in its triangle */
+    float (*away_m)[3];     /* [point]: straight-line distances in metres from the point to the three corners of its triangle */
 };
 
 /* Stores one point in element `point` of every array of `points`: the triangle's corners, the barycentric coordinates `parts`,
@@ -36,7 +36,7 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
 struct field_layout {
     const struct asset *file;
     const struct plant_group *group;
-    uint32_t number;              /* index of `group` in the plant */
+    uint32_t number;              /* index of the group of sensors in the plant's groups */
     const struct plant_tag *tags; /* the plant's tags */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;

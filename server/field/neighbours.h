@@ -14,7 +14,7 @@
 struct neighbour {
     int tag;
     enum interpolation by;
-    double value;     /* reading of the sensor; NaN: not usable now */
+    double value;     /* present reading of the sensor; NaN: the reading is not usable */
     double predicted; /* value predicted from the other sensors; NaN: no other good sensor determines it */
     double deviation; /* for interpolation gp: standard deviation of the difference between reading and prediction; else NaN */
 };
@@ -53,7 +53,7 @@ struct neighbours_cache {
 #define NEIGHBOURS_FRESH_NS INT64_C(1000000000)
 const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, const struct scene *scene, int asset, int group,
                                               const struct snapshot *snapshot);
-/* Frees the cached predictions and empties the cache. */
+/* Frees the predictions in the cache; the empty cache can be used again. */
 void neighbours_cache_finish(struct neighbours_cache *cache);
 /* Returns the difference between reading and prediction, in standard deviations. If the deviation is unknown, a twentieth of
    the group's range serves as the unit. NaN: reading or prediction is unknown. */

@@ -33,11 +33,12 @@ struct field_params {
     enum distance_mode distance;
     enum fill_mode fill;
     double strength, decay; /* factors applied to each sensor's configured strength and decay; 1: unchanged */
-    double power;           /* exponent p of the distance, for interpolation shepard */
+    double power;           /* power p of the distance, for interpolation shepard: weights are proportional to 1 / distance^p */
     double radius_m;        /* radius R of interpolation paper; 0: the largest distance on the asset from any configured sensor */
     double reach_m;         /* INFINITY: no limit */
     size_t override_count;
-    struct field_override overrides[FIELD_OVERRIDES]; /* overrides sorted by tag; unused elements are zero */
+    /* strengths and decays that replace those of the tag list, sorted by tag; unused elements are all zero */
+    struct field_override overrides[FIELD_OVERRIDES];
 };
 /* Fills in the group's defaults from the plant file. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);

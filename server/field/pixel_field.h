@@ -9,12 +9,14 @@
 
 #include "plant/exact.h"
 
-enum pixel_show { PIXEL_SUM, PIXEL_DISTANCE, PIXEL_BLIND }; /* PIXEL_BLIND: the smallest hot spot that the nearest sensor would show */
+/* quantity that a field shows: the interpolated value, the distance from a sensor, or PIXEL_BLIND: the height that a hot spot
+   at the pixel needs for the nearest sensor to show it */
+enum pixel_show { PIXEL_SUM, PIXEL_DISTANCE, PIXEL_BLIND };
 enum { PIXEL_CONFIGURED = 1, PIXEL_USABLE = 2, PIXEL_UNCERTAIN = 4, PIXEL_NO_LIMITS = 8 };
 
 struct pixel_sensor {
     float place_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
-    float value;      /* the sensor's value in the sum */
+    float value;      /* the sensor's value that is multiplied by its weight and summed */
     float strength, decay;
     uint32_t state; /* PIXEL_* bits; if neither PIXEL_USABLE nor PIXEL_NO_LIMITS is set, the sensor is lost */
 };
@@ -28,7 +30,7 @@ struct pixel_field {
     float power, reach_m, radius_m;        /* metres; reach_m INFINITY: no limit */
     float scale, offset, low, high, empty; /* converts a sum to a value, like struct kernel_value */
     float hot_spot_m, seen, most;          /* PIXEL_BLIND */
-    struct pixel_sensor *sensors;          /* `count` sensors, owned; NULL if count is 0 */
+    struct pixel_sensor *sensors;          /* array of `count` sensors, owned by this struct; NULL if count is 0 */
 };
 
 struct pixel_value {
@@ -41,7 +43,7 @@ void pixel_field_at(const struct pixel_field *field, const float point_m[3], str
 float pixel_field_change(const struct pixel_field *field, const struct pixel_field *before);
 /* Replaces *to, which must be zeroed or already filled, with a copy of *from that has its own sensors. */
 void pixel_field_copy(struct pixel_field *to, const struct pixel_field *from);
-void pixel_field_finish(struct pixel_field *field); /* frees the sensors and zeroes the field */
+void pixel_field_finish(struct pixel_field *field); /* frees the array of sensors and sets all members of the field to zero */
 uint64_t pixel_field_hash(const struct pixel_field *field);
 
 #endif

@@ -20,7 +20,8 @@
 #define ERROR_MARGIN 1.1
 /* the error limit (error_limit) is replaced if it is stricter than necessary by more than this factor */
 #define ERROR_SLACK 1.5
-#define MAX_BLIND 1000.0 /* largest height of a hot spot to show, in multiples of the group's range */
+/* limit on the values of SHOW_BLIND (the height that a hot spot needs to be noticed), in multiples of the group's range */
+#define MAX_BLIND 1000.0
 /* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding error remains.
    After a larger change, everything is summed again */
 #define STEP_LIMIT 1e6
@@ -216,7 +217,7 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    bool blind = state->params.show == SHOW_BLIND; /* SHOW_BLIND has data around lost sensors, too */
+    bool blind = state->params.show == SHOW_BLIND; /* if the field shows SHOW_BLIND, vertices around lost sensors have data, too */
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
     at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;

@@ -21,7 +21,7 @@ enum sensor_use {
 /* Whether a vertex has data, depending on the sensor nearest to it. */
 enum place {
     PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
-    PLACE_LOST,     /* the nearest sensor is not usable; another one is within reach */
+    PLACE_LOST,     /* the nearest configured sensor is lost (not usable), but another sensor is within reach */
     PLACE_NOBODY,   /* no usable sensor within reach */
     PLACE_NO_LIMITS /* the nearest sensor within reach is good, but its tag has no alarm limits (SENSOR_NO_LIMITS) */
 };
@@ -70,7 +70,7 @@ struct weights {
     float decay_m; /* metres; for interpolation fin: the decay length; for gp: 1/k, with k as in preprocess/influence/gaussian.h */
     const float *deviations; /* [vertex], for interpolation gp: standard deviation of the field while all sensors are used; else NULL */
     const float *priors;     /* [vertex], for interpolation gp: standard deviation of the field without any sensor */
-    float deviation;         /* for interpolation gp: standard deviation of the prior */
+    float deviation;         /* for interpolation gp: standard deviation of the field before any reading is known (the prior) */
     float *errors;           /* [vertex]: largest error of linear interpolation within the adjacent triangles; unit and method in
                                 drawn_error.h; NULL: not measured */
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
@@ -79,13 +79,13 @@ struct weights {
        2^-b; the largest over all measured levels of detail */
     float erring[WEIGHTS_ERRING];
     uint64_t measured_levels; /* bit mask of the levels of detail whose triangles are included in `errors` */
-    unsigned errors_version;  /* number of changes of `errors` so far */
+    unsigned errors_version;  /* counts the changes of `errors`, so that users can tell that it changed */
     float *beyond_m;          /* [vertex], for interpolations fin and gp: metres beyond the border of the area with data; else NULL */
     float *columns; /* cached weights of the first kept_blocks blocks, [block][member][KERNEL_BLOCK], or NULL; those of other blocks
                        are recomputed for each sum */
     uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */
     size_t kept_blocks;
-    int users;           /* number of states that use these weights */
+    int users;           /* number of computed fields (struct field_state) that use these weights */
     uint64_t used, sums; /* used: tick (field_impl.h) of the last use; sums: number of times that the weights were summed */
     struct weights *next;
 };
@@ -133,7 +133,7 @@ void weights_deviations(const struct weights *weights, size_t begin, size_t coun
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
-    const uint8_t *marked; /* [entry of this list]: 1 if the column is also added to sums->marked */
+    const uint8_t *marked; /* [element of the list]: 1: the column is also added to sums->marked; 0: only to sums->total */
     size_t count;
 };
 /* Sums over sensors for each vertex of one block of KERNEL_BLOCK vertices, to which weights_add() adds. */

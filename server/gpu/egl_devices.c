@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* EGL's list of devices, and their PCI addresses. */
+/* Lists the devices (GPUs) that EGL knows, with their PCI addresses. */
 #include "gpu/egl_devices.h"
 
 #include <limits.h>

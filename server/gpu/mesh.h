@@ -48,7 +48,7 @@ struct gpu_mesh {
 bool mesh_init(struct gpu_mesh *mesh, const struct gl *gl, const char *name,
                const struct mesh_params *params); /* creates the buffers from `params`; returns false when out of memory (logged) */
 void mesh_finish(struct gpu_mesh *mesh);
-void mesh_bind(const struct gpu_mesh *mesh); /* makes the mesh the source of the draws that follow */
+void mesh_bind(const struct gpu_mesh *mesh); /* binds the mesh's buffers, so that all following draw calls draw its geometry */
 /* Sets the instances for the following draws. instances: a buffer of MESH_INSTANCE_VECTORS vectors per instance. */
 void mesh_bind_instances(const struct gpu_mesh *mesh, GLuint instances);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiles and links shaders, and logs their errors. */
+/* Compiles shaders, links them to programs, and logs the compiler's and the linker's errors. */
 #include "gpu/program.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates framebuffers with colour and depth. */
+/* Creates framebuffers with a colour buffer and a depth buffer, to draw frames into. */
 #include "gpu/target.h"
 
 #include "gpu/gl.h"

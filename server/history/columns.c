@@ -19,7 +19,7 @@ uint8_t *columns_pack(const uint64_t *rows, size_t width, size_t count, size_t *
         for (size_t i = 0; i < count; i++)
             for (size_t byte = 0; byte < 8; byte++)
                 planes[(column * 8 + byte) * count + i] = (uint8_t)(rows[i * width + column] >> (8 * byte));
-    /* cannot fail: the output buffer has ZSTD_compressBound() bytes */
+    /* ignores errors of ZSTD_compress(): an output buffer of ZSTD_compressBound() bytes is always large enough */
     *bytes = ZSTD_compress(packed, bound, planes, words * 8, words * 8 <= SMALL_BYTES ? SMALL_LEVEL : LEVEL);
     mem_free(planes);
     return packed;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes hourly means of a tag from the buckets of its recorded series. */
+/* Computes the mean of a tag's recorded values for each hour, from the buckets of its series. */
 #include "history/history.h"
 
 #include "history/month.h"

@@ -22,11 +22,11 @@ struct history_tag {
 };
 
 struct history_row {
-    int tag; /* index of the tag in the array `tags` passed to month_file_open() */
+    int tag; /* index of the row's tag in the array `tags` that was passed to month_file_open() */
     struct history_point point;
 };
 
-struct history_points { /* zero-initialise; free the array `at` with mem_free() */
+struct history_points { /* a list of points; zero-initialise; free the array `at` with mem_free() */
     struct history_point *at;
     size_t count, capacity;
     /* functions that read a time span may stop once `at` contains more than this many points of the span; 0: no limit */
@@ -38,7 +38,7 @@ static inline bool history_points_full(const struct history_points *points)
 {
     return points->max && points->count > points->max;
 }
-struct history_buckets { /* zero-initialise; free the array `at` with mem_free() */
+struct history_buckets { /* a list of rollup buckets; zero-initialise; free the array `at` with mem_free() */
     struct history_bucket *at;
     size_t count, capacity;
 };
@@ -114,7 +114,7 @@ int month_file_points(struct month_file *file, const char *tag, int64_t from_us,
 /* A tag's points that are omitted, because their unit cannot be converted to the plant's; zero-initialise. */
 struct history_left_out {
     size_t count;
-    char unit[32]; /* unit of measurement of the first omitted point */
+    char unit[32]; /* unit in which the first omitted point was recorded */
 };
 /* Counts a tag's points between two times that are omitted because of their unit, and adds them to *out. */
 int month_file_left_out(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_left_out *out);
@@ -127,7 +127,7 @@ struct history_gap {
     int64_t from_us, to_us;
 };
 struct history_gaps {
-    struct history_gap *at; /* array of gaps; free with mem_free() */
+    struct history_gap *at; /* array of `count` gaps in recording; free with mem_free() */
     size_t count, capacity;
 };
 /* Appends the gaps in recording that are noted in this file, in no particular order. */

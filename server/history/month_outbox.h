@@ -30,8 +30,8 @@ struct month_outbox_event {
 struct month_outbox_batch {
     /* rows: recorded points in order of insertion; held: each tag's newest sample that is not recorded yet */
     struct month_outbox_row *rows, *held;
-    struct month_outbox_tag *tags;     /* all tags of the month's file */
-    struct month_outbox_event *events; /* all events of the month's file, such as gaps */
+    struct month_outbox_tag *tags;     /* list of all tags that the month's file contains, with their names and units */
+    struct month_outbox_event *events; /* list of all events that the month's file contains, such as gaps in recording */
     size_t row_count, row_capacity, held_count, held_capacity, tag_count, tag_capacity, event_count, event_capacity;
 };
 

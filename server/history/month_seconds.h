@@ -8,7 +8,7 @@
 #include "history/month_file_impl.h"
 
 struct month_row {
-    int64_t id;   /* the tag's id in the file; 0: no row */
+    int64_t id;   /* id of the row's tag in the month's file; 0: this element has no row */
     size_t order; /* position of the point in the order of recording; of two points with equal times the later one wins */
     struct history_point point;
 };

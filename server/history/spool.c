@@ -143,7 +143,7 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
     return error;
 }
 
-struct spool_unit { /* a tag's unit of measurement: in the spool file, and now in the plant */
+struct spool_unit { /* units of one tag: the one in which the spool file has its values, and the one that the plant has now */
     bool misfits;              /* true: the unit in the spool file cannot be converted to the tag's current unit */
     struct unit_change change; /* conversion from the unit in the spool file to the tag's current unit */
 };

@@ -30,7 +30,7 @@ struct plant_import {
     struct import_order read;
     bool ordered, busy, cancelled;
     enum import_phase phase;
-    unsigned number; /* number of import orders so far */
+    unsigned number; /* number of import orders since the daemon's start; increases with each order */
     struct text said;
     char *why; /* why the last import order failed; NULL: it succeeded */
 };

@@ -19,11 +19,11 @@ void alarm_text_cache_finish(struct alarm_text_cache *cache);
 char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
                   uint64_t *number);
 
-/* An HTTP query of /api/v1/alarms or /api/v1/alarms/journal. */
+/* Arguments of an HTTP query of /api/v1/alarms or /api/v1/alarms/journal. */
 struct alarm_query {
     bool csv;
     int limit;      /* maximum number of rows */
-    int64_t offset; /* for /api/v1/alarms: number of alarms to skip */
+    int64_t offset; /* for /api/v1/alarms: number of alarms at the beginning of the list to leave out */
     char tag[256];  /* name of the tag or device whose alarms to return; empty: all alarms */
     /* for /api/v1/alarms/journal: time range of the rows, in microseconds UTC; before_id: only rows with smaller ids are
        returned */

@@ -10,7 +10,7 @@
    unchanged if the member is missing, and return true. *given, if not NULL, tells whether the member was present. */
 bool need_number(const json_t *o, const char *name, double low, double high, double *out, struct message_error *error);
 bool may_number(const json_t *o, const char *name, double low, double high, double *out, bool *given, struct message_error *error);
-/* Reads the member "seq", an integer in 1..2^32-1. */
+/* Reads the member "seq", the client's sequence number of the message, an integer in 1..2^32-1. */
 bool need_seq(const json_t *o, uint32_t *out, struct message_error *error);
 bool need_vector(const json_t *o, const char *name, double out[3], struct message_error *error);
 bool may_vector(const json_t *o, const char *name, double out[3], bool *given, struct message_error *error);

@@ -140,7 +140,7 @@ struct pick_request {
 
 enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
-    int action;                          /* the user's action on the alarms (enum alarm_event) */
+    int action;                          /* action that the user performs on the alarms, such as acknowledging (enum alarm_event) */
     /* indices of the tags whose alarms the request names; for alarms of kind ALARM_LINK, indices of devices (alarm/devices.h) */
     int tags[ALARM_REQUEST_MOST], count;
     uint8_t kinds[ALARM_REQUEST_MOST]; /* kind of each alarm (enum alarm_kind), in the order of `tags` */
@@ -232,20 +232,21 @@ struct message {
     bool active;      /* message ping: true: the user was active since the last ping */
     uint64_t follow;  /* messages follow and lead: number of the other session to follow, or to which the lead is handed; 0: no session */
     struct alarm_request alarm;
-    struct time_request time; /* messages time and hello: the time that the view shows */
+    struct time_request time; /* messages time and hello: the past or present time that the view is to show */
     struct place_request place;
     struct coverage_request coverage;
     /* messages save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirmed; empty: not confirmed yet */
     char confirm[17];
-    struct assumed_filter accept; /* message accept_places: which assumed positions to accept */
+    struct assumed_filter accept; /* message accept_places: filter that selects the assumed positions to accept */
     char kept[65];                /* message restore_tags: name of the earlier tag list version to restore */
     struct loop_check_request loop_check;
     /* messages that edit or share a named view: save_view sets all members, remove_view only the id, share_view only the
        address, send_to_wall only view and title */
     struct named_view_edit view_edit;
-    struct note_request note;         /* messages note and remove_note: the note */
-    struct wall_request wall;         /* messages display, send_to_wall and point: the pane or display of a wall in question */
-    struct pair_request pair;         /* messages pair and unpair: the display to be paired */
+    struct note_request note;         /* messages note and remove_note: the note to add, or to remove */
+    /* messages display, send_to_wall and point: the display, or the pane of a display, to which the message refers */
+    struct wall_request wall;
+    struct pair_request pair;         /* messages pair and unpair: the display that is to be paired, or whose pairing is to end */
     enum signed_frames signed_frames; /* messages hello and sign: frames that the server must sign */
 };
 

@@ -10,7 +10,7 @@ struct message_error {
     /* refusal code with arguments, which pages translate for their users; code REFUSAL_NONE: an error of the client program,
        described only by the English text */
     struct refusal refusal;
-    char about[24];    /* type of the refused message; empty: unknown */
+    char about[24];    /* type of the message that was refused, such as "params"; empty: not known */
     int retry_after_s; /* seconds that the client should wait before it tries again; 0: not stated */
 };
 
@@ -21,7 +21,7 @@ void message_refuse(struct message_error *error, const char *code, const char *f
 /* Sets the error to a refusal code with arguments; `args` is a format as for refusal_set(). */
 void message_refuse_with(struct message_error *error, const char *code, const char *field, enum refusal_code refusal, const char *args, ...)
     __attribute__((format(printf, 5, 6)));
-/* Prepends "field: " to the error's text. */
+/* Puts "FIELD: " in front of the error's text, where FIELD is the name of the wrong member. */
 void message_error_within(struct message_error *error, const char *field);
 
 #endif

@@ -6,7 +6,7 @@
 #include "message/names.h"
 
 enum role {
-    ROLE_NOBODY,   /* a client that has not authenticated yet */
+    ROLE_NOBODY,   /* role of a client that has not proved its identity yet */
     ROLE_RENDERER, /* a renderer daemon: may only open /core and request history */
     ROLE_STANDBY,  /* a standby core: has the rights of a renderer */
     ROLE_OPEN,     /* any client without a token, if the daemon runs with --open-viewers */

@@ -11,7 +11,7 @@
 enum { VIEW_ADDRESS_ARGS = 40 };
 
 struct view_address {
-    char *args[VIEW_ADDRESS_ARGS]; /* arguments from the address, as decoded texts NAME=VALUE */
+    char *args[VIEW_ADDRESS_ARGS]; /* arguments NAME=VALUE that were found in the address, decoded */
     size_t count;
 };
 

@@ -8,13 +8,14 @@
 
 struct address_usage {
     uint8_t address[16]; /* address of the client; an IPv4 address has the form ::ffff:a.b.c.d */
-    bool local;          /* true: the address is loopback: 127.x or ::1 */
+    bool local;          /* true: the client is on this machine: its address is 127.x or ::1 */
     int refs, connections, sessions;
     int named;               /* number of reverse-proxy connections whose last request named this client address */
-    int pictures, questions; /* HTTP requests in progress: for pictures, and for history */
+    int pictures, questions; /* numbers of HTTP requests in progress: `pictures` for pictures, `questions` for recorded history */
     int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
-    int64_t rate_begin_ns, messages; /* messages: stream messages within the second that began at rate_begin_ns (monotonic) */
+    /* messages: number of messages received over streams since rate_begin_ns (monotonic start of the current second) */
+    int64_t rate_begin_ns, messages;
 };
 
 struct address_limits;

@@ -12,7 +12,7 @@ struct connection {               /* identity of one connection; lives as long a
     enum role role;               /* the user's role, according to the last request's headers */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* access token of the last request on this connection; "": none */
-    bool from_proxy;                 /* true: a trusted proxy sent the last request */
+    bool from_proxy;                 /* true: the last request came from a trusted reverse proxy */
     bool forwarded;                  /* true: the trusted proxy forwarded a client's request; false also for the proxy's own checks */
     bool answered;                   /* true: all requests of this connection have been answered */
     /* bytes that the connection had received when it began to wait for its next request; UINT64_MAX: not waiting (http/stuck_head.h) */

@@ -14,7 +14,7 @@ bool net_access_good(struct log *log, const struct access_params *access);
 struct net *net_create(const struct net_params *params);
 /* Closes all connections, frees the event loop and sets *net to NULL; accepts a pointer to NULL. */
 void net_destroy(struct net **net);
-/* Returns the port on which the server listens. */
+/* Returns the number of the TCP port on which the server listens. */
 int net_port(const struct net *net);
 /* Serves until net_stop() is called, then closes the clients' connections. */
 void net_run(struct net *net);

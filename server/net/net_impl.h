@@ -32,9 +32,9 @@ struct net {
         pthread_mutex_t lock;
         pthread_cond_t done;
         /* --- below: protected by `lock` */
-        void (*what)(void *arg); /* function queued by net_call(); NULL: none */
+        void (*what)(void *arg); /* function that net_call() has queued for the event loop; NULL: none */
         void *arg;
-        bool closed; /* true: the event loop has ended */
+        bool closed; /* true: the event loop has ended, so net_call() fails */
     } call;
 };
 

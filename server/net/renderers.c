@@ -29,8 +29,8 @@ struct lists_seen {
 };
 
 struct deed {
-    struct session *session; /* session that carries out the action (session_proxy.h) */
-    json_t *id;              /* JSON id of the renderer's message, repeated in the answer */
+    struct session *session; /* session that was created to carry out this one forwarded action (session_proxy.h) */
+    json_t *id;              /* id of the action's message, chosen by the renderer and repeated in the answer */
     struct deed *next;
 };
 
@@ -63,7 +63,7 @@ struct renderer_peer {
     uint64_t rows;                /* standby: sequence number of the last row of the alarm journal that was sent to it */
     uint64_t alarms;              /* sequence number of the last change of alarms that was sent to the peer */
     struct lists_seen lists;
-    bool *links;   /* by source: connection state, as last sent to the peer */
+    bool *links;   /* [source]: state of the connection to the source, as last sent to the peer */
     json_t *hello; /* this core's introduction, the first message to the peer; NULL: already sent */
     /* answers to forwarded actions that are still to be sent, ordered by their JSON member ACTED (time at which the action was on disk) */
     json_t *answers;

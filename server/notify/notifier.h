@@ -12,9 +12,9 @@ struct notifier_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant; /* plant whose plant file must have the key `notify`; plant and alarm service must outlive the notifier */
-    /* the service whose alarms are sent */
+    /* alarm service whose alarms are sent to recipients */
     struct alarm_service *alarm_service;
-    const char *folder;      /* folder of notify.json; the alarm journal creates it */
+    const char *folder;      /* existing folder in which notify.json is stored; the alarm journal creates the folder */
     void (*kept)(void *arg); /* called by the notifier's thread after the content of notify.json has changed; NULL: not wanted */
     void *kept_arg;
 };

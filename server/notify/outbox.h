@@ -12,8 +12,9 @@
 enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms, of all recipients together */, OUTBOX_ID_BYTES = 40 };
 /* minimum time between two notifications of an alarm that comes and goes without being acknowledged */
 #define OUTBOX_REPEAT_US (600 * INT64_C(1000000))
-#define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age at which an undeliverable message is dropped */
-#define OUTBOX_REFRESH_US (60 * INT64_C(1000000)) /* interval at which all active alarms are sent to Alertmanager again */
+#define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age at which a message that could not be delivered is dropped, in microseconds */
+/* interval in microseconds after which all active alarms are sent to Alertmanager again */
+#define OUTBOX_REFRESH_US (60 * INT64_C(1000000))
 #define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* Alertmanager drops an alarm that is not sent again within this time */
 
 struct outbox_item { /* one alarm in a message */
@@ -56,7 +57,7 @@ void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us);
 void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us);
 
 struct outbox_counts {
-    int64_t waiting; /* number of alarms queued for one recipient */
+    int64_t waiting; /* number of alarms that wait to be sent to this recipient */
     /* number of notifications lost since the start, of all recipients, because the queue was full or the message too old */
     int64_t lost;
 };

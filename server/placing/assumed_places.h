@@ -23,7 +23,7 @@ enum assumed_outcome {
     ASSUMED_NOT_MEANT,
     ASSUMED_ACCEPTED,
     ASSUMED_NOWHERE, /* not accepted: the tag's row in the tag list has neither a node nor X, Y, Z */
-    ASSUMED_MISSING, /* not accepted: the tag's asset has no model */
+    ASSUMED_MISSING, /* not accepted: the tag's asset has no prepared model */
     ASSUMED_FAR,     /* not accepted: the place is too far from the asset's surface */
     ASSUMED_UNSURE,  /* not accepted: the confidence of the match is too low or unknown */
     ASSUMED_OUTCOMES

@@ -31,7 +31,7 @@ struct trials *placing_trials(struct placing *placing);
 
 enum { PLACING_MOVES = TRIAL_SENSORS };
 struct place_move {
-    int tag, asset;       /* indices of the tag and the asset in the plant */
+    int tag, asset;       /* tag: index of the tag whose sensor moves; asset: index of the asset on which it is placed */
     double position_m[3]; /* requested position of the sensor in metres, in plant coordinates */
 };
 enum placed_state {

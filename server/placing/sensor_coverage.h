@@ -7,19 +7,19 @@
 
 struct sensor_coverage_query {
     const struct scene *scene;
-    const struct trial *trial; /* trial layout of the sensors; NULL: none */
+    const struct trial *trial; /* trial that moves some of the sensors; NULL: all sensors are where the plant has them */
     int asset, group;
     enum distance_mode mode;
     double reach_m; /* a sensor farther than this from a point does not cover it, in metres; INFINITY: no limit */
     /* metres; a point at least this far from all sensors counts as far. 0: half of reach_m or, without a limit, a fifth of the asset's
        size */
     double far_m;
-    const uint8_t *good; /* by tag: 1: the sensor's reading is usable now */
+    const uint8_t *good; /* [tag]: 1: the tag's reading is usable now; 0: it is not */
 };
 
 struct sensor_coverage {
     size_t sensors;
-    double far_m; /* the distance that was used as query->far_m */
+    double far_m; /* distance in metres from which points count as far: query->far_m or, if that is 0, the default */
     /* distance in metres between the surface point that is farthest from all sensors and its nearest sensor; ignores points
        that no path along the surface connects with a sensor */
     double farthest_m;

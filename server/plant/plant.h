@@ -158,12 +158,14 @@ enum mqtt_payload { MQTT_NUMBER /* text: one number */, MQTT_JSON, MQTT_SPARKPLU
 
 struct plant_mqtt { /* MQTT settings of a source or of `publish`; omitted texts are NULL */
     enum mqtt_payload payload;
-    int protocol;    /* protocol version; 4: MQTT 3.1.1; 5: MQTT 5 */
+    int protocol;    /* version of the MQTT protocol: 4 means MQTT 3.1.1, and 5 means MQTT 5 */
     bool persistent; /* true: persistent session: the broker keeps messages while this daemon is disconnected */
     int qos, keepalive_s;
     char *client_id;
     bool has_tls;
-    char *ca, *certificate, *key; /* PEM files for TLS; ca NULL: the system's trusted certificates */
+    /* PEM files for TLS: CA certificates (NULL: the system's trusted ones), and the daemon's own certificate and key (NULL:
+       none) */
+    char *ca, *certificate, *key;
     char *will;                   /* topic of the last will: if the connection breaks, the broker publishes "offline" there */
     char *topic;                  /* topic template for tags whose address has no topic */
     char *value, *time, *quality; /* JSONPaths that find value, time and quality in a JSON message */
@@ -184,7 +186,7 @@ struct plant_opcua {                   /* OPC UA settings of a source; omitted t
     /* files with certificate and key of the user that the daemon signs in as, instead of a login file */
     char *user_certificate, *user_key;
     char *path;                        /* path of the endpoint URL */
-    char *name_space;                  /* namespace URI of nodes whose address states none */
+    char *name_space;                  /* namespace URI that applies to tags whose address states no namespace */
     int queue;                         /* number of values per node that the OPC UA server queues between two messages to the daemon */
     /* smallest change of a value that the OPC UA server reports: absolute, or in percent of the node's range (EURange); 0: every change */
     double deadband, deadband_percent;
@@ -222,14 +224,15 @@ struct plant_source {
     char *login; /* path of a file with the user on the first line, the password on the second */
     struct plant_mqtt mqtt;
     struct plant_opcua opcua;
-    bool simulated; /* true: readings of this source are simulated, not measured */
+    bool simulated; /* true: a simulator provides the readings of this source, so they are not measured */
     int line;
 };
 
 /* The broker to which readings and alarms are published. */
 struct plant_publish {
-    struct plant_source broker; /* connection settings; of these, only the broker's address and the daemon's identity are used */
-    char *prefix;               /* prefix of all topics; begins with plantcast/ */
+    /* connection to the broker; of its members, only those for the broker's address and the daemon's identity are used */
+    struct plant_source broker;
+    char *prefix;               /* beginning of all topics that the daemon publishes; itself begins with plantcast/ */
     double every_s;
 };
 
@@ -239,7 +242,7 @@ struct plant_postgres {
     /* path of a file with the user name on the first line and the password on the second; NULL: libpq finds the login itself */
     char *login;
     char *schema;
-    double spool_points; /* maximum number of points on this machine's disk that wait for the database */
+    double spool_points; /* maximum number of points that are kept on this machine's disk while the database cannot be reached */
 };
 
 struct plant_history {
@@ -303,7 +306,7 @@ struct tag_scale { /* conversion from the raw value to the tag's unit */
     /* unit of the values at the tag's address and of scaled_low and scaled_high: the unit in the tag's row; if the row has
        none, the tag's unit */
     char *own_unit;
-    struct unit_change change; /* conversion from own_unit to the tag's unit */
+    struct unit_change change; /* conversion of values from own_unit to the unit in which the plant shows the tag */
 };
 
 struct tag_place { /* where a tag's sensor is on its asset */

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 struct png_text {
-    const char *keyword; /* name of the text, 1 to 79 bytes */
+    const char *keyword; /* keyword of the text chunk, which says what the text is; 1 to 79 bytes */
     const char *text;    /* UTF-8; use ASCII, because some readers decode the text as Latin-1, as PNG says */
     size_t length;
 };

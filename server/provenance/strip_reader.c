@@ -124,7 +124,7 @@ static bool find_place(const struct strip_picture *picture, struct strip_found *
 /* --- cells -------------------------------------------------------------------------------------------------------------------- */
 
 struct color_patch {
-    double rgb[3]; /* mean colour of the patch's pixels */
+    double rgb[3]; /* mean colour of the pixels in the patch: red, green, blue */
     int count;
 };
 

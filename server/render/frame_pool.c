@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Takes and releases pixel buffers under a lock. */
+/* Pool of pixel buffers, which frames take and give back. A lock protects the pool. */
 #include "render/frame_pool.h"
 
 #include <pthread.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Divides a renderer's memory limit among its caches. */
+/* Sets the limit of each of a renderer's caches to a share of the renderer's memory limit. */
 #include "render/memory.h"
 
 #include "render/gl/gl_backend.h"

@@ -15,7 +15,7 @@ struct soft; /* render/soft/soft.h */
 struct renderer {
     struct gl *gl;
     const struct scene *scene;
-    struct frame_pool *frames; /* pixel buffers of this renderer's frames */
+    struct frame_pool *frames; /* pool from which this renderer takes the pixel buffers of its frames */
     struct gpu_scene gpu_scene;
     struct environments environments;
     struct light light;
@@ -27,7 +27,7 @@ struct renderer {
     struct isolines isolines;
     struct shaded_colormap_cache colormaps;
     struct gl_backend *by_gl;
-    struct soft *by_soft; /* software backend; NULL: a GPU draws all frames */
+    struct soft *by_soft; /* software renderer, used if there is no GPU; NULL: a GPU draws all frames */
     bool always_gl;
     bool gives_depth; /* frames get depth grids */
     int64_t bake_budget_ns;  /* time that each preview spends on baking light, ns; 0: a preview waits until its light is baked */

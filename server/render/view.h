@@ -22,7 +22,7 @@ enum look {
     LOOK_FLAT,     /* no shading */
     LOOK_MATERIALS /* no field; all assets in full colour with the materials of their models */
 };
-/* how sensor directions are drawn, in groups that have directions */
+/* form in which directions of sensors (such as flow) are drawn: arrows, strokes (short streamlines), or not at all */
 enum directions_look { DIRECTIONS_ARROWS, DIRECTIONS_STROKES, DIRECTIONS_NONE };
 enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_SIDE_PX 8192
@@ -70,7 +70,7 @@ struct view {
     bool dark;           /* true: the backdrop is dark; colours of the field are the same on both backdrops */
     enum directions_look directions;
     enum language language; /* language of the texts in the overlay, if one is drawn */
-    bool strip;             /* true: the overlay contains a machine-readable legend strip */
+    bool strip;             /* true: frames get a machine-readable copy of the legend in their lowest rows (legend strip) */
     int environment;        /* index of the environment map: 0: the built-in sky; 1 and up: those of the plant file */
     struct visibility visibility;
     int64_t at_us;           /* instant that the view shows, UTC microseconds; 0: now. Set it with view_set_instant() */

@@ -27,6 +27,7 @@ struct manifest {
 /* Reads the manifest. On failure, logs the reason with advice and returns false. */
 bool manifest_read(struct log *log, const char *folder, struct manifest *manifest);
 void manifest_finish(struct manifest *manifest);
-const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id); /* returns NULL if no asset has that id */
+/* returns the entry of the asset with this id; NULL if the manifest has none */
+const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id);
 
 #endif

@@ -9,7 +9,7 @@
 
 struct ray {
     double origin[3], direction[3]; /* ray in the plant frame; its points are origin + t direction */
-    double low, high;               /* range of the ray's parameter t to search */
+    double low, high;               /* only surfaces where the ray's parameter t is between low and high are found */
     double parallel_m;              /* result of camera_parallel_m(); 0: perspective */
 };
 

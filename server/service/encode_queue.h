@@ -27,7 +27,7 @@ void encode_queue_destroy(struct encode_queue **queue);
 /* Queues jobs that encode the frame: one for each codec and quality in the group, and one for each client that cannot share a packet
    stream. Takes its own reference to the frame; empties the group. */
 void encode_queue_submit(struct encode_queue *queue, struct frame *frame, struct request_group *group);
-/* Destroys encoders that no stream uses any more. */
+/* Frees the encoders that belong to no stream any more (a stream serves clients that get the same packets). */
 void encode_queue_drop_idle(struct encode_queue *queue);
 /* Removes a client from its encode stream: it gets no more packets. */
 void encode_queue_forget(struct encode_queue *queue, uint64_t client);

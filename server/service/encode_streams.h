@@ -45,9 +45,9 @@ struct encode_streams { /* zero-initialise */
 struct encode_plan { /* zero-initialise */
     struct encode_stream *stream;
     bool encode;     /* true: encode the frame; false: the stream's newest packet already shows the same picture */
-    bool key;        /* true: encode the frame as a key frame */
+    bool key;        /* true: encode the frame as a key frame, which decodes without earlier frames */
     bool again;      /* true: send the frame even if the client already shows the same content */
-    uint64_t number; /* sequence number of the frame in its stream */
+    uint64_t number; /* sequence number that the frame gets in its stream */
     /* [ticket]: sequence number of the first packet that the ticket's client needs; above `number`: it needs none */
     uint64_t *from;
     size_t from_capacity;

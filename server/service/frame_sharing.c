@@ -6,8 +6,8 @@
 struct content_of {
     struct render_service *service;
     uint64_t content;
-    bool gives_depth; /* true: the shared frame has a depth grid */
-    int64_t cost_ns; /* drawing time charged to each client that shares the frame */
+    bool gives_depth; /* true: the shared frame has a depth grid (coarse depth for clients) */
+    int64_t cost_ns; /* drawing time in nanoseconds that each client with a share in the frame is charged */
 };
 
 /* Returns whether the ticket's client already shows the shared picture, and has its depth grid if it wants one. The caller

@@ -9,7 +9,8 @@
 static const int64_t STEP_NS = 10 * NS_PER_MS;
 /* drawing time per frame for baking the light that a session chose, while the session's camera moves */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
-static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time per frame for computing a field that takes long */
+/* time that the render thread spends on a slow computation of a field with each frame that it draws meanwhile */
+static const int64_t FIELD_NS = 6 * NS_PER_MS;
 /* REBUILD_NS: delay between attempts to create a new GL context; it doubles up to REBUILD_MAX_NS */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
 /* if a view has had a refined frame, changed readings wait at most this long for the next one; then a preview shows them */

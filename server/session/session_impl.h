@@ -52,7 +52,7 @@ struct kept_action session_kept_begin(const struct session *session);
 void session_kept_reply(struct session *session, const struct kept_action *action, const char *event, char *what, char *answer);
 /* Returns whether an action is still pending: not known yet to be on disk, or to have failed. */
 bool session_kept_waits(const struct session *session);
-/* Frees answers that still wait for the disk. */
+/* Frees all answers that still wait for the disk, without sending them. */
 void session_kept_drop(struct session *session);
 
 /* --- session_hello.c -------------------------------------------------------------------------------------------------- */
@@ -144,7 +144,8 @@ void session_tell_time(struct session *session);
 
 /* --- session_follow.c ------------------------------------------------------------------------------------------------- */
 
-/* Store the client's request to follow a session, or to hand over the lead; the event loop carries it out. */
+/* Each function stores a request of the client: to follow a session, or to hand over the lead. The event loop carries it out.
+   */
 void session_ask_follow(struct session *session, const struct message *message);
 void session_ask_lead(struct session *session, const struct message *message);
 

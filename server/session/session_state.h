@@ -17,7 +17,7 @@
 
 enum { SESSION_MAX_REPLIES = 64 };
 
-/* The client's identity, from `hello` and the connection. */
+/* Identity of the client: members from its connection and from its message `hello`. */
 struct session_identity {
     uint64_t number; /* random number that identifies this session to other clients; a resumed session keeps its number */
     enum role role;
@@ -29,7 +29,7 @@ struct session_identity {
     char token[TOKEN_MAX_CHARS + 1];
     /* on a core (daemon that reads the devices): names of the renderer and of its token that forwarded the message; "": not forwarded */
     char through[192];
-    char resume_secret[RESUME_CHARS + 1]; /* secret for resuming the view over another connection */
+    char resume_secret[RESUME_CHARS + 1]; /* secret with which the client can continue with this view over another connection */
     int64_t active_ns; /* monotonic time of the user's last activity at the page; 0: none since the page connected */
     bool tokens;       /* true: the client wants its view as a signed view token after each change */
     struct view token_view; /* the view in the last view token that was sent */
@@ -40,7 +40,7 @@ struct session_identity {
 
 /* The client at the other end of a new connection, for session_introduce(). */
 struct session_client {
-    uint64_t number; /* number of the session, as in struct session_identity */
+    uint64_t number; /* number by which other clients refer to the session (struct session_identity) */
     const uint8_t *address;
     const char *from; /* address of the client as text */
     enum role role;
@@ -51,7 +51,7 @@ struct session_client {
 
 /* Reason and code for closing the connection once all queued texts are sent. */
 struct session_close {
-    int code;         /* WebSocket close code; 0: the connection stays open */
+    int code;         /* close code for the WebSocket, sent once all queued texts are sent; 0: the connection stays open */
     const char *text; /* reason why the connection is closed; static text */
 };
 
@@ -59,10 +59,11 @@ struct session_close {
 struct session_room {
     struct address_share *share; /* use of the server by the client's address; NULL: the session has no address */
     int64_t pixels; /* the session's pixels in the admission totals; 0: none, for example while the page is hidden */
-    int64_t hidden_ns, shown_ns; /* monotonic times when the page was last hidden, and last shown again; 0: never */
+    /* hidden_ns: monotonic time when the page was last hidden; shown_ns: when it was last shown again; 0: never */
+    int64_t hidden_ns, shown_ns;
 };
 
-/* The codec that encodes the session's frames. */
+/* The choice of the codec with which the session's frames are encoded. */
 struct session_codec {
     struct codec_list list; /* codecs that the client decodes */
     enum wire_codec current;
@@ -111,7 +112,7 @@ struct follow_request {
     bool returned;   /* true: the session resumed another session, whose former followers are to follow this one */
     uint64_t heir;   /* number of the session that takes the lead; 0: the lead stays */
     bool asked;      /* true: the client requested to follow session `wanted`, or nobody */
-    uint64_t wanted; /* number of the session to follow; 0: none */
+    uint64_t wanted; /* number of the session that the client wants to follow; 0: nobody */
 };
 
 /* The leader and the followers of a session (session_follow.c). */
@@ -147,9 +148,9 @@ struct owed_texts {
     /* true: the text with that name is due; loop_checks: the complete list of loop checks is due */
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
     uint32_t params_seq;    /* sequence number of the client's message that the next `params` message answers */
-    int64_t tags_ns;        /* monotonic time when tags were last sent */
+    int64_t tags_ns;        /* monotonic time when the last message with readings (`tags`) was sent */
     uint32_t *tag_changes;  /* by tag: change counter (reading.changes) of the reading that was last sent */
-    bool alarms_sent;       /* true: `alarms` was sent at least once */
+    bool alarms_sent;       /* true: at least one message `alarms` was sent; the first one lists all alarms that are not normal */
     uint64_t alarms_number; /* sequence number of the last change of alarms that was sent to the client */
     /* sequence numbers of the last changes sent to the client, one each for named views, notes, messages of desks to walls, and pointers */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
@@ -157,7 +158,7 @@ struct owed_texts {
     uint64_t loop_checks_sent;          /* sequence number of the newest loop check that was sent */
     int64_t told_at_us;                 /* instant of the last `time` message that the client was sent, UTC microseconds; 0: the present */
     bool told_beginning;                /* true: the last `time` message included the beginning of recorded history */
-    char *replies[SESSION_MAX_REPLIES]; /* answers to be sent, oldest first */
+    char *replies[SESSION_MAX_REPLIES]; /* answers to the client's messages that are still to be sent, oldest first */
     int reply_count;
 };
 
@@ -180,7 +181,7 @@ struct session_tile {
     /* layout of the wall's picture, from the size of this session's display; only the leading session's layout is used */
     struct tile_layout layout;
     struct tile_held {
-        uint64_t picture; /* number of a picture of the wall */
+        uint64_t picture; /* number that identifies one picture of the wall, the same for all its tiles */
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */
     } held[TILE_HELD];    /* frames sent but not yet shown at the wall's common instant, oldest first */
     int held_count;
@@ -220,9 +221,9 @@ struct session {
     const struct session_context *context;
     struct session_identity identity;
     int64_t opened_ns;
-    bool asks_depth;    /* true: the client's hello asked for depth grids */
+    bool asks_depth;    /* true: the client's message `hello` asked for depth grids (coarse depth) with its frames */
     bool hello, hidden; /* hello: the client's hello was accepted; hidden: the client's page is not visible */
-    double pixel_ratio; /* device pixels per CSS pixel of the page */
+    double pixel_ratio; /* device pixels per CSS pixel on the client's screen */
     struct view view;   /* the session's own view */
     struct session_close close;
     struct session_room room;
@@ -234,7 +235,7 @@ struct session {
     struct owed_texts owed;
     struct kept_answer *kept; /* answers that wait for the disk, oldest first (session_kept.c) */
     int kept_count;
-    struct session *next_gone; /* next session in the list kept_answers.gone */
+    struct session *next_gone; /* next session in the list kept_answers.gone (sessions whose client has left) */
     struct session_placement placement;
     struct session_pick pick;
     struct message_rate rate;
@@ -242,7 +243,7 @@ struct session {
     struct session_scope scope;
     struct wall_place display; /* wall display that the client has introduced itself as; display 0: none */
     struct session_tile tile;
-    int64_t heard_ns;   /* monotonic time when the client's last message arrived */
+    int64_t heard_ns;   /* monotonic time when the last message from the client arrived */
     int64_t settled_ns; /* value of heard_ns at the last tick at which the client showed the newest picture (none was owed to it) */
 };
 

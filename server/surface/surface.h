@@ -81,7 +81,7 @@ void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh
 struct surface_place {
     double position_m[3]; /* nearest point on the surface */
     double distance_m;    /* from the requested point */
-    uint32_t vertex;      /* model vertex nearest to position_m, by straight-line distance */
+    uint32_t vertex;      /* index of the model's vertex that has the smallest straight-line distance from position_m */
 };
 /* Projects a point onto the surface. The result includes the model vertex nearest to the projection. */
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);

@@ -5,7 +5,7 @@
 #include "base/files/pack.h"
 #include "surface/surface.h"
 
-/* Appends the surface to *to as bytes. */
+/* Appends the whole surface in binary form to the text *to. */
 void surface_pack(const struct surface *surface, struct text *to);
 /* Rebuilds a surface from bytes; distances on it are bit-identical. Returns NULL if the bytes are invalid or memory runs out. The caller
    destroys it. */

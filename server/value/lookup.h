@@ -6,7 +6,7 @@
 
 struct lookup;
 
-/* Starts resolving the name `host`. Never returns NULL. */
+/* Starts a thread that resolves the host name `host`. Never returns NULL. */
 struct lookup *lookup_start(const char *host, int port);
 /* Waits for the addresses of the host until the deadline. Returns 0 with the list of addresses in *out, valid until
    lookup_destroy(). -ETIMEDOUT: not resolved yet, call again. -ECANCELED: stop_fd became readable. -EHOSTUNREACH: the host name

@@ -49,7 +49,7 @@ struct modbus_link {
        time */
     int64_t asked_ns, abandoned_ns, late_ns;
     int host;     /* index in source->hosts of the host that is used now */
-    int answers;  /* number of answers on this connection */
+    int answers;  /* number of requests on the present connection that the device has answered */
     bool any_unit;
     struct modbus_answered answered; /* transaction identifier and unit in the last response, for TCP frames */
     int64_t patience_ns;

@@ -26,7 +26,7 @@ struct series_cell {
 
 struct series_lines {
     const char *path, *at;
-    char separator; /* character between the cells of a line */
+    char separator; /* character that separates the cells of a line: comma, semicolon or tab */
     int number;
     struct series_cell *cells;
     size_t count, capacity;
@@ -150,7 +150,7 @@ struct clock {     /* state for converting the time column of a file to seconds 
     bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
     int64_t first_us, last_us;
-    size_t ticks; /* number of distinct times in the column */
+    size_t ticks; /* number of different times that the column contains */
 };
 
 static bool instant_of(const struct series_cell *cell, int64_t after_us, int64_t *t_us)
@@ -226,7 +226,7 @@ static bool read_wide(struct series *series, struct series_lines *lines, size_t 
             snprintf(why, 200, "%s:%d: expected a time not before that of the line above", lines->path, lines->number);
             return false;
         }
-        if (lines->cells[column].length == 0) /* the series has no value at this time */
+        if (lines->cells[column].length == 0) /* the cell is empty: the series has no value at this time */
             continue;
         if (!value_of(&lines->cells[column], &value)) {
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);

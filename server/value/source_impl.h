@@ -47,8 +47,9 @@ static inline counter *source_counter(const struct source *source, struct counte
     return added;
 }
 
-extern const struct source_impl modbus_impl; /* Modbus TCP and RTU, read only */
-extern const struct source_impl mqtt_impl;   /* values published to an MQTT broker; subscribes only */
+/* sources of kind modbus: devices read over Modbus TCP or RTU; nothing is ever written to a device */
+extern const struct source_impl modbus_impl;
+extern const struct source_impl mqtt_impl;   /* sources of kind mqtt: values that devices publish to an MQTT broker; subscribes only */
 extern const struct source_impl opcua_impl;  /* OPC UA, subscribes only; defined if the build has open62541 */
 /* recorded series from a CSV file (series.h), at the speed set in the plant file */
 extern const struct source_impl replay_impl;

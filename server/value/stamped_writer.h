@@ -24,7 +24,7 @@ struct stamped_writer {
     size_t count;
     int64_t at_utc_ns, at_mono_ns; /* time, UTC and monotonic, that all samples of the batch have */
     struct {
-        int64_t utc_ns, mono_ns; /* by tag: time of the tag's last sample */
+        int64_t utc_ns, mono_ns; /* [tag]: time of the tag's last sample, UTC and monotonic */
         bool is_stated;          /* the sender stated that time */
     } * last;
 };

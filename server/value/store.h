@@ -32,7 +32,7 @@ struct sample_event {
 typedef void store_listener(void *arg, const struct sample_event *event);
 enum { STORE_LISTENERS = 6 };
 
-struct store *store_create(const struct plant *plant); /* Creates a store; `plant` must outlive it. */
+struct store *store_create(const struct plant *plant); /* Creates a store for the tags of `plant`, which must outlive the store. */
 void store_destroy(struct store **store);
 /* After a reload: copies readings and link states from the old plant's store, for tags and sources with equal names. Call it before a
    listener is added. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores each list in one file. Every change writes the whole file, because the lists are short. */
+/* A list of users' entries, such as notes or named views, that is stored in a file of its own. Every change writes the whole
+   file, because the lists are short. */
 #include "views/kept_list.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores notes in order of creation. */
+/* Keeps the notes that users attach to tags, assets and positions, in order of creation. */
 #include "views/notes.h"
 
 #include <stdio.h>
@@ -120,7 +120,7 @@ static void end_at(json_t *list, size_t at, const char *who, int64_t now_us)
     json_array_set_new(list, at, note);
 }
 
-/* Gives a new note its place: the place of the note that it replaces, or the one that the user chose. */
+/* Attaches a new note to the same tag, asset or position as the note that it replaces, or to the one that the user chose. */
 static void set_place(json_t *entry, const struct note *note, const json_t *replaced)
 {
     static const char *const members[] = { "tag", "asset", "position" };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that requests pictures. A picture's age is counted from the time of the request, so it includes the time that the server took
- * to draw it. */
+/* The thread that requests pictures of other plants from their servers. A picture's age is counted from the time of the
+   request, so it includes the time that the server took to draw it. */
 #include "views/other_plants.h"
 
 #include <jansson.h>

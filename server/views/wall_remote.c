@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores the newest order that a desk gave for each wall pane. A new order for a pane replaces the older one. */
+/* Keeps the orders with which users at desks send views to the panes of wall displays: the newest one for each pane. A new
+   order for a pane replaces the older one. */
 #include "views/wall_remote.h"
 
 #include <stdio.h>
@@ -9,7 +10,7 @@
 #include "base/text/json_text.h"
 #include "views/kept_list.h"
 
-enum { SEEN = 256 }; /* maximum number of displays in a plant file */
+enum { SEEN = 256 }; /* maximum number of wall displays that the plant file can have */
 
 struct pointer {
     struct wall_place place;

@@ -13,7 +13,7 @@
 struct openid_params {
     struct log *log;
     struct counters *counters;
-    struct audit *audit;     /* audit trail; NULL: nothing is recorded */
+    struct audit *audit;     /* where log-ins and refusals are recorded; NULL: nothing is recorded */
     const char *path;        /* path of the configuration file */
     int64_t lock_ns;         /* nanoseconds of inactivity after which a user is signed out; 0: never */
     /* called on any thread when openid_collect() has the result of a log-in, or a signed-in user's rights changed */
@@ -39,9 +39,9 @@ struct openid_return { /* parameters of the request with which a browser returns
     const char *state, *code, *iss, *error, *binding, *from;
 };
 enum openid_finish {
-    OPENID_WAITS, /* the log-in is being verified with the provider; openid_collect() returns the result later */
-    /* this browser has no log-in in progress with this state: a replay or a forgery, which is only counted, not recorded in the
-       audit trail */
+    OPENID_WAITS, /* OPENID_WAITS: the provider is being asked whether the log-in is genuine; openid_collect() returns the result later */
+    /* this browser began no log-in with the value of the parameter `state` that it sent: a replay or a forgery, which is only
+       counted, not recorded in the audit trail */
     OPENID_FOREIGN,
     OPENID_FULL, /* too many log-ins are waiting for verification; the user must try again */
 };
@@ -63,7 +63,7 @@ struct openid_answer {
     enum openid_result result;
     char cookie[SIGN_IN_SECRET_CHARS + 1]; /* value of the cookie for the new session */
     char path[SIGN_IN_PATH_BYTES];         /* path of the page to which the browser is redirected */
-    char *why;                             /* reason for the refusal; NULL: the user is signed in */
+    char *why;                             /* why the log-in was refused; NULL: the user is signed in */
     struct openid_answer *next;
 };
 /* Returns the list of log-in results since the last call; the caller frees each with openid_answer_free(). */
@@ -72,7 +72,7 @@ void openid_answer_free(struct openid_answer *answer);
 
 /* Returns true if any user's rights changed or ended since the last call. */
 bool openid_take_changed(struct openid *openid);
-/* Finds the user of a session cookie. Returns false if there is none. */
+/* Finds the signed-in user that a session cookie belongs to. Returns false if there is none. */
 bool openid_find(struct openid *openid, const char *cookie, struct token_holder *out);
 /* Returns the current role of a user; ROLE_NOBODY: the user is not signed in. */
 enum role openid_role(struct openid *openid, const struct token_holder *holder);

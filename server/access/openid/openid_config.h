@@ -8,7 +8,7 @@
 
 struct openid_group {
     char *group;
-    int role; /* role of the group's members (enum role) */
+    int role; /* role (enum role) that members of the provider's group `group` have */
 };
 
 struct openid_config {

@@ -9,7 +9,7 @@
 
 struct openid_reply {
     int status;    /* HTTP status of the provider's answer; 0: no answer */
-    json_t *json;  /* parsed body of the answer; NULL: none */
+    json_t *json;  /* JSON in the body of the provider's answer; NULL: there was no answer, or its body is not JSON */
     char why[256]; /* why the provider gave no answer */
 };
 

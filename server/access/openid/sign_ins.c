@@ -10,7 +10,8 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S; /* maximum time for a user to log in at the provider */
+/* maximum time between the beginning of a log-in and the browser's return from the provider */
+static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S;
 
 struct sign_ins {
     struct sign_in *begun;

@@ -13,8 +13,8 @@
 
 enum { CACHE_FILE_WHY_BYTES = 200 };
 
-struct cache_file { /* a cache file that is open for reading */
-    void *map;      /* NULL: the content was compressed, and is in `decompressed` */
+struct cache_file { /* a cache file that is open for reading (cache_file_open() and similar functions) */
+    void *map;      /* mapping of the file; NULL: the file is compressed, and its content is in `decompressed` */
     size_t map_bytes;
     void *decompressed;
     const char *bytes; /* content of the file, without its header; aligned for any type */

@@ -21,7 +21,7 @@ struct decompressor;
 struct decompressor *decompressor_create(const void *compressed, size_t bytes);
 /* Copies the next `count` decompressed bytes. Returns false if fewer are left or the compressed bytes are damaged. */
 bool decompressor_read(struct decompressor *d, void *to, size_t count);
-/* Returns how many decompressed bytes have not been read yet. */
+/* Returns how many bytes decompressor_read() can still return. */
 size_t decompressor_left(const struct decompressor *d);
 void decompressor_destroy(struct decompressor **d); /* &NULL is fine; leaves NULL */
 

@@ -49,7 +49,7 @@ bool database_set_aside(struct database *database);
 /* Returns prepared statement number `index` of the file's format (struct database_format), reset and ready to bind and step;
    owned by the database. Returns NULL if the statement cannot be prepared; the functions that bind and step accept NULL. */
 sqlite3_stmt *database_statement(struct database *database, int index);
-/* Steps a statement once. Returns the SQLite code. */
+/* Executes a statement up to its next row of results (sqlite3_step). Returns the SQLite code. */
 int database_step(struct database *database, sqlite3_stmt *statement);
 /* Steps a statement to its end and resets it. Returns the SQLite code, but SQLITE_OK for SQLITE_DONE. */
 int database_run(struct database *database, sqlite3_stmt *statement);
@@ -58,9 +58,13 @@ int database_exec(struct database *database, const char *sql, const char *doing)
    SQLITE_OK, SQLITE_ROW and SQLITE_DONE. */
 int database_fail(struct database *database, int code, const char *doing);
 
-void database_bind_text(sqlite3_stmt *statement, int index, const char *text); /* Binds a text, which must outlive the step. */
-void database_bind_value(sqlite3_stmt *statement, int index, double value);    /* Binds a number; NaN is bound as NULL. */
-double database_value(sqlite3_stmt *statement, int column);                    /* Returns a number; NULL becomes NaN. */
-const char *database_text(sqlite3_stmt *statement, int column); /* Returns a text, valid until the next step; NULL becomes "". */
+/* Binds a text to a parameter of the statement. The text must stay unchanged until the statement has been stepped. */
+void database_bind_text(sqlite3_stmt *statement, int index, const char *text);
+/* Binds a number to a parameter of the statement; NaN is bound as NULL. */
+void database_bind_value(sqlite3_stmt *statement, int index, double value);
+/* Returns the number in a column of the current row; NaN for NULL. */
+double database_value(sqlite3_stmt *statement, int column);
+/* Returns the text in a column of the current row, valid until the next step; "" for NULL. */
+const char *database_text(sqlite3_stmt *statement, int column);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "base/text/text.h"
 
-/* Appends an array with its length. */
+/* Appends the bytes of an array to the text `to`, preceded by the array's length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
 struct decompressor;

@@ -6,6 +6,6 @@
 /* Reads the file, without caching, and returns its first line; free with secret_forget(). Returns NULL with the reason in *why
    (mem_free) if the file cannot be read. */
 char *secret_read(const char *path, char **why);
-void secret_forget(char *secret); /* Overwrites and frees a secret; NULL is fine. */
+void secret_forget(char *secret); /* Overwrites a secret in memory, so that no copy remains, and frees it; NULL is a no-op. */
 
 #endif

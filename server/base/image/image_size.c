@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Limits on the size of images. */
+/* Allocates the pixels of an image, if its width, height and number of pixels are within limits. */
 #include <stdio.h>
 
 #include "base/image/image_impl.h"

@@ -101,7 +101,7 @@ static inline void vec_mix(const double a[3], const double b[3], double t, doubl
 
 /* --- single precision ------------------------------------------------------------------------------------------------------------ */
 
-/* Computes a - b in double precision. */
+/* Computes a - b from single-precision vectors; the result has double precision. */
 static inline void vecf_sub(const float a[3], const float b[3], double out[3])
 {
     for (int i = 0; i < 3; i++)

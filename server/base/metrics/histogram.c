@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts durations in buckets by length. */
+/* Counts durations in the buckets of a histogram, each of which covers a range of durations. */
 #include "base/metrics/histogram.h"
 
 #include <inttypes.h>

@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 
-/* Fields of /proc/self/stat, numbered as in proc(5). */
+/* Numbers of fields in /proc/self/stat, counted from 1 as in proc(5). */
 enum { STAT_THREADS = 20, STAT_START = 22, STAT_VIRTUAL = 23, STAT_RESIDENT = 24, STAT_LAST = STAT_RESIDENT };
 
 static bool read_stat(unsigned long long fields[STAT_LAST + 1])
@@ -44,7 +44,9 @@ static int64_t boot_s(void)
 static int64_t count_files(void)
 {
     DIR *folder = opendir("/proc/self/fd");
-    int64_t count = -3; /* starts at -3 to exclude ".", ".." and the descriptor of the folder itself */
+    /* number of open descriptors; starts at -3 because "." and "..", and the descriptor of the folder itself, are counted too
+       */
+    int64_t count = -3;
     for (; folder && readdir(folder);)
         count++;
     if (folder)

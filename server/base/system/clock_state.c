@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the clock's state from the kernel. */
+/* Asks the kernel about the state of the machine's clock, such as whether it is synchronised. */
 #include "base/system/clock_state.h"
 
 #include "base/clock.h"

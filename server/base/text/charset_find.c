@@ -186,7 +186,7 @@ static const struct narrow_model narrow_models[] = {
 enum byte_kind { ASCII_OTHER, ASCII_LOWER, ASCII_UPPER, HIGH_LOWER, HIGH_UPPER, HIGH_SIGN, HIGH_NONE };
 
 struct narrow_table {
-    double rate[256]; /* log probability of each byte; 0 for ASCII */
+    double rate[256]; /* [byte]: log probability of the byte in a text with this encoding; 0 for ASCII bytes */
     enum byte_kind kind[256];
 };
 

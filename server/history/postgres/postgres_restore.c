@@ -138,7 +138,7 @@ static bool find_months(struct postgres_tables *tables, int *first, int *last, b
 
 struct tag_there {
     int32_t id;
-    int tag; /* index of the tag in the plant */
+    int tag; /* index of the plant's tag to whose history the points are restored */
     struct unit_change change;
 };
 

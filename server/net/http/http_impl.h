@@ -21,7 +21,7 @@ struct http_exchange {
     /* usage of the client's address, while the request waits; the connection holds the reference */
     struct address_usage *usage;
     bool head;              /* true: the request's method is HEAD, so the answer has no body */
-    bool close;             /* true: the connection is closed after this answer */
+    bool close;             /* true: the connection is to be closed once this answer is sent */
     bool sandboxed; /* true: the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
     bool varies;            /* true: the next answer depends on the request's header Accept-Encoding */
     bool gzip;              /* true: the body of the next answer is compressed as gzip */
@@ -31,7 +31,7 @@ struct http_exchange {
     size_t count, sent;
     /* usage of the address to whose answer_bytes the body is added; NULL: the body is not counted. The connection holds the reference */
     struct address_usage *holder;
-    bool asks;         /* true: an answer to the request's history query is being computed */
+    bool asks;         /* true: a history query of this request is in progress; it counts in server->http.questions */
     bool asks_instant; /* true: the request comes from a renderer and asks for the readings of a past instant */
     enum {
         PIECES_NONE,
@@ -48,7 +48,7 @@ struct http_exchange {
     struct upload_body *body_in; /* upload in progress; NULL: none */
     const char *step;            /* path of a POST request of an import (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
-    struct http_exchange *next;  /* next request in the list server->http.waiting */
+    struct http_exchange *next;  /* next element of the linked list server->http.waiting */
 };
 
 enum { MAX_ARGS = 64, MAX_ARG_BYTES = 2048 };
@@ -82,7 +82,7 @@ int request_refuse_for(struct http_exchange *request, int status, const struct r
 int request_answer_unreadable(const struct server_context *server, struct http_exchange *request);
 /* Answers with a JSON text; takes ownership of text (mem_free). */
 int request_answer_json(struct http_exchange *request, char *text);
-/* Answers 400 (bad request) with the error's text. */
+/* Answers with status 400 (bad request) and the text of the error. */
 int request_answer_error(struct http_exchange *request, const struct message_error *error);
 /* Sets the body of the request's answer (NULL: none) and frees its previous body; takes ownership. Counts the bytes as unread, for the
    server and for the client's address. */

@@ -8,7 +8,7 @@
 
 #include "base/log/log.h"
 
-struct site_form { /* one form of a file, as sent to clients */
+struct site_form { /* a file's content in one encoding (plain or gzip), as it is sent to clients */
     char *bytes;
     size_t count;
     char etag[24]; /* value of the HTTP header ETag, with its quotes */
@@ -20,7 +20,7 @@ struct site_file {
     struct site_form plain;
     /* the file compressed (RFC 1952), made at the first request that accepts gzip; bytes NULL: not made yet, or it saves too little */
     struct site_form gzip;
-    bool compresses; /* true: no request has accepted gzip yet */
+    bool compresses; /* true: the file has not been compressed yet, because no request has accepted gzip */
 };
 
 struct web_site;

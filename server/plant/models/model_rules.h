@@ -14,7 +14,7 @@ bool model_rules_check(json_t *root, char why[MODEL_WHY_BYTES]);
 /* Writes the name of an object for messages, such as "mesh 3 'pump', primitive 0"; without the primitive if `primitive` is negative. */
 void model_rules_name(const json_t *root, const char *list, size_t number, int primitive, char *out, size_t bytes);
 
-/* Returns whether this program implements an extension. */
+/* Returns whether this program implements the glTF extension of that name. */
 bool model_rules_known(const char *name);
 /* Returns whether a glTF extension affects only the look of a model (colours and materials), not its shape, so that it can be
    ignored. */

@@ -11,7 +11,7 @@ enum { JSON_PATH_TEXT_BYTES = 128, JSON_PATH_MAX_TESTS = 4 };
 
 enum json_literal_kind { JSON_LITERAL_STRING, JSON_LITERAL_NUMBER, JSON_LITERAL_TRUE, JSON_LITERAL_FALSE, JSON_LITERAL_NULL };
 
-struct json_path_test { /* one comparison in a filter: `@.a.b == literal` */
+struct json_path_test { /* one comparison in a filter of a path, such as `@.a.b == 'x'` */
     const char *path;   /* path on the left side, after its `@`: names and indices, to be read with json_path_next_operand() up to `end` */
     const char *end;
     enum json_literal_kind kind;

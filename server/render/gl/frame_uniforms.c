@@ -14,7 +14,7 @@ static double pattern_px(const struct view *view)
     return fmax(PATTERN_LEAST_PX, view->height_px / (double)PATTERN_PERIODS);
 }
 
-/* Returns the width of an isoline in pixels. */
+/* Returns the width in pixels with which isolines are drawn. */
 static double line_px(const struct view *view)
 {
     return fmax(1.2, view->height_px / 640.0);

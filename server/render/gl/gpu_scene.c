@@ -43,7 +43,7 @@ static bool make_depth_programs(struct gpu_scene *gpu_scene)
     return good;
 }
 
-/* On failure, logs the reason and returns false. */
+/* Uploads the model and the materials of one asset file. On failure, logs the reason and returns false. */
 static bool add_model(const struct gpu_scene *gpu_scene, struct gl_model *model, const struct asset *file,
                       const struct environment_light *sky)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uploads glTF metallic-roughness materials to the GPU. */
+/* Uploads the materials of glTF models (metallic-roughness) and their textures to the GPU. */
 #include "render/gl/materials.h"
 
 #include <math.h>

@@ -40,7 +40,8 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     pen_dark(pen, marker->occluded ? 0.7 : 1);
     overlay_outline(pen, x, y, radius, overlay_unproven(pen, marker->tag));
     if (pen->scene->plant->tags[marker->tag].place.assumed)
-        overlay_outline(pen, x, y, 1.75 * radius, false); /* draws an outer circle, because the tag's position is only approximate */
+        /* draws a second, outer circle around the marker, because the position of the tag's sensor is only assumed */
+        overlay_outline(pen, x, y, 1.75 * radius, false);
     if (bad) {
         double arm = 0.62 * radius;
         cairo_move_to(pen->cairo, x - arm, y - arm);

@@ -19,7 +19,7 @@ enum { PEN_MAX_TAKEN = 512 };
 struct pen {
     cairo_t *cairo;
     const struct frame *frame;
-    struct view view;      /* view of the half being drawn */
+    struct view view;      /* view that the pen draws: the whole view, or the selected half of a split view, as a view of its own */
     int half;              /* index of the half of a split view that is being drawn: 0 left, 1 right; 0 if the view is not split */
     struct label_box area; /* area of the half being drawn, in pixels of the frame */
     const struct scene *scene;
@@ -100,7 +100,7 @@ double overlay_arrow_value(const struct pen *pen);
 void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_px, bool uncertain);
 /* Returns whether the label is an arrow of unknown direction, which is drawn as a cross. */
 bool overlay_is_unknown_direction(const struct frame_label *label);
-/* Draws the cross that marks an unknown direction. */
+/* Draws a cross at the position of an arrow whose direction is unknown. */
 void overlay_unknown_direction(struct pen *pen, double x, double y);
 /* Draws the arrows in the pen's half of the view. */
 void overlay_arrows(struct pen *pen);

@@ -25,7 +25,7 @@ struct frame_plan {
     const struct fields_entry **fields;
     int64_t data_utc_ns;     /* time of the snapshot */
     uint64_t content, shape; /* content: hash of all that the frame shows; shape: hash of its geometry and light only (content_hash.h) */
-    int64_t field_ns;        /* time spent on computing the fields, ns */
+    int64_t field_ns;        /* time in nanoseconds that computing the fields of this plan has taken */
 };
 
 #endif

@@ -251,7 +251,8 @@ static void add_mixed(struct recent *recent, struct refined_row *row, const stru
         float over = 1.0f / (float)groups[g].count;
         float at_x = (float)column + 0.5f + groups[g].x * over, at_y = (float)y + 0.5f + groups[g].y * over;
         struct refined_item item = { *groups[g].triangle, at_x, at_y, groups[g].share };
-        if (item.share == VISIBILITY_SHARES) { /* one surface covers the whole pixel */
+        /* this surface alone covers the whole pixel, so the pixel does not count as one with several surfaces */
+        if (item.share == VISIBILITY_SHARES) {
             row->mixed_count--;
             add_item(recent->refined, row, &item, column);
             return;

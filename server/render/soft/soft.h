@@ -14,9 +14,9 @@
 #include "render/pick/isolines.h"
 
 struct soft;    /* shared by all frames */
-struct refined; /* refined frame while it is drawn in steps */
+struct refined; /* state of a refined frame (camera at rest) between its drawing steps */
 
-/* Logs and returns NULL when out of memory. All arguments must outlive the renderer. */
+/* Creates the software renderer. Logs and returns NULL when out of memory. All arguments must outlive the renderer. */
 struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky,
                          const struct environments *environments);
 void soft_destroy(struct soft **soft); /* frees the software renderer and sets *soft to NULL; accepts a pointer to NULL */

@@ -138,7 +138,7 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     struct soft *soft;
     const struct frame_context *context;
     const struct soft_light *light;
-    const uint32_t *ramps;    /* muted_ramps or own_ramps of struct soft */
+    const uint32_t *ramps;    /* table of colour ramps for this frame: muted_ramps or own_ramps of struct soft */
     const uint32_t *colormap; /* from struct shaded_colormap, or soft->glossy */
     const float *lines;
     struct frame_uniforms block;

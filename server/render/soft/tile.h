@@ -37,7 +37,8 @@ struct soft_face { /* a triangle that faces the eye and covers a pixel centre of
     int16_t left, right, top, bottom; /* in pixels of the frame */
 };
 
-enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: the triangle faces away from the eye */
+/* bit of soft_face.triangle: FACE_BACK: the triangle faces away from the eye; FACE_TRIANGLE: bits of the index */
+enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 };
 
 enum { MOST_SAMPLES = 4 };
 struct soft_sample { /* buffers with one sample for each pixel of a tile, row by row from the tile's upper left corner */
@@ -94,7 +95,7 @@ static inline uint32_t soft_id(const struct soft_tile *tile, const struct soft_f
 void raster_samples(const struct raster *raster, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES], int pitch_px,
                     float reach_px, struct soft_fragments *fragments);
 
-/* A triangle whose texture cuts holes. */
+/* A triangle through whose holes surfaces behind are visible: its texture's alpha mask cuts the holes. */
 struct soft_cutout {
     const struct soft_material *material;
     const struct asset_view *file;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* 3-vectors, eight at a time. Private to soft/. */
+/* Calculations with vectors of three components, for eight vectors at a time. Private to soft/. */
 #ifndef RENDER_SOFT_VECTORS_H
 #define RENDER_SOFT_VECTORS_H
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides whether one more session can be admitted. */
+/* Decides whether the server has enough capacity to accept one more session. */
 #include "session/pacing/admission.h"
 
 #include <string.h>
@@ -127,7 +127,7 @@ static int64_t usual(const struct admission *admission, of_share *of)
     return found;
 }
 
-struct moving_sessions { /* numbers of sessions whose camera moves now */
+struct moving_sessions { /* how many sessions are moving their camera at present */
     /* own: moving sessions of the address in question; all: of all addresses; others: number of other addresses with moving sessions */
     int own, all, others;
 };

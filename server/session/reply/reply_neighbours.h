@@ -12,7 +12,7 @@ struct neighbour_text_cache { /* cache for neighbour_text(); zero-initialise; ea
 /* Returns the sensors of a group as JSON text, those that differ most from their neighbours' estimate first. tag: only that
    sensor; -1: all. The caller frees the text. */
 char *neighbour_text(struct neighbour_text_cache *cache, const struct session_context *context, int group, int tag);
-/* Frees the cache's contents; leaves an empty cache. */
+/* Frees the contents of the cache; the empty cache can be used again. */
 void neighbour_text_cache_finish(struct neighbour_text_cache *cache);
 
 #endif

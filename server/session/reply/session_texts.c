@@ -10,7 +10,7 @@
 #include "session/reply/tag_text_cache.h"
 #include "session/session_impl.h"
 
-static const int64_t TAGS_NS = 500 * NS_PER_MS; /* minimum time between two `tags` messages */
+static const int64_t TAGS_NS = 500 * NS_PER_MS; /* minimum time between two `tags` messages (changed readings) to a client */
 
 static void add_owned(const struct session *session, struct text *out, char *text)
 {

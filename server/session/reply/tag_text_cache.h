@@ -11,7 +11,7 @@ struct tag_text_cache { /* zero-initialise */
     uint32_t *before;
     int64_t taken_ns; /* time of the snapshot of readings that `text` lists */
     bool all;
-    char *text; /* `tags` message in the cache; NULL: none yet */
+    char *text; /* JSON text of the last `tags` message; NULL: none was built yet */
 };
 
 /* Returns the same text as reply_tags_text(); the caller frees it with mem_free. cache NULL: nothing is cached. Updates `sent`. */

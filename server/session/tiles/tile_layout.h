@@ -9,9 +9,11 @@
 
 struct tile_layout {
     int columns, rows;
-    int display_px[2];       /* size of one display in pixels: width, height */
+    int display_px[2];       /* width and height in pixels of the screen of one display */
     int width_px, height_px; /* size of one tile's picture, which may have fewer pixels than its display */
-    int gap_px[2];           /* pixels between two neighbouring tiles: horizontally, vertically */
+    /* [0]: number of the picture's pixels that lie behind the bezels between two displays side by side; [1]: one above the
+       other */
+    int gap_px[2];
     /* [0]: width in pixels of the picture's margin to the left of all tiles, and also of that to their right; [1]: height of
        the margins above and below */
     int margin_px[2];
@@ -23,7 +25,7 @@ struct tile_layout {
 void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int width_px, int height_px, int64_t most_px);
 /* Returns the layout with tiles, gaps and margin scaled by `scale`, which is at most 1. */
 struct tile_layout tile_layout_scale(const struct tile_layout *layout, double scale);
-/* Return the width and height of the whole picture in pixels. */
+/* Returns the width, or the height, of the whole picture in pixels. */
 int tile_layout_width(const struct tile_layout *layout);
 int tile_layout_height(const struct tile_layout *layout);
 /* Returns the rectangle of one tile in the picture. display: counts from 1, row by row. */

@@ -94,7 +94,8 @@ static void flow(const struct heat *heat, double *u, double *b)
     const struct intrinsic *in = heat->in;
     memset(b, 0, heat->laplacian.row_count * sizeof(*b));
     for (size_t i = 0; i < heat->laplacian.row_count; i++)
-        u[i] = -log(max_of(u[i], DBL_MIN)); /* approximates distance / sqrt(t), by Varadhan's formula */
+        /* u[i] becomes about distance / sqrt(t), by Varadhan's formula, where t is the diffusion time */
+        u[i] = -log(max_of(u[i], DBL_MIN));
     for (size_t t = 0; t < in->tri_count; t++) {
         const struct laplacian_slope *s = &heat->laplacian.slopes[t];
         const uint32_t r0 = heat->laplacian.row_of[in->points[t][0]], r1 = heat->laplacian.row_of[in->points[t][1]],

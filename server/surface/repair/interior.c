@@ -40,7 +40,7 @@ struct solid { /* closed part of the surface, in its state before surface sampli
 struct solids {
     struct solid *at;
     size_t count;
-    uint32_t (*tris)[3];    /* triangles of all closed parts, part after part */
+    uint32_t (*tris)[3];    /* triangles of all closed parts of the surface, the parts one after the other */
     signed char *sides;     /* by element of `tris`: 1: its winding faces outwards, -1: reversed, 0: it bounds no body */
     struct solid **of_part; /* by part: the part as a struct solid; NULL: the part is not closed */
 };

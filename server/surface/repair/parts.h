@@ -9,7 +9,7 @@
    fin. Such an edge does not make two closed bodies one part. */
 struct body_parts {
     struct trimesh solid;
-    uint32_t *of_tri; /* part of each triangle of `solid` */
+    uint32_t *of_tri; /* [triangle of `solid`]: index of the part to which the triangle belongs */
     /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed. 0: the triangle bounds nothing: it is a wall
      * between two bodies, or a fin (a sheet that stands on a body) */
     signed char *side;

@@ -12,7 +12,7 @@
 
 enum mqtt_found {
     MQTT_FOUND,
-    MQTT_ABSENT, /* the payload does not contain the tag's value */
+    MQTT_ABSENT, /* the message's payload contains no value for this tag */
     MQTT_WRONG,  /* the value in the payload is not a number: the tag becomes Bad */
 };
 

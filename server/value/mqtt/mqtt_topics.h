@@ -7,7 +7,7 @@
 #include "plant/plant.h"
 
 struct mqtt_topic {
-    const char *name; /* name of the topic, owned by the plant */
+    const char *name; /* name of the topic; the plant owns the text */
     const int *tags;  /* indices in plant->tags of the topic's tags, sorted by path */
     size_t tag_count;
 };
@@ -22,7 +22,7 @@ struct mqtt_topics {
 /* Builds the topics of one source. `plant` must outlive them. */
 void mqtt_topics_init(struct mqtt_topics *topics, const struct plant *plant, int source);
 void mqtt_topics_finish(struct mqtt_topics *topics);
-/* Returns the topic with this name, or NULL. */
+/* Finds a topic of the source by its name. Returns NULL if the source has no such topic. */
 const struct mqtt_topic *mqtt_topics_find(const struct mqtt_topics *topics, const char *name);
 
 #endif

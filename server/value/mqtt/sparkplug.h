@@ -13,7 +13,7 @@ struct sparkplug;
 
 struct sparkplug_params {
     struct log *log;
-    const char *source; /* id of the MQTT source, for the log */
+    const char *source; /* id that the plant file gives to the MQTT source, for log lines */
     const struct plant *plant;
     const struct mqtt_topics *topics; /* topics of the form GROUP/NODE[/DEVICE] */
     struct store *store;

@@ -33,8 +33,8 @@ struct sparkplug_metric {
 struct sparkplug_payload {
     struct sparkplug_metric *metrics; /* metrics of the payload; their names are freed with the payload */
     size_t count;
-    int seq;    /* sequence number, 0 to 255; -1: none */
-    void *from; /* the unpacked protobuf message, which this struct owns */
+    int seq;    /* sequence number of the message, 0 to 255; -1: the message has none */
+    void *from; /* unpacked protobuf message, owned by this struct; contains the names of the metrics */
 };
 
 /* Decodes a payload. Returns false with the reason in `why`, and nothing to free, if the bytes are not a valid payload. */

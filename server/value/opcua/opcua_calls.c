@@ -57,7 +57,8 @@ void opcua_call_begin(struct opcua_client *client, void *response, const UA_Data
 
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    const UA_ResponseHeader *header = client->call.response; /* every response begins with a response header */
+    /* the response of any service begins with this header, so the pointer can be converted */
+    const UA_ResponseHeader *header = client->call.response;
     if (sent != UA_STATUSCODE_GOOD) {
         client->call.response = NULL;
         opcua_explain(client, sent, why);
