@@ -44,7 +44,7 @@ struct quotas {
 struct quotas quotas_default(void);
 /* Sets one limit from the text "NAME=N" of --limit. Returns false if there is no such limit, or N is out of range. */
 bool quotas_parse(struct quotas *quotas, const char *text);
-/* Prints name, default and description of each limit, for --help. */
+/* Prints the name, the default and a description of each quota, for --help. */
 void quotas_print(FILE *out);
 
 #endif

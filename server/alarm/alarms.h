@@ -52,8 +52,8 @@ struct alarm_change {
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
-    double value;             /* value of the sample that caused the change; NaN: none */
-    const char *who, *reason; /* operator who made the change, and reason; "": none */
+    double value;             /* value of the sample that caused the change of the alarm; NaN: no sample did */
+    const char *who, *reason; /* operator who changed the alarm, and the reason given; "": no operator did */
 };
 
 struct alarms_listener {

@@ -21,7 +21,7 @@ struct devices {
     struct alarm_device *list;
     size_t count, capacity;
     int *of_tag;       /* [tag]: index of the tag's device in `list` (all devices); -1: the tag belongs to no device */
-    uint8_t *statuses; /* [tag]: enum device_status that the tag gives its device */
+    uint8_t *statuses; /* [tag]: whether the tag shows that its device answers (enum device_status) */
 };
 
 /* Lists the devices of the plant; `plant` must outlive the result. Never returns NULL. */
@@ -30,7 +30,7 @@ struct devices *devices_create(const struct plant *plant);
 void devices_destroy(struct devices **devices);
 int devices_find(const struct devices *devices, const char *name); /* returns the index of the device with that name, or -1 */
 
-/* Returns what a tag's quality says about the tag's device. */
+/* Returns what the quality of a tag tells about its device: for example, that the device does not answer. */
 enum device_status device_status_of(uint32_t quality);
 /* Records the status that a tag reports for its device from mono_ns on. */
 void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns);

@@ -24,7 +24,7 @@ struct audit_entry {
     const char *how;  /* channel through which the client acted, such as HTTP or OpenID Connect */
     /* name, from its token, of the renderer (a daemon that draws pictures) that forwarded the client's action; NULL: none */
     const char *through;
-    const char *what; /* object that the client changed or requested */
+    const char *what; /* object, such as an alarm or a view, that the client changed or requested */
     const char *why;  /* why the action was refused or failed */
 };
 

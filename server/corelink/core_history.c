@@ -85,7 +85,7 @@ bool core_history_get(struct core_history *history, const char *path, struct tex
     curl_easy_setopt(request->handle, CURLOPT_URL, url);
     if (peer.ca_path)
         curl_easy_setopt(request->handle, CURLOPT_CAINFO, peer.ca_path);
-    size_t begin = out->length; /* appends the HTTP answer to the text already in *out */
+    size_t begin = out->length; /* the HTTP answer is appended to the text that *out already contains */
     request->answer = *out;
     request->most_bytes = begin + MAX_ANSWER_BYTES;
     request->error[0] = 0;

@@ -54,7 +54,8 @@ struct core_link {
     struct {
         /* count: number of addresses of the core's host name, at most ADDRESSES; index: the address to try next */
         int count, index;
-        char said[ADDRESSES][WHY_BYTES]; /* by address: last logged reason for failing to connect */
+        /* by address of the core's host: last logged reason why the link could not connect to the address */
+        char said[ADDRESSES][WHY_BYTES];
     } hosts[CORE_URLS];
     int address;                                       /* index of the core's address that the link is trying */
     /* heard_ns: time of the core's newest message. least_ns: smallest difference between the two machines' monotonic clocks on

@@ -39,7 +39,7 @@ struct core_samples *core_samples_listen(struct store *store)
     struct core_samples *samples = mem_new(sizeof(*samples));
     samples->store = store;
     pthread_mutex_init(&samples->lock, NULL);
-    /* receives the same samples from the store as this daemon's historian, so that the standby records the same points */
+    /* listens to all samples of the store, like this daemon's historian, so that the standby records the same points */
     store_listen_all(store, on_sample, samples);
     return samples;
 }

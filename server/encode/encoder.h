@@ -10,7 +10,7 @@
 
 struct encoder;
 struct encoder_params {
-    int quality;             /* 1 (worst) to 100 (best), for codecs that have a quality setting */
+    int quality;             /* quality of encoding, from 1 (worst) to 100 (best), for codecs that have a quality setting */
     bool full_chroma;        /* true: chroma at full resolution (4:4:4) instead of subsampled (4:2:0), for codecs that have both */
     bool key;                /* true: encode a key frame, whose packet can be decoded without earlier packets */
     struct workers *workers; /* threads for encoding in parallel; may be NULL */

@@ -15,7 +15,7 @@
 enum { JPEG_READ_QUALITY = 75 }; /* JPEG quality below which the standard quantization tables are used */
 
 struct jpeg_writer;
-struct jpeg_writer *jpeg_writer_create(void);          /* creates a writer; returns NULL when out of memory */
+struct jpeg_writer *jpeg_writer_create(void);          /* creates a JPEG writer; returns NULL when out of memory */
 void jpeg_writer_destroy(struct jpeg_writer **writer); /* frees the writer and sets *writer to NULL; accepts a pointer to NULL */
 /* The jpeg_write functions write to `to`, which has room for `capacity` bytes. They return the number of bytes written; 0 on
    failure, with the reason in jpeg_writer_why(). */

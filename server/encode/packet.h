@@ -19,7 +19,7 @@ struct packet {
     struct frame *frame; /* metadata of the frame that this packet encodes, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
     bool key;       /* true: the packet can be decoded without earlier packets */
-    bool is_signed; /* true: the bytes are a signed PNG file (provenance/signed_picture.h) */
+    bool is_signed; /* true: the packet's bytes are a signed PNG file (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;
     /* SHA-256 of the pixels (red, green, blue, rows from the top); only for PNG packets of frames with a record of their readings

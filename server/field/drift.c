@@ -30,7 +30,8 @@ static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's leng
                                                 hours) that must be independent of the other columns */
 
 struct week { /* hourly data of one sensor */
-    /* hourly means. values: the sensor's; predicted: from the other sensors; nearest: the nearest sensors', [nearest_count][hours] */
+    /* hourly means. values: of the sensor's own readings; predicted: of the predictions from the other sensors; nearest: of the
+       nearest sensors' readings, [nearest_count][hours] */
     const double *values, *predicted, *nearest;
     int nearest_count, hours;
     /* noise: error and recording resolution of a reading; root: square root of each hour's weight in the fit */

@@ -15,7 +15,8 @@
 
 struct neighbours {
     struct field_layout *layout;
-    const struct influence_entry *entry; /* entry of the influence file; NULL: predictions come from distances */
+    /* prepared data of the group's sensors from the influence file; NULL: predictions come from distances */
+    const struct influence_entry *entry;
     /* [to][from]: geodesic distances between sensors; INFINITY: no path, or unknown. NULL: not computed (too many sensors) */
     float *along_m;
 };

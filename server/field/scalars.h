@@ -25,13 +25,13 @@ struct scalars {
     int asset;
     /* version of the content, counted over all assets of the field; grows with every real change, so equal versions mean equal contents */
     uint64_t version;
-    uint64_t flags_version; /* version of the last change of a flag */
+    uint64_t flags_version; /* version in which a flag of any vertex (such as no data or uncertain) last changed */
     /* sum of the largest value changes of all versions so far: a copy of the scalars made when `travel` was t is wrong by at
        most travel - t */
     double travel;
     size_t count;   /* number of elements of `at`: one per vertex of the asset file */
     size_t ready;   /* the first `ready` vertices are up to date: as many as the requested levels of detail need */
-    uint64_t grown; /* number of times that `ready` has grown */
+    uint64_t grown; /* number of times that `ready` has grown, so that callers notice new vertices */
     const struct scalar *at;
     /* bound on the error of interpolation within triangles, in the unit of values, if it exceeds 1/255 of the range on a large
        part of the surface; else 0. Vertices with such errors are marked uncertain in either case */

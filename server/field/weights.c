@@ -26,7 +26,9 @@ struct key_head {
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
-    uint32_t trial; /* id of the layout's trial. The number of sensors is not in the key, because the key's length determines it */
+    /* id of the trial whose sensor positions the layout has; 0: the configured positions. The number of sensors is not in the
+       key, because the key's length determines it */
+    uint32_t trial;
 };
 struct key_sensor {
     uint32_t column, usable;

@@ -15,7 +15,7 @@ struct gl_device { /* identifies an EGL device, either by its index in EGL's lis
 };
 
 struct gl {
-    enum gl_kind kind; /* kind of the context; never GL_AUTO */
+    enum gl_kind kind; /* kind of the GL context that was created, so never GL_AUTO */
     char vendor[128], renderer[128], version[128];
     bool software;       /* llvmpipe, softpipe, swrast */
     bool reads_in_place; /* true: a software driver that can read the caller's memory without a copy (GL_AMD_pinned_memory) */

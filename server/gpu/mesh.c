@@ -21,7 +21,7 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
     return 0;
 }
 
-/* Creates a buffer owned by the mesh, filled with data. */
+/* Creates a GPU buffer that belongs to the mesh, and fills it with data. */
 static GLuint own_buffer(struct gpu_mesh *mesh, struct log *log, const char *name, size_t bytes, const void *data)
 {
     GLuint buffer = mesh_buffer(log, name, bytes, data, 0);

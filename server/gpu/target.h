@@ -13,7 +13,7 @@
 
 struct target {
     int width_px, height_px, samples;
-    GLuint framebuffer, color, depth; /* framebuffer that passes draw to, and its textures */
+    GLuint framebuffer, color, depth; /* framebuffer that render passes draw to, and its textures for colour and depth */
     /* framebuffer of the resolved picture (one sample per pixel), and its textures; the same objects as framebuffer, color and
        depth if `samples` is 1 */
     GLuint resolved_framebuffer, resolved_color, resolved_depth;

@@ -30,7 +30,7 @@ enum {
     MEDIANS = 10 /* a time between two samples longer than this many times the median is a gap */
 };
 
-/* The samples of a tag in the imported file. */
+/* State of importing one tag's samples from the file. */
 struct import_series {
     bool has_row;   /* true: the current pass over the CSV file has already read a row of this tag */
     int64_t row_us; /* time of this tag's last row in the current pass over the CSV file */
@@ -54,7 +54,7 @@ struct history_import {
     /* column indices in the CSV file; -1: no such column. tag -1: the file has the wide form (one column per tag) */
     int time, tag, value, quality, unit;
     int *tags;                    /* wide form: tag index of each column; -1: not a tag's column, ignored */
-    struct import_series *series; /* [tag]: state of the tag's series */
+    struct import_series *series; /* [tag]: series of the tag's samples in the imported file, and the state of reading it */
     /* wide form (one column per tag): time of the last row read; long form (one value per line): INT64_MIN */
     int64_t row_us;
     struct import_counts *counts;

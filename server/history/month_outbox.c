@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and deletes points in the outbox of a month's file. */
+/* Reads and deletes points in the table `outbox` of a month's file, which has the points still to be sent to PostgreSQL. */
 #include "history/month_outbox.h"
 
 #include <errno.h>
@@ -9,7 +9,7 @@
 #include "history/month.h"
 #include "history/month_file.h"
 
-/* maximum number of rows deleted per transaction; limited because the transaction blocks the historian's writes */
+/* maximum number of outbox rows deleted per transaction; limited because the transaction blocks the historian's writes */
 enum { DELETE_ROWS = 20000 };
 enum statement { BEGIN, COMMIT, THERE, SPAN, ROWS, HELD, TAGS, EVENTS, DELETE, STATEMENT_COUNT };
 

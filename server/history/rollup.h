@@ -22,7 +22,7 @@ struct history_bucket {
     uint32_t quality; /* quality at the bucket's end */
 };
 
-struct rollup { /* zero-initialise, then set length_us and step */
+struct rollup { /* state of computing buckets from the points of one tag; zero-initialise, then set length_us and step */
     int64_t length_us;
     bool step;
     bool has_last, open;

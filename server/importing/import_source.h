@@ -7,7 +7,8 @@
 #include "plant/plant.h"
 
 struct import_source { /* the data source as arguments of `plantcast match`; an empty text: not stated */
-    char host[254], port[6], unit[4], order[5], base[2]; /* an empty `host`: no data source */
+    /* texts of the data source's host, port and so on; an empty `host`: there is no data source */
+    char host[254], port[6], unit[4], order[5], base[2];
 };
 
 /* Returns true if the texts are safe as program arguments: `host` is a host name or a numeric IPv4 address, port, unit and base

@@ -22,7 +22,9 @@ extern const char *const loop_check_state_names[]; /* names of the loop check st
 struct loop_check {
     enum loop_check_state state;
     int64_t time_us;                  /* time of the check, microseconds UTC */
-    double value, expected, tolerance; /* values in the tag's unit; NaN: none */
+    /* value: value that arrived as the tag's value; expected: value forced at the transmitter; tolerance: largest accepted
+       difference; in the tag's unit, NaN: none */
+    double value, expected, tolerance;
     char who[LOOP_CHECK_NAME_BYTES], remark[LOOP_CHECK_REMARK_BYTES];
 };
 

@@ -62,7 +62,7 @@ static int hex_of(char c)
     return !at ? -1 : at - digits < 16 ? (int)(at - digits) : (int)(at - digits) - 6;
 }
 
-/* Decodes percent-escapes and plus signs in place. */
+/* Decodes percent-escapes and plus signs of a URL's field in place. */
 static void decode(char *text)
 {
     char *to = text;

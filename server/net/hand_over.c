@@ -8,8 +8,8 @@
 #include "net/net_impl.h"
 #include "net/renderers.h"
 
-static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit for the standby to receive all state */
-static const int64_t TAKE_NS = NS_PER_S;     /* time limit for the standby to take the lease */
+static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit for the standby core to receive all state of this leading core */
+static const int64_t TAKE_NS = NS_PER_S;     /* time limit for the standby core to take the leadership lease */
 
 /* Returns the next step of the handover of the lead to the standby core, or `step` itself while that step is not finished. */
 static enum hand_over_step next_step(struct net *net, enum hand_over_step step)

@@ -46,7 +46,8 @@ static const struct lws_protocols protocols[] = {
 
 static const lws_retry_bo_t idle_policy = { .secs_since_valid_ping = 20, .secs_since_valid_hangup = 40 };
 
-/* One variable suffices: libwebsockets has one log function per process, and a process has one event loop. */
+/* Log to which libwebsockets' messages go. One variable suffices: libwebsockets has one log function per process, and a process
+   has one event loop. */
 static struct log *_Atomic lws_log_to;
 
 static void lws_log_line(int level, const char *line)

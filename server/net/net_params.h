@@ -66,7 +66,7 @@ struct net_params {
     void (*import_ordered)(void *arg, const char *who);
     /* callback of the main program, called in the event loop once a second or more often; NULL: not needed */
     void (*tick)(void *arg, const struct net_status *status);
-    void *reload_arg; /* argument that is passed first to all callbacks above */
+    void *reload_arg; /* first argument of all callbacks above, set by the caller */
 };
 
 #endif

@@ -60,7 +60,7 @@ void net_announce_reload(struct net *net)
 void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;
-    /* the old plant's journal has now written all actions that waited for it, so their users are answered */
+    /* answers users whose actions waited for the disk: by now, the old plant's journal has written them */
     net_settle_answers(net);
     for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);

@@ -7,7 +7,7 @@
 #include "service/encoded_frame.h"
 
 struct signing {
-    struct encoded_frame *encoded; /* the frame to sign; NULL: the receiver has taken it */
+    struct encoded_frame *encoded; /* frame to sign; NULL: the caller that received the signed frame has taken it */
     /* content of the signed statement besides the readings: plant, arguments of the request and overlay; this struct owns the
        arguments */
     struct picture_origin origin;

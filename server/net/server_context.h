@@ -43,7 +43,7 @@ struct wall_displays {
 /* Picture that spans the displays of a wall; one entry for each wall (tile_walls.c). */
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this element of the array is not used */
-    uint64_t leader;                /* id of the session that leads the wall; 0: none */
+    uint64_t leader;                /* id of the session that leads the wall's picture, so that the other displays follow it; 0: none */
     uint64_t asked, presented;      /* ids of the wall's picture that was requested last, and of the one that was presented last */
     /* size of the wall's picture, adapted to how long the server takes to draw and encode the picture */
     struct quality_ladder made;
@@ -61,14 +61,14 @@ struct server_context {
         int64_t data_ns;        /* monotonic arrival time of the oldest reading that changed in the last snapshot */
         /* monotonic time when the quality of a reading next changes because of its age; INT64_MAX: never */
         int64_t next_change_ns;
-        bool *links_up; /* by source: connection state of the data source */
+        bool *links_up; /* by source: true: the data source is connected */
         /* true: a change of readings, or of connections to data sources, was not announced to streams and renderers yet */
         bool data_changed, links_changed;
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* service that loads the readings of past instants; NULL: nothing is recorded */
     struct {
-        struct picture_signer *signer; /* signs pictures; NULL: pictures are not signed */
+        struct picture_signer *signer; /* signer of pictures; NULL: pictures are not signed */
         char key_id[SIGNING_KEY_ID_BYTES];
     } signing;
     struct {                   /* connections to /stream */

@@ -34,7 +34,7 @@ struct queue {
     size_t count, capacity;
 };
 
-struct recipient_box { /* messages to one recipient, and the alarms queued for it */
+struct recipient_box { /* messages of alarms to one recipient, and the alarms queued for its next message */
     struct queue waiting;
     struct outbox_item *batch; /* alarms of the message that is being sent to the recipient, or is sent again after a failure */
     size_t batch_count;

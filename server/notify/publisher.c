@@ -44,7 +44,7 @@ struct publisher {
     struct topic *topics; /* by tag: its MQTT topic */
     uint64_t alarm_number;
     bool connected, alarms_published;
-    char said[200]; /* last problem that was logged; empty: no problem */
+    char said[200]; /* last problem with the MQTT broker that was logged; empty: no problem */
 };
 
 /* --- published messages ------------------------------------------------------------------------------------------------------- */
@@ -159,7 +159,7 @@ static void on_connected(void *arg, bool session_present)
 
 static void on_message(void *arg, const struct mqtt_message *message)
 {
-    (void)arg; /* no messages arrive, because the publisher subscribes to nothing */
+    (void)arg; /* does nothing: the broker sends no messages, because the publisher subscribes to no topic */
     (void)message;
 }
 

@@ -133,8 +133,7 @@ static bool is_moved_on(const struct placing *placing, int asset)
 }
 
 /* Frees the least recently used relocation object of an asset without moved sensors, if more than MOVERS are in memory. Objects
-   whose surface is still being built are kept, because freeing one would block. keep: index of an asset whose object is kept.
-   */
+   whose surface is still being built are kept, because freeing one would block. keep: index of an asset whose object is kept. */
 static void cool(struct placing *placing, int keep)
 {
     int count = 0, oldest = -1;
@@ -182,7 +181,8 @@ static void on_distances(void *arg, struct relocation_result *result)
 static void to_file(const struct scene_asset *asset, const double plant_m[3], double out[3])
 {
     double file_from_plant[16];
-    if (!transform_invert(asset->placement, file_from_plant)) /* the inverse exists: plant_load() refuses other placements */
+    /* the placement has an inverse: plant_load() refuses other placements of assets */
+    if (!transform_invert(asset->placement, file_from_plant))
         memcpy(file_from_plant, transform_identity, sizeof(file_from_plant));
     transform_point(file_from_plant, plant_m, out);
 }

@@ -59,7 +59,7 @@ static const char *source_of(const struct plant *plant, const struct plant_tag *
     return tag->source < 0 ? "" : plant->sources[tag->source].id;
 }
 
-/* Prints an alarm limit, or "none" for NaN. Returns `out`. */
+/* Writes an alarm limit as text to `out`, or "none" if the limit is NaN (not set). Returns `out`. */
 static const char *limit_text(double limit, char out[32])
 {
     snprintf(out, 32, isnan(limit) ? "none" : "%g", limit);

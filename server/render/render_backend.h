@@ -19,7 +19,7 @@ struct render_backend {
        returns false. */
     bool (*init)(struct renderer *renderer);
     void (*finish)(struct renderer *renderer);
-    /* Returns whether the backend can draw this frame. */
+    /* Returns whether the backend can draw this frame; if not, another backend must. */
     bool (*can)(const struct frame_context *context);
     /* Returns whether the backend draws this frame about as fast as a preview. */
     bool (*is_quick)(struct renderer *renderer, const struct frame_context *context);

@@ -144,7 +144,8 @@ const struct closed_bodies *asset_closed(const struct asset *asset, uint32_t lev
     closed_bodies_find(&asset->view, level, found);
     if (atomic_compare_exchange_strong(&asset->closed[level], &known, found))
         return found;
-    closed_bodies_finish(found); /* another thread has stored its result first */
+    /* another thread has found and stored the closed bodies of this level first: frees this thread's result */
+    closed_bodies_finish(found);
     mem_free(found);
     return known;
 }

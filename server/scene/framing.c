@@ -15,7 +15,8 @@ static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio that the initial 
 /* size of the surroundings shown around a sensor, as a fraction of the asset's size */
 static const double SENSOR_PART = 0.35;
 static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* smallest and largest size of the surroundings shown around a sensor */
-static const double SENSOR_RISE = 0.36;                   /* elevation of the camera above a sensor, as a tangent */
+/* elevation angle of the camera above a sensor that it looks at, as a tangent */
+static const double SENSOR_RISE = 0.36;
 
 static const struct scene_sensor *find_sensor(const struct scene_asset *asset, int tag)
 {

@@ -42,12 +42,12 @@ struct scene {
     /* box of all assets including stray pieces (scene/main_part.h); min equal to max: same as bounds_min_m, bounds_max_m */
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
-        size_t triangles; /* number of triangles outside of the main part */
-        int assets;       /* number of assets that have triangles outside the main part */
-        double away_m;    /* distance of the farthest triangle from the main part, metres */
+        size_t triangles; /* number of triangles outside the plant's main part (scene/main_part.h) */
+        int assets;       /* number of assets that have triangles outside the plant's main part */
+        double away_m;    /* distance in metres of the farthest triangle from the plant's main part */
     } outside;
     double (*extremes_m)[3]; /* outermost points, which a view of the whole plant must contain (scene/extremes.h) */
-    size_t extreme_count;    /* number of elements of extremes_m; 0: not known */
+    size_t extreme_count;    /* number of points in extremes_m; 0: the outermost points are not known */
 };
 
 /* Chooses the box that near and far planes must enclose: the box of everything. If a stray piece is so far away that the near

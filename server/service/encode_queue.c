@@ -36,7 +36,7 @@ struct encode_queue {
 struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
-    struct frame *frame;        /* frame to encode; NULL: nothing needs encoding */
+    struct frame *frame;        /* frame that the job encodes; NULL: nothing needs encoding, because stored packets answer the requests */
     struct request_group group; /* requests with equal codec and quality, all answered with one encoded frame */
     struct encoder_params quality;
     bool again;

@@ -30,7 +30,7 @@ struct pending_query {
        values */
     bool buckets;
     bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
-    bool wanted;  /* true: the client requested the next piece of its answer */
+    bool wanted;  /* true: the next piece of the answer may be made: the query is new, or its client has requested the piece */
     bool forgotten;
     uint64_t served; /* value of history_queries.served when the newest piece of this query's answer was begun; 0: no piece was begun */
     struct pending_query *next;

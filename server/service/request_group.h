@@ -4,10 +4,10 @@
 #define SERVICE_REQUEST_GROUP_H
 #include "service/frame_request.h"
 
-struct request_ticket { /* ticket: a frame request whose drawing has begun */
+struct request_ticket { /* frame request whose drawing has begun ("ticket") */
     uint64_t client, number;
     struct frame_request request;
-    int64_t wait_ns; /* nanoseconds from the user's input to the start of drawing */
+    int64_t wait_ns; /* time in nanoseconds from the user's input, or the changed reading, to the start of drawing */
 };
 
 struct request_group { /* zero-initialise; free with request_group_finish() */

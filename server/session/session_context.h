@@ -27,7 +27,8 @@ struct session_context {
     const struct plant_services *services;
     const struct snapshot *snapshot;       /* the newest readings */
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
-    int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
+    /* monotonic time of the newest snapshot whose readings differ from those of the snapshot before */
+    int64_t changed_ns;
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts for all sessions; NULL: no caching */
     bool saving;                           /* true: a user's new tag list is saved, and the reload that activates it is still running */
     /* On a renderer (daemon that draws for a core): forwards a session's message to the core, which answers later. Returns
@@ -37,7 +38,7 @@ struct session_context {
     bool core_up; /* on a renderer (daemon that draws for a core): true: the core sends readings */
     /* keys that sign view tokens, by which clients restore their view at another daemon; NULL: clients get no view tokens */
     const struct view_token_keys *token_keys;
-    const bool *links_up;                     /* by source: connection state of the data source */
+    const bool *links_up;                     /* by source: true: the data source is connected */
     bool imports;                             /* true: engineers may import plants */
     const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
     bool live;                                /* true: at least one data source is connected */

@@ -47,7 +47,8 @@ static int disk_state(const struct session *session, struct kept_answer *kept)
 static bool say_not_kept(json_t *answer, int error)
 {
     json_t *done = json_object_get(answer, "done");
-    if (json_integer_value(done) > 0) { /* an answer to an alarm action: the action has taken effect, although it is not on disk */
+    /* the answer concerns alarms: the action has taken effect (`done` alarms changed), although it is not on disk */
+    if (json_integer_value(done) > 0) {
         json_object_set(answer, "not_kept", done);
         json_object_set_new(answer, "done", json_integer(0));
     } else if (json_is_true(json_object_get(answer, "kept"))) {

@@ -5,7 +5,7 @@
 #define SESSION_SESSION_PROXY_H
 #include "session/session.h"
 
-struct session_person {                /* name of the user who sent the message */
+struct session_person {                /* user who sent the message to another daemon, which forwarded it */
     const struct token_holder *holder; /* the user's token or sign-in, verified by this daemon */
     const char *refusal;               /* reason why the user could not be verified; NULL: the user is verified */
     const char *from;                  /* the user's address, as reported by the other daemon */

@@ -24,7 +24,7 @@ struct written {
 struct derived_state {
     const struct plant *plant;
     struct snapshot *snapshot;
-    struct written *written; /* results that were written last, by index in plant->derived */
+    struct written *written; /* results of derived tags that were written to the store last, by index in plant->derived */
 };
 
 struct derived_source {

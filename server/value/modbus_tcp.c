@@ -11,7 +11,7 @@
 
 enum {
     HEADER_BYTES = 7, /* length in bytes of the frame header: transaction identifier, protocol, length of the rest, unit */
-    REFUSED = 0x80,   /* bit of the function code that marks an exception response */
+    REFUSED = 0x80,   /* bit of a response's function code that marks an exception (error) response */
     LAST_EXCEPTION = 11,
     /* maximum number of bytes of values in a response: two per register; READ_PLAN_MAX_BITS bits take as many */
     MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS,

@@ -178,7 +178,7 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
     unit->doubted = true;
     unit->doubted_table = failed->table;
     unit->doubted_first = failed->first;
-    /* reads block `other` (another request to the same unit) next */
+    /* makes block `other`, another request to the same unit, the next to be read */
     other->due_ns = failed->due_ns - failed->scan_ms * NS_PER_MS;
     return true;
 }

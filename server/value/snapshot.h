@@ -7,7 +7,7 @@
 
 struct reading {
     double value;     /* value in engineering units; never NaN unless the quality is Bad */
-    uint32_t quality; /* OPC UA status code; takes the reading's age into account */
+    uint32_t quality; /* quality of the reading as an OPC UA status code; takes the reading's age into account */
     uint32_t changes; /* counter that increases with each change of value, quality or alarm */
     /* alarm: kind of the alarm shown for the tag (enum alarm_kind); alarm_status: its state (enum alarm_status) */
     uint8_t alarm, alarm_status;

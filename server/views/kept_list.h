@@ -27,7 +27,7 @@ struct kept_list {
     const char *folder;
     char *path; /* path of the file; NULL: the list is not stored on disk */
     struct file_writer *writer;
-    json_t *list;    /* entries as they are on disk, which clients are sent */
+    json_t *list;    /* entries as the file on disk has them; clients are sent these */
     json_t *next;    /* entries as they will be once all queued changes are written; NULL: no change is queued */
     uint64_t number; /* change counter of `list` */
     bool unreadable;

@@ -27,7 +27,7 @@ extern const struct colormap colormap_operator;
 
 /* Computes `shading` and `safe` from the map's colours, and chooses the out-of-range colours. Takes a few milliseconds. */
 void colormap_complete(struct colormap *map);
-/* The part of colormap_complete() that computes `shading` and `safe`. */
+/* Computes only `shading` and `safe`, which is a part of colormap_complete(). */
 void colormap_rate_shading(struct colormap *map);
 
 #endif

@@ -25,7 +25,8 @@ struct cache_head {
     uint64_t checksum; /* XXH3-64 of the content, seeded with the key */
 };
 
-enum file_state { FILE_GOOD, FILE_MISSING, FILE_OTHER, FILE_DAMAGED }; /* FILE_OTHER: the file has another kind, version or key */
+/* FILE_OTHER: the file is intact but has another kind, version or key than the caller asks for */
+enum file_state { FILE_GOOD, FILE_MISSING, FILE_OTHER, FILE_DAMAGED };
 
 static enum file_state __attribute__((format(printf, 3, 4))) found(char *why, enum file_state state, const char *fmt, ...)
 {
@@ -153,7 +154,8 @@ void cache_file_close(struct cache_file *file)
     *file = (struct cache_file){ 0 };
 }
 
-/* Hashes and writes the parts one by one, because joining them could take tens of megabytes of memory. */
+/* Writes a cache file whose content is given in several parts. Hashes and writes the parts one by one, because joining them
+   could take tens of megabytes of memory. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
     struct cache_head head = { .key = key };

@@ -81,8 +81,8 @@ struct compressor {
     size_t out_capacity;
 };
 
-/* Copies the next bytes of the parts to the chunk. *part and *at: position in the parts. Returns the number of bytes; 0: the parts have
-   ended. */
+/* Fills the chunk with the next bytes of the content, which is given in several parts. *part and *at: index of the present
+   part, and position in that part. Returns the number of bytes; 0: the content has ended. */
 static size_t fill_chunk(struct compressor *c, const struct atomic_file_part *parts, size_t part_count, size_t *part, size_t *at)
 {
     size_t filled = 0;

@@ -7,8 +7,8 @@
 
 enum log_level { LOG_ERROR, LOG_WARN, LOG_INFO, LOG_DEBUG };
 enum log_format {
-    LOG_TEXT, /* each log line has time, level and text */
-    LOG_JSON, /* one JSON object per line: time, level, message, plant, event, message_id */
+    LOG_TEXT, /* format of log lines for people: time, level and text */
+    LOG_JSON, /* format of log lines for programs: one JSON object per line with time, level, message, plant, event, message_id */
     /* systemd journal entries with PRIORITY, MESSAGE, PLANT, EVENT, MESSAGE_ID; if the journal's socket cannot be used, lines
        `<PRIORITY>text` */
     LOG_JOURNAL,

@@ -12,11 +12,11 @@
 enum confine_access {
     CONFINE_READ,
     CONFINE_EXECUTE, /* execute and read files */
-    CONFINE_WRITE    /* read and write; also create, rename and remove regular files and folders below the path */
+    CONFINE_WRITE    /* the process may read and write, and create, rename and remove regular files and folders below the path */
 };
 
 struct confine_path {
-    const char *path; /* a file, or a folder including everything below; skipped if it does not exist */
+    const char *path; /* path that the process may access: a file, or a folder including everything below; skipped if it does not exist */
     enum confine_access access;
 };
 
@@ -54,8 +54,7 @@ struct confine_ruleset confine_ruleset_of(int abi);
 void confine_hide_memory(void);
 
 /* Returns a copy of the environment reduced to search path, language, time zone, HOME, TMPDIR and, with `notifies`, the service
-   manager's socket. `home`: new value of HOME and TMPDIR; NULL keeps both. The array and its strings are one block (mem_free).
-   */
+   manager's socket. `home`: new value of HOME and TMPDIR; NULL keeps both. The array and its strings are one block (mem_free). */
 char **confine_environment(const char *home, bool notifies);
 
 #endif

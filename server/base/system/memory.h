@@ -14,8 +14,8 @@ struct memory_use {             /* memory usage of the process, in bytes */
     size_t resident, anonymous; /* resident: bytes in RAM; anonymous: the part not mapped from files */
     size_t allocated;           /* bytes allocated by malloc() */
 };
-void memory_measure(struct memory_use *use); /* Fills *use with the current values. */
-/* Returns free heap pages to the system. */
+void memory_measure(struct memory_use *use); /* Measures how much memory this process uses now, and fills *use. */
+/* Gives free pages of the heap back to the operating system. */
 void memory_trim(void);
 
 #endif

@@ -19,8 +19,9 @@ int64_t service_watchdog_ns(void);
    `status` is copied. */
 struct service_patience;
 struct service_patience *service_patience_begin(const char *status, int limit_s);
-void service_patience_status(struct service_patience *patience, const char *status); /* Changes the status; a NULL patience is a no-op. */
-void service_patience_end(struct service_patience **patience);                       /* Ends the thread and sets *patience to NULL. */
+/* Changes the status text that the thread of service_patience_begin() shows; a NULL patience is a no-op. */
+void service_patience_status(struct service_patience *patience, const char *status);
+void service_patience_end(struct service_patience **patience); /* Ends the thread and sets *patience to NULL. */
 
 /* Returns the listening socket that the manager has opened and passed on (LISTEN_FDS, if meant for this process); the caller
    owns it now. -1: none; -EINVAL: more than one. */

@@ -10,10 +10,10 @@ enum { POSTGRES_VERSION = 1 };
 
 struct postgres_tables { /* state of one connection; zero-initialise, free with postgres_tables_finish() */
     struct postgres_link *link;
-    int plant; /* id of the plant in the database */
+    int plant; /* id of the plant in the PostgreSQL database */
     int month; /* month (months since January 1970) to whose file `tags` belongs */
     struct postgres_tag {
-        int32_t id; /* id of the tag in the database; 0: not known */
+        int32_t id; /* id of the tag in the PostgreSQL database; 0: not known */
         char *unit;
     } * tags; /* array of that month's tags, indexed by their ids in the month's file */
     size_t tag_capacity;

@@ -16,7 +16,7 @@
 #define SMALL_M 0.03
 #define LARGE_BESIDE_M 60.0
 #define TIMES_MEDIAN 50.0
-/* Range, in metres, of the longest side of most assets. */
+/* Usual sizes: most assets have a longest side between these two lengths in metres. */
 #define USUAL_LOW_M 0.1
 #define USUAL_HIGH_M 60.0
 

@@ -78,7 +78,7 @@ static bool find_better(const struct plant_asset *asset, const struct model_box 
     static const struct {
         const char *name;
         double m;
-        /* ascending, so that the smallest unit that fits is chosen */
+        /* units in ascending order, so that the smallest unit that fits is chosen */
     } units[] = { { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { "m", 1 } };
     size_t best = within, placed;
     for (int pass = 0; pass < 3; pass++) /* pass 0: tries the other upward axis; 1: other units; 2: both */

@@ -8,7 +8,7 @@
 #define BURN_SHIFT_PX 3 /* maximum shift in pixels in each direction */
 
 struct burn_shift {
-    int x_px, y_px; /* offset in pixels to the right and down */
+    int x_px, y_px; /* offset in pixels, to the right and down, by which a display's content is shifted */
 };
 /* Returns the shift of the displays at a time of the plant's clock. All displays of a wall use the same time, so their contents move
    together. */

@@ -11,7 +11,7 @@ enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL
 /* colour ramps of a material (tables of colours from dark to bright). MUTED: greyed, for assets without a field; OWN: the material's own
    colours */
 enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS };
-enum { MODEL_LIGHT_STEPS = 64 }; /* number of texels in a material's colour ramp */
+enum { MODEL_LIGHT_STEPS = 64 }; /* number of texels (brightness steps) in a material's colour ramp */
 
 struct model_submesh { /* all triangles of one material in one level of detail */
     uint32_t material;

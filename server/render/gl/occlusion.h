@@ -27,7 +27,7 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
     struct occlusion_asset *assets;
     size_t box_count, asset_count;
     size_t box_capacity, asset_capacity; /* number of elements for which `boxes` and `assets` have room */
-    size_t box_room;                     /* size of the GPU buffer box_buffer in bytes */
+    size_t box_room;                     /* size in bytes of the GPU buffer box_buffer, which holds the assets' bounding boxes */
 };
 
 /* Compiles the shader program that tests bounding boxes. On failure, logs the reason and returns false. */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A cache of baked light within a memory limit: shadow map, and light at each vertex and on the ground. Light is baked once per
-   direction of the sun, environment and visible assets (render/light/bake.h). Call only in the thread that owns the GL context.
-   */
+   direction of the sun, environment and visible assets (render/light/bake.h). Call only in the thread that owns the GL context. */
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/light/bake.h"
@@ -14,7 +13,7 @@ struct light {
     struct bake_programs programs;
     /* matrix to plant coordinates from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
-    double ground_height_m; /* height of the ground: its coordinate along the up axis */
+    double ground_height_m; /* coordinate of the ground plane along the plant's up axis, in metres */
     /* GPU memory of all light sets (baked light) in bytes. bound_bytes: limit; bytes: in use. A set that a job holds
        (light_hold) is never dropped, even above the limit */
     size_t bound_bytes, bytes;
@@ -23,7 +22,8 @@ struct light {
     uint64_t uses, last_id;
     /* true: the file with the plant's openness (visible part of the sky) has been written, or writing was attempted and failed */
     bool kept;
-    struct openness_writer *writer; /* thread that writes the openness file; NULL: not writing */
+    /* thread that writes the plant's openness (visible part of the sky) to a file; NULL: nothing is being written */
+    struct openness_writer *writer;
 };
 
 /* Compiles the shader programs for baking; bakes no light yet. On failure, logs the reason and returns false. */

@@ -11,7 +11,7 @@ enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16, SKY_ROWS = 2 * SKY_ROUNDINGS };
 struct sky {
     GLuint sky_program, ground_programs[2]; /* ground_programs: by enum tier */
     uint32_t (*texels)[SKY_BACKDROPS];      /* colours of the backdrop, in SKY_ROWS rows: blue | green << 8 | red << 16 | 0xff000000 */
-    GLuint backdrops;                       /* GL texture with the colours of `texels` */
+    GLuint backdrops;                       /* GL texture with the colours of the backdrop, copied from `texels` */
     GLuint vao;                             /* without attributes */
 };
 

@@ -9,7 +9,7 @@ struct crowd_item {
     double x, y, depth_m;
     bool occluded;
     bool kept; /* true: the marker must be drawn, even if it overlaps many other markers */
-    bool held; /* true: the marker was drawn in the previous frame */
+    bool held; /* true: the previous frame showed the marker, so it is preferred to others */
 };
 
 /* Sets drawn[i] to true if items[i] (a marker) is to be drawn. unit: size of one pixel at 1280x720. */

@@ -146,7 +146,7 @@ static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct fra
     pen->text_px = fmax(13 * pen->unit, 9.5);
 }
 
-/* Draws everything of the overlay except header and banners. */
+/* Draws the overlay except header and banners: the legends, the list of alarms, and the markers. */
 static void draw_rest(struct pen *pen)
 {
     int halves = pen->frame->view.split ? 2 : 1;

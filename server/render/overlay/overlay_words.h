@@ -18,7 +18,7 @@ enum overlay_word {
 };
 #undef OVERLAY_MEMBER
 
-/* Returns a word or sentence; static storage. Call from any thread. */
+/* Returns a word or sentence of the overlay in the given language; static storage. Call from any thread. */
 const char *overlay_word(enum language language, enum overlay_word word);
 /* Finds a language by its code: en, ko or de. Returns false for any other. */
 bool overlay_language_find(const char *name, enum language *out);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Strokes along the directions of a field: short streamlines on the surface of one asset. A stroke begins at an arrow position
    and follows the interpolated direction from triangle to triangle. It ends where the direction is unknown, where the surface
-   ends, or at its full length. Therefore no stroke crosses a gap or a wall. Call only in the thread that owns the GL context.
-   */
+   ends, or at its full length. Therefore no stroke crosses a gap or a wall. Call only in the thread that owns the GL context. */
 #ifndef RENDER_PICK_STROKES_H
 #define RENDER_PICK_STROKES_H
 #include "render/pick/arrows.h"
@@ -13,7 +12,7 @@ struct stroke_point {
     struct direction_place place;
     struct direction to;
 };
-struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_finish() */
+struct stroke_set { /* strokes (short streamlines) on one asset; zero-initialise, free with strokes_finish() */
     /* [triangle][i]: neighbour across the edge that begins at corner i: 3 * index of the triangle + index of its edge; STROKE_NONE: none */
     uint32_t (*across)[3];
     struct stroke_point (*points)[STROKE_POINTS];

@@ -28,7 +28,7 @@ struct fields_entry {
     /* count: number of the asset file's vertices; ready: number of vertices, from the first on, whose values `shown` holds */
     size_t count, ready;
     struct pool_slice *slice;
-    bool uploaded;  /* true: `slice` (range of a GPU buffer) holds the shown values */
+    bool uploaded;  /* true: the values in `shown` are also in `slice`, a range of a GPU buffer */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
     int64_t oldest_age_ns;
     double drawn_error; /* bound of the error of interpolating `shown` within triangles (struct scalars, field/scalars.h) */

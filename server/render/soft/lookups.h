@@ -166,7 +166,8 @@ SOFT_INLINE lanes_int backdrop_at(const struct raster *raster, const struct heig
 SOFT_INLINE lanes_int darkened(lanes_int color, lanes_int factor)
 {
     lanes_uint by = (lanes_uint)factor, bgrx = (lanes_uint)color;
-    lanes_uint blue_red = ((bgrx & 0xff00ff) * by + 0x800080) >> 8 & 0xff00ff; /* multiplies blue and red in one multiplication */
+    /* blue and red are multiplied in one multiplication, because their bits are far enough apart */
+    lanes_uint blue_red = ((bgrx & 0xff00ff) * by + 0x800080) >> 8 & 0xff00ff;
     lanes_uint green = ((bgrx & 0xff00) * by + 0x8000) >> 8 & 0xff00;
     return (lanes_int)(blue_red | green | 0xff000000);
 }

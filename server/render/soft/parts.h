@@ -29,7 +29,7 @@ struct soft_parts {
     uint8_t *corners; /* corners of triangles: indices of vertices within the part; see soft_part.first_corner for the order */
     float *planes; /* planes of the triangles (n . p + d = 0), part by part; for each part first all n.x, then all n.y, all n.z and all d */
     uint8_t *closed; /* by index in `vertices`: 1: the vertex belongs to a closed body; 0: it belongs to none. NULL: not computed yet */
-    bool blended;    /* true: at least one part is blended (transparent) */
+    bool blended;    /* true: at least one part (group of triangles) is transparent, so it is blended */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };

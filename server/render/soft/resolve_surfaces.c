@@ -151,7 +151,8 @@ SOFT_INLINE void see(const struct refined *refined, const struct refined_item *i
 void refined_shade_surfaces(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas)
 {
     const struct soft_tones *tones = refined->raster.soft->tones;
-    float bright = refined->raster.block.up[3]; /* brightness factor of assets without a field; 0: unchanged */
+    /* brightness factor of assets without a field in the present view; 0: their brightness is unchanged */
+    float bright = refined->raster.block.up[3];
     bool greys = view_is_operator(refined->context->view);
     for (size_t first = 0; first < count; first += LANES) {
         struct lit lit;

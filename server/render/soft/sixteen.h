@@ -90,7 +90,7 @@ SOFT_INLINE sixteen many_value(const struct small *small, int l, int p, sixteen 
     return (sixteen)_mm512_min_ps(high, _mm512_max_ps(low, (__m512)value)); /* as lanes_clamp */
 }
 
-/* Truncates sixteen values towards 0, and clamps them to 0..high. */
+/* Converts sixteen floats to integers: truncates them towards 0, and clamps them to 0..high. */
 SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
 {
     __m512i whole = _mm512_max_epi32(_mm512_cvttps_epi32((__m512)x), _mm512_setzero_si512());

@@ -11,7 +11,7 @@ enum { ADMISSION_WINDOWS = 3, ADMISSION_RETRY_S = 10 };
 
 struct admission_window { /* statistics of one second of drawing */
     int64_t drawing_ns;   /* render time of frames that clients wait for; excludes refined frames, which yield to others */
-    int64_t moving_ns;    /* part of drawing_ns spent on frames of moving cameras */
+    int64_t moving_ns;    /* part of drawing_ns spent on frames of sessions whose camera moves */
     int64_t drawn;        /* number of frames in moving_ns; a frame shared by several sessions counts once */
     int64_t moving;       /* number of frames delivered to sessions with a moving camera */
     /* longest time from a changed reading to the frame that shows it; 0: no frame of this second showed a changed reading */
@@ -21,7 +21,7 @@ struct admission_window { /* statistics of one second of drawing */
 struct address_share {  /* one client address's use of the server; zero-initialise */
     uint64_t account;   /* id of the address; the same as frame_request.account in the requests of its sessions */
     bool exempt_pixels; /* true: the quota on pixels per address does not apply to this address */
-    int64_t pixels;     /* number of pixels of all views of the address */
+    int64_t pixels;     /* number of pixels that the views of all sessions of the address have together */
     int moving;         /* number of sessions of the address whose camera moved within the last second */
     int sessions;
     struct admission_window newest, now;
@@ -36,7 +36,7 @@ struct admission {
     /* content id of the frame counted last. Several clients report a frame that they share, one after the other; with this id
        it is counted once */
     uint64_t last_content;
-    int64_t pixels;               /* number of pixels of all views of all addresses */
+    int64_t pixels;               /* number of pixels that the views of all sessions of all addresses have together */
     struct address_share *shares; /* linked list of the client addresses that have sessions */
 };
 

@@ -10,7 +10,7 @@
 struct codec_facts {
     double bytes_per_s; /* the client's bandwidth in bytes per second; 0: not known */
     double cpu_free;    /* idle share of all processors of the machine, 0..1 */
-    long pixels;        /* number of pixels of one frame */
+    long pixels;        /* number of pixels of one frame of the client's view */
 };
 
 struct codec_choice { /* zero-initialise, which chooses H.264 */
@@ -24,7 +24,7 @@ struct codec_choice { /* zero-initialise, which chooses H.264 */
 void codec_choice_update(struct codec_choice *choice, const struct codec_facts *facts, int64_t now_ns);
 
 struct cpu_meter {       /* reads the processors' load from /proc/stat; zero-initialise */
-    uint64_t busy, idle; /* counters of /proc/stat at the previous call, in clock ticks */
+    uint64_t busy, idle; /* busy and idle time of all processors in /proc/stat at the previous call, in clock ticks */
 };
 /* Returns the idle share of the machine's processor time since the last call; 1 at the first call, and if it is unknown. stat: the text
    of /proc/stat. */

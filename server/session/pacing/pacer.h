@@ -29,7 +29,7 @@ struct pacer_flight {
 };
 
 struct pacer {                              /* limits the frames under way to one client; initialise with pacer_init() */
-    int asked;                              /* number of frames requested and not sent yet */
+    int asked;                              /* number of frames requested from the render service for the client and not sent yet */
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;

@@ -12,7 +12,7 @@ enum { QUALITY_LADDER_STEPS = 9, QUALITY_LADDER_FIRST = 3 /* index of the initia
 
 struct rung {
     int quality;
-    double scale; /* factor for the picture's width and height */
+    double scale; /* factor by which width and height of the client's view are multiplied */
 };
 
 struct quality_ladder { /* chooses the quality and size of one client's frames; initialise with quality_ladder_init() */

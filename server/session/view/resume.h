@@ -22,7 +22,7 @@ struct resumed {
     struct view view;
     struct codec_list codecs;
     double pixel_ratio;
-    uint64_t called; /* session number that other sessions use to follow this one */
+    uint64_t called; /* number of the resumed session, which other sessions use to follow it */
     double speed;    /* playback speed, recorded seconds per second, if view.at_us is a past instant */
     /* session that has the view and is still connected, so that it must be closed now; NULL: the view's connection is lost */
     struct session *live;

@@ -15,7 +15,7 @@ struct view_token_keys {
     int count;
 };
 
-/* Makes `key` the signing key, unless it already is. */
+/* Makes `key` the key that signs new view tokens, unless it already is; tokens signed with the previous key stay valid. */
 void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOKEN_KEY_BYTES]);
 /* Returns the session's resume secret followed by its signed view; the caller frees it with mem_free. NULL: there is no key, or the view
    is too large. */

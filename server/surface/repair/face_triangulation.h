@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 struct face_triangulation {
-    uint32_t *ids; /* by point of the triangulation: its index in the mesh */
+    uint32_t *ids; /* by point of the triangulation: index of this point in the mesh */
     double (*at)[2];
     uint32_t (*tris)[3]; /* corners of each triangle, as indices of the triangulation's points */
     size_t count, capacity, at_capacity, tri_count, tri_capacity;

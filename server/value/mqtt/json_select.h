@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 struct json_selected {
-    size_t count;         /* number of values that the path selects */
+    size_t count;         /* number of values in the JSON document that the path selects */
     const json_t *value;  /* last selected value; NULL: none */
     const json_t *holder; /* object or array that contains `value`; NULL: `value` is the root */
     /* If the path addresses an array item by position: a name stated in the item that does not match the tag; NULL: there is no

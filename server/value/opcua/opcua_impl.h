@@ -20,7 +20,7 @@ struct opcua_client {
     UA_Logger logger;
     char said[160];                  /* text of the last error that open62541 logged */
     UA_Client *library;              /* open62541's client for the open secure channel; NULL: no channel is open */
-    UA_EndpointDescription endpoint; /* endpoint that was chosen, whose certificate has been checked */
+    UA_EndpointDescription endpoint; /* endpoint of the server that was chosen for the connection, whose certificate has been checked */
     bool lost;                       /* true: the subscription has ended, so a new session is needed */
     bool missed;                     /* true: notifications of changed values were lost since all nodes were last read */
     uint32_t max_items, max_reads;   /* maximum number of nodes per request, when monitoring and when reading; 0: not known yet */
