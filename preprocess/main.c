@@ -202,7 +202,7 @@ static bool say_early(const struct plant *plant, size_t memory_bytes)
             diag_copy(&errors, &diag.items[i]);
     diag_print(&errors, stderr);
     if (errors.count && fits)
-        fprintf(stderr, "plantcast-prep: preparing the assets without errors\n");
+        fprintf(stderr, "plantcast-prep: continuing with the assets that have no errors\n");
     fflush(stderr);
     diag_finish(&errors);
     diag_finish(&diag);

@@ -41,7 +41,7 @@ bool influence_view_init(struct influence_view *view, const void *bytes, size_t 
     const struct influence_header *header = bytes;
     *view = (struct influence_view){ .header = header, .entries = (const struct influence_entry *)(header + 1) };
     if (size < sizeof(*header) || header->entry_count > (size - sizeof(*header)) / sizeof(*view->entries)) {
-        snprintf(why, 200, "cut short: %zu bytes", size);
+        snprintf(why, 200, "truncated: %zu bytes", size);
         return false;
     }
     if (header->vertex_count != vertex_count) {

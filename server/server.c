@@ -582,7 +582,7 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
         for (size_t i = 0; i < count && i < SHOWN; i++)
             printf("%s:%d: warning: model %s: left out: %s\n", plant->files.path, asset->line, asset->model, entry->left_out[i]);
         if (count > SHOWN)
-            printf("%s:%d: warning: model %s: %zu more textures or glTF extensions are not drawn (not listed here)\n", plant->files.path,
+            printf("%s:%d: warning: model %s: %zu more glTF textures or extensions are not drawn (not listed here)\n", plant->files.path,
                    asset->line, asset->model, count - SHOWN);
     }
     manifest_finish(&manifest);
@@ -628,8 +628,8 @@ static int check_prepared(const struct server_params *params, const struct plant
     if (exists)
         print_left_out(log, plant, folder);
     else
-        printf("%s: the plant is not prepared yet (%s). Not checked before plantcast-prep has run: textures and extensions that are not "
-               "drawn, sensors far from their surface, and views\n",
+        printf("%s: the plant is not prepared yet (no prepared files in %s), so some things were not checked: glTF textures and "
+               "extensions that cannot be drawn, sensors far from their surface, and views. Run plantcast-prep, then check again\n",
                params->plant_path, folder);
     mem_free(manifest);
     mem_free(folder);

@@ -146,14 +146,14 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
         name[i] = type[i] > ' ' && type[i] < 0x7f ? (char)type[i] : '?';
     const char *place = *parent ? parent : "the file";
     if (rule == RULES)
-        return FAIL("unexpected box %s in %s: Plantcast's clips have no such box", name, place);
+        return FAIL("unexpected MP4 box %s in %s: the clip was changed, or not made by `plantcast clip --signed`", name, place);
     if (walk->seen[rule])
-        return FAIL("box %s occurs twice in %s", name, place);
+        return FAIL("MP4 box %s occurs twice in %s: the clip was changed", name, place);
     walk->seen[rule] = true;
     if (memcmp(type, "avcC", 4) == 0 && !has_two_sets(content, count))
-        return FAIL("box avcC has more than one sequence parameter set or picture parameter set");
+        return FAIL("MP4 box avcC has more than one sequence parameter set or picture parameter set: the clip was changed");
     return !rules[rule].content || content_fits(walk, rules[rule].content, content, count) ||
-           FAIL("box %s has contents that Plantcast never writes", name);
+           FAIL("MP4 box %s has contents that Plantcast never writes: the clip was changed", name);
 }
 
 /* Reads the picture's size from the innermost box, avc1. All other boxes must have the same size. */
@@ -173,17 +173,17 @@ static bool take_boxes(struct box_walk *walk, const char *parent, const uint8_t 
     while (count >= HEAD) {
         uint64_t length = number(bytes, 4);
         if (length < HEAD || length > count)
-            return FAIL("a box in %s is damaged", parent);
+            return FAIL("an MP4 box in %s is damaged", parent);
         int rule = find_rule(parent, bytes + 4);
         if (!take_box(walk, rule, bytes + 4, parent, bytes + HEAD, length - HEAD))
             return false;
         size_t children = rules[rule].children;
         if (children && (length < children || !take_boxes(walk, rules[rule].type, bytes + children, length - children)))
-            return length >= children ? false : FAIL("box %s is damaged", rules[rule].type);
+            return length >= children ? false : FAIL("MP4 box %s is damaged", rules[rule].type);
         bytes += length;
         count -= length;
     }
-    return count == 0 || FAIL("bytes follow the last box in %s", parent);
+    return count == 0 || FAIL("bytes follow the last MP4 box in %s", parent);
 }
 
 static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
@@ -195,7 +195,7 @@ static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
         learn_size(walk, moov, count);
         good = take_boxes(walk, "moov", moov, count);
     } else {
-        good = FAIL("box moov is truncated or too long");
+        good = FAIL("MP4 box moov is truncated or too long");
     }
     mem_free(moov);
     return good;
@@ -213,7 +213,7 @@ static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
         head_bytes = 2 * HEAD;
     }
     if (length < head_bytes || length > *left)
-        return FAIL("the clip is damaged: a box is truncated, or bytes follow the last one");
+        return FAIL("the clip is damaged: an MP4 box is truncated, or bytes follow the last one");
     *left -= length;
     length -= head_bytes;
     int rule = find_rule("", head + 4);
@@ -229,7 +229,7 @@ static bool has_all(const struct box_walk *walk)
     char *why = walk->why;
     for (int i = 0; i < RULES; i++)
         if (rules[i].required && !walk->seen[i])
-            return FAIL("box %s is missing", rules[i].type);
+            return FAIL("MP4 box %s is missing", rules[i].type);
     return true;
 }
 
@@ -290,7 +290,9 @@ bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_W
         if (type == UNIT_MESSAGE && !is_plain_message(sample + 4, length, why))
             return false;
         if (type != UNIT_SLICE && type != UNIT_SLICE_OF_KEY && type != UNIT_MESSAGE)
-            return FAIL("unexpected H.264 unit of type %d: Plantcast's clips have no such unit", type);
+            return FAIL("unexpected part of the video (H.264 NAL unit) of type %d: the clip was changed, or not made by "
+                        "`plantcast clip --signed`",
+                        type);
         sample += 4 + length;
         count -= 4 + length;
     }

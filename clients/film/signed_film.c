@@ -99,7 +99,7 @@ static bool read_statements(struct film_reader *reader)
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
     size_t length = entry ? strlen(entry->value) : 0;
     if (length < 4 || length % 4 || length > 2 * MAX_BYTES)
-        return FAIL("the clip has no signed statements, or is damaged");
+        return FAIL("the clip has no signed statements, or is damaged: was the clip made by `plantcast clip --signed`?");
     uint8_t *bytes = mem_array(length, 1);
     int count = EVP_DecodeBlock(bytes, (const unsigned char *)entry->value, (int)length);
     count -= (entry->value[length - 1] == '=') + (entry->value[length - 2] == '=');
@@ -197,7 +197,8 @@ static bool is_plain_picture(struct film_reader *reader)
     if (frame->sample_aspect_ratio.num != 0 && av_cmp_q(frame->sample_aspect_ratio, (AVRational){ 1, 1 }) != 0)
         return FAIL("the H.264 stream (VUI) states that pixels are not square");
     return (frame->width == reader->size.width_px && frame->height == reader->size.height_px) ||
-           FAIL("the size in box avc1 differs from the frames' size");
+           FAIL("the size in MP4 box avc1, %dx%d, differs from the frames' size, %dx%d", reader->size.width_px, reader->size.height_px,
+                frame->width, frame->height);
 }
 
 /* Returns the picture's pixels as red, green, blue (mem_free), or NULL if its colours or pixels are not described as
@@ -266,10 +267,10 @@ static bool follows(struct film_check *check, const json_t *statement)
     struct film_reader *reader = &check->reader;
     int64_t at_us = json_integer_value(json_object_get(statement, "at_us")), pts = reader->frame->pts;
     if (at_us == 0)
-        return FAIL("the frame does not show a time in the past");
+        return FAIL("the frame shows live readings, but all frames of a clip must show recorded readings");
     for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
         if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
-            return FAIL("the statement's '%s' differs from that of the first frame", same[i]);
+            return FAIL("'%s' in the frame's signed statement differs from '%s' of the first frame", same[i], same[i]);
     if (!takes_view(check, statement))
         return false;
     int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;

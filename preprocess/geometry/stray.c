@@ -79,7 +79,7 @@ void stray_text(const struct geometry *geometry, const struct gltf_model *model,
     if (stray > 0)
         snprintf(text, STRAY_TEXT_BYTES, "%zu triangles of the asset lie up to", stray);
     else
-        snprintf(text, STRAY_TEXT_BYTES, "a vertex without area lies");
+        snprintf(text, STRAY_TEXT_BYTES, "a vertex that only triangles without area use lies");
     size_t length = strlen(text);
     snprintf(text + length, STRAY_TEXT_BYTES - length, " %.3g m from the rest of the asset%s at %.7g, %.7g, %.7g (node '%.80s')",
              farthest.away_m, stray > 0 ? ", the farthest" : "", farthest.at_m[0], farthest.at_m[1], farthest.at_m[2],

@@ -128,7 +128,7 @@ static bool read_lines(struct cad_model *model, char *text, size_t length, struc
             counts->elements++;
             counts->matched += node >= 0;
         } else if (!strcmp(word, "END") && depth == 0) {
-            snprintf(why, why_bytes, "line %zu: END without NEW", number);
+            snprintf(why, why_bytes, "line %zu: END without an element (NEW) that it could end", number);
             good = false;
         } else if (!strcmp(word, "END")) {
             depth--;

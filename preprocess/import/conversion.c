@@ -111,7 +111,7 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
         encoding_say(said, "names", &counts.encoding);
     }
     if (good && counts.primitives > 0 && counts.empty == counts.primitives)
-        good = fail(why, "none of the model's %zu primitives can be shown: each has no extent, or numbers that are not finite",
+        good = fail(why, "none of the model's %zu primitives can be shown: each has no extent, or numbers that are infinite or invalid",
                     counts.primitives);
     if (good && attributes) {
         const struct attribute_params read = { .encoding = params->encoding,

@@ -59,7 +59,7 @@ static bool take_buffers(struct pack *pack)
         if (!uri && standins[i])
             continue; /* omit an empty buffer that is only a fallback (EXT_meshopt_compression): the data is in compressed buffers */
         if (!uri && (i > 0 || !pack->binary.at)) {
-            good = wrong(pack->why, "buffer %zu has no data: export the model again, as a GLB file", i);
+            good = wrong(pack->why, "glTF buffer %zu has no data: export the model again, as a GLB file", i);
             break;
         }
         unsigned char *own = uri ? model_uri_read(pack->source->folder, uri, &size, uri_why) : NULL;
@@ -80,7 +80,7 @@ static bool move_view(struct pack *pack, json_t *view)
     const json_t *number = json_object_get(view, "buffer");
     json_int_t buffer = json_is_integer(number) ? json_integer_value(number) : -1;
     if (buffer < 0 || (size_t)buffer >= json_array_size(json_object_get(pack->root, "buffers")))
-        return wrong(pack->why, "a buffer view of the model refers to no buffer");
+        return wrong(pack->why, "a glTF bufferView of the model refers to no buffer: export the model again");
     json_object_set_new(view, "byteOffset", json_integer(json_integer_value(json_object_get(view, "byteOffset")) + pack->offsets[buffer]));
     json_object_set_new(view, "buffer", json_integer(0));
     return true;

@@ -65,7 +65,7 @@ static bool fail(struct rvm_reader *r, const char *fmt, ...)
 
 static bool need(struct rvm_reader *r, size_t bytes)
 {
-    return bytes <= r->chunk_end - r->at ? true : fail(r, "the chunk is shorter than its content");
+    return bytes <= r->chunk_end - r->at ? true : fail(r, "the RVM chunk is shorter than its content: the file is damaged");
 }
 
 static uint32_t peek_word(const uint8_t *at)
@@ -101,7 +101,7 @@ static char *read_text(struct rvm_reader *r)
     if (!read_word(r, &words))
         return NULL;
     if (words > (r->chunk_end - r->at) / 4) {
-        fail(r, "a text of %u bytes is longer than its chunk", words * 4U);
+        fail(r, "a text of %u bytes is longer than its RVM chunk: the file is damaged", words * 4U);
         return NULL;
     }
     const char *from = (const char *)r->bytes + r->at;
@@ -154,7 +154,7 @@ static bool begin_group(struct rvm_reader *r)
         good = read_float(r, &reference_mm);
     good = good && read_word(r, &material);
     if (good && r->depth == MAX_DEPTH)
-        good = fail(r, "groups are nested more than %d deep", MAX_DEPTH);
+        good = fail(r, "RVM groups are nested more than %d deep", MAX_DEPTH);
     if (good) {
         int node = cad_model_add_node(r->model, r->depth > 0 ? r->stack[r->depth - 1] : -1, name);
         r->model->nodes[node].material = material;
@@ -178,7 +178,7 @@ static bool read_facets(struct rvm_reader *r, struct primitive *primitive)
             if (!read_word(r, &points))
                 return false;
             if (points > (r->chunk_end - r->at) / HEADER)
-                return fail(r, "a contour of %u points is longer than its chunk", points);
+                return fail(r, "a contour of %u points is longer than its RVM chunk: the file is damaged", points);
             mem_grow(&r->contours, &r->contour_room, r->contour_count + 1, sizeof(*r->contours));
             mem_grow(&r->points, &r->point_room, r->point_count + points, sizeof(*r->points));
             r->contours[r->contour_count++] = (struct rvm_contour){ r->point_count - primitive->first_point, points, c == 0 };
@@ -200,7 +200,7 @@ static bool read_primitive(struct rvm_reader *r)
     double box;
     struct primitive primitive = { .byte = r->at - HEADER };
     if (r->depth == 0)
-        return fail(r, "a primitive shape (PRIM) is outside every group (CNTB): the file is damaged or incomplete");
+        return fail(r, "an RVM primitive (PRIM) is outside every group (CNTB): the file is damaged or incomplete");
     if (!read_word(r, &version) || !read_word(r, &kind))
         return false;
     for (int i = 0; i < 12; i++)
@@ -276,16 +276,16 @@ static bool read_chunks(struct rvm_reader *r)
         char id[5];
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
-            return fail(r, "expected the header of a chunk");
+            return fail(r, "expected the header of an RVM chunk: the file is damaged");
         if (!strcmp(id, "END:")) /* stop at the chunk END: without reading its header, because some files omit header fields there */
             return true;
         if (r->count - from < HEADER)
-            return fail(r, "the file ends within chunk %s", id);
+            return fail(r, "the file ends within RVM chunk %s", id);
         uint32_t next = peek_word(r->bytes + from + 16);
         if (next > r->count)
-            return fail(r, "the file ends within chunk %s, which should extend to byte %u of %zu", id, next, r->count);
+            return fail(r, "the file ends within RVM chunk %s, which should extend to byte %u of %zu", id, next, r->count);
         if (next < from + HEADER)
-            return fail(r, "chunk %s ends before its start, at byte %u", id, next);
+            return fail(r, "RVM chunk %s ends before its start, at byte %u: the file is damaged", id, next);
         r->at = from + HEADER;
         r->chunk_end = next;
         if (!read_chunk(r, id, &ended))

@@ -313,7 +313,9 @@ struct cloud_heat *cloud_heat_create(struct log *log, const struct surface *surf
         return cloud;
 error:
     log_err(log, "cannot compute distances by the heat method on %zu points: %s", cloud->count,
-            cloud->common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
+            cloud->common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
+                                                         "check the asset's model for extremely thin triangles"
+                                                       : "out of memory");
     cloud_heat_destroy(&cloud);
     return NULL;
 }

@@ -175,9 +175,12 @@ bool influence_conduct(struct influence *influence, const struct influence_task 
     if (good)
         make_symmetric(influence);
     else
-        log_err(task->log, "cannot compute heat conduction between %zu sensors (%zu surface points): "
-                           "%s", influence->count, mesh->mesh.point_count,
-                common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
+        log_err(task->log,
+                "cannot compute heat conduction between %zu sensors (%zu surface points): %s",
+                influence->count, mesh->mesh.point_count,
+                common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
+                                                      "check the asset's model for extremely thin triangles"
+                                                    : "out of memory");
     cholmod_free_factor(&conduct.factor, &common);
     cholmod_finish(&common);
     laplacian_finish(&conduct.laplacian);

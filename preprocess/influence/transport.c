@@ -321,7 +321,9 @@ bool transport_angles(struct influence *influence, struct log *log, struct worke
     good = good && !transport.failed;
     if (!good)
         log_err(log, "cannot compute the directions of %zu sensors on %zu surface points: %s", influence->count, mesh->mesh.point_count,
-                common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
+                common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
+                                                      "check the asset's model for extremely thin triangles"
+                                                    : "out of memory");
     cholmod_free_factor(&transport.factor, &common);
     cholmod_finish(&common);
     laplacian_finish(&transport.laplacian);

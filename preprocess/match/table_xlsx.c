@@ -201,7 +201,7 @@ static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XM
     if (unzLocateFile(zip, part, 2) != UNZ_OK)
         return 0;
     if (unzOpenCurrentFile(zip) != UNZ_OK) {
-        snprintf(why, why_bytes, "%s cannot be unpacked", part);
+        snprintf(why, why_bytes, "part %s of the .xlsx file cannot be unpacked: the file is damaged", part);
         return -1;
     }
     XML_Parser parser = sheet->parser = XML_ParserCreate(NULL);
@@ -221,7 +221,7 @@ static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XM
         }
     } while (good == 1 && count > 0);
     if (good < 0 && (total > max_part_bytes || sheet->too_large))
-        snprintf(why, why_bytes, "%s is too large", part);
+        snprintf(why, why_bytes, "part %s of the .xlsx file is too large: save the sheet with the tags as CSV", part);
     else if (good < 0)
         snprintf(why, why_bytes, "%s, line %lu: %s", part, current_line(parser),
                  count < 0 ? "cannot be unpacked" : XML_ErrorString(XML_GetErrorCode(parser)));

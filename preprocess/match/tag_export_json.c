@@ -495,9 +495,9 @@ bool tag_export_read_json(struct tag_export *list, const char *text, size_t leng
     reader.types = json_object();
     index_types(&reader, root, "", 0);
     add_node(&reader, &(struct layered_node){ { root }, 1 }, NULL, "", 0);
-    say(list, &reader.unknown, "instances have a type that is not in the export; export the folder of types too");
-    say(list, &reader.circular, "instances have a type that contains itself: its inner copies are left out");
-    say(list, &reader.unresolved, "addresses refer to parameters that have no value");
+    say(list, &reader.unknown, "instances of Ignition types (UDT) have a type that is not in the export; export the folder of types too");
+    say(list, &reader.circular, "instances of Ignition types (UDT) have a type that contains itself: its inner copies are left out");
+    say(list, &reader.unresolved, "addresses refer to parameters of Ignition types (UDT) that have no value");
     say(list, &reader.without, "units, ranges and descriptions refer to tags or parameters that have no value in this export: left out");
     if (reader.too_deep || reader.too_many)
         snprintf(why, why_bytes, reader.too_deep ? "folders deeper than %d" : "more than %d tags",

@@ -145,7 +145,7 @@ extern "C" struct draco_mesh *draco_mesh_decode(const void *bytes, size_t size, 
     } catch (const std::exception &e) {
         wrong(why, "%s", e.what());
     } catch (...) {
-        wrong(why, "the library failed");
+        wrong(why, "the Draco library failed without a reason");
     }
     return nullptr;
 }

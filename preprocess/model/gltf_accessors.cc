@@ -113,7 +113,7 @@ void accessor::get(size_t element, double *out) const
     for (int c = 0; c < wanted; c++) {
         out[c] = component(from + static_cast<size_t>(c) * component_bytes(type), type, normalized);
         if (!std::isfinite(out[c]))
-            refuse("%s: element %zu is not finite", what.c_str(), element);
+            refuse("%s: element %zu is infinite or not a number", what.c_str(), element);
     }
 }
 

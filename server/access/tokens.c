@@ -145,7 +145,7 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     int count = 0;
     *out = (struct token_holder){ .until_utc_ns = INT64_MAX };
     if (strcspn(line, "\r\n#") >= sizeof(copy)) {
-        *why = "the line is too long";
+        *why = "the line is longer than 1023 bytes";
         return -1;
     }
     snprintf(copy, strcspn(line, "\r\n#") + 1, "%s", line);
@@ -229,7 +229,7 @@ static const char *fault_of(const struct stat *st)
         return "the file's owner is neither root nor the daemon's user; change the owner with chown";
     if (st->st_mode & (S_IWGRP | S_IWOTH | S_IROTH))
         return "other users may read or write the file; set chmod 640 or stricter";
-    return st->st_size > MAX_FILE_BYTES ? "the file is too large" : NULL;
+    return st->st_size > MAX_FILE_BYTES ? "the file is larger than 1 MiB" : NULL;
 }
 
 static void take_line(struct tokens *tokens, const char *line, int number)

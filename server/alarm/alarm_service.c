@@ -385,8 +385,10 @@ const char *alarm_service_mirror(struct alarm_service *service, const struct ala
 {
     pthread_mutex_lock(&service->thread.lock);
     uint64_t before = alarms_number(service->alarms);
-    const char *why =
-        alarms_mirror(service->alarms, list, count, whole) ? NULL : "the core's message has an alarm that this plant does not have";
+    const char *why = alarms_mirror(service->alarms, list, count, whole)
+                          ? NULL
+                          : "the core's message has an alarm that this plant does not have: copy the core's tag list to this machine, "
+                            "then reload";
     uint64_t number = alarms_number(service->alarms);
     keep_since(service, before);
     pthread_mutex_unlock(&service->thread.lock);

@@ -71,7 +71,8 @@ const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us
     if (*first_us < 0 || count != CORE_INSTANT_HEAD_BYTES + readings * CORE_INSTANT_READING_BYTES)
         return "the length of the core's answer does not match the number of readings in the answer";
     if (snapshot && readings != snapshot->count)
-        return "the number of readings in the core's answer differs from this plant's number of tags";
+        return "the core's answer has readings of more or fewer tags than this plant has: copy the core's plant file and tag list to "
+               "this machine, then reload";
     for (size_t i = 0; snapshot && i < readings; i++)
         if (!read_one(at + CORE_INSTANT_HEAD_BYTES + i * CORE_INSTANT_READING_BYTES, &snapshot->readings[i]))
             return "the core's answer has an invalid reading";

@@ -254,7 +254,8 @@ static void on_links(struct core_link *link, const json_t *message)
     const json_t *up = json_object_get(message, "up");
     int64_t now_ns = clock_mono_ns();
     if (json_array_size(up) != link->params.plant->source_count) {
-        refuse(link, "the core has another number of sources than this plant");
+        refuse(link, "the core's plant file has more or fewer sources than this plant file: copy the core's file to this machine, then "
+                     "reload");
         return;
     }
     for (size_t i = 0; i < json_array_size(up); i++)

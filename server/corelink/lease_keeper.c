@@ -163,7 +163,7 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     if (!rows)
         give_up(keeper, postgres_link_why(keeper->link));
     else if (!there)
-        give_up(keeper, "this plant's row was deleted from the table `lease`");
+        give_up(keeper, "this plant's row was deleted from the PostgreSQL table `lease`");
     if (there) {
         *row = (struct lease_row){ postgres_int64(rows, 0, 0), postgres_int64(rows, 0, 1), postgres_int64(rows, 0, 2), "", "" };
         copy_name(row->leader, rows, 3);
@@ -403,7 +403,8 @@ static void tell(struct lease_keeper *keeper)
     if (ends && !keeper->told_lost) {
         keeper->told_lost = true;
         log_err(keeper->params.log, "lease: lost (%s); this core stops polling and exits",
-                lost ? "another core leads, or the row was edited" : "neither PostgreSQL nor a standby has confirmed the lease");
+                lost ? "another core leads, or this plant's row in the PostgreSQL table `lease` was edited"
+                     : "neither PostgreSQL nor a standby has confirmed the lease");
         keeper->params.lost(keeper->params.arg);
     }
 }

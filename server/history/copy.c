@@ -90,7 +90,7 @@ static int create_target(struct log *log, const char *path)
     bool good = fd >= 0 && (geteuid() != 0 || (stat_folder(path, &folder) && fchown(fd, folder.st_uid, folder.st_gid) == 0));
     if (good)
         return fd;
-    failed(log, path, "cannot be made", strerror(errno));
+    failed(log, path, "cannot be created", strerror(errno));
     if (fd >= 0) {
         unlink(path);
         close(fd);

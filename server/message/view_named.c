@@ -21,7 +21,7 @@ bool view_named_read(const struct params_context *context, const char *address, 
     snprintf(height, sizeof(height), "%d", height_px);
     bool good = view_address_read(&fields, address, error);
     if (good && !(view_address_add(&fields, "width", width) && view_address_add(&fields, "height", height))) {
-        message_fail(error, "bad_field", "the view address has too many fields");
+        message_fail(error, "bad_field", "the view address has too many fields: at most %d are allowed", VIEW_ADDRESS_ARGS);
         good = false;
     }
     good = good && view_query_parse(context, ROLE_ENGINEER, (const char *const *)fields.args, fields.count, view, NULL, error);

@@ -54,7 +54,7 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
     if (!core && role_is_node(connection_of(wsi)->role))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, refusal_words(REFUSAL_TOKEN_NODE));
     if (!connection_header(wsi, WSI_TOKEN_PROTOCOL, list, sizeof(list)))
-        return refuse(server, wsi, 431, "a header is too long\n");
+        return refuse(server, wsi, 431, "the header Sec-WebSocket-Protocol is too long\n");
     if ((core || list[0]) && !access_list_has(list, spoken))
         return refuse_protocol(server, wsi, list, spoken);
     /* checks the path here, because libwebsockets chooses the handler by subprotocol and not by path */

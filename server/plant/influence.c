@@ -98,12 +98,14 @@ void plant_influence_check(const struct plant *plant, struct diag *diag)
             continue;
         if (isnan(group->ambient))
             diag_error(diag, plant->files.path, group->line, 0,
-                       "group %s: fin requires 'ambient', the value around the assets, in %s: far from sensors, the wall takes this value",
+                       "group %s: fin requires 'ambient', the value around the assets, in %s: far from sensors, the asset's metal wall "
+                       "takes this value",
                        group->id, *group->unit ? group->unit : "the group's unit");
         for (size_t a = 0; a < plant->asset_count; a++)
             if (plant->assets[a].thickness_m <= 0 && count_sensors(plant, (int)g, (int)a) > 0)
                 diag_error(diag, plant->files.path, plant->assets[a].line, 0,
-                           "asset %s: group %s has 'interpolation: fin', which requires 'thickness_m', the thickness of the asset's wall",
+                           "asset %s: group %s has 'interpolation: fin', which requires 'thickness_m', the thickness of the asset's "
+                           "metal wall",
                            plant->assets[a].id, group->id);
     }
 }

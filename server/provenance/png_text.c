@@ -134,7 +134,7 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
     if (!is_header)
         return FAIL("the first chunk of the PNG file is not IHDR");
     return memcmp(chunk->data + 8, format, sizeof(format)) == 0 ||
-           FAIL("chunk IHDR has another format than 8 bits of red, green and blue");
+           FAIL("PNG chunk IHDR has another format than 8 bits of red, green and blue");
 }
 
 /* Returns the index of the chunk's type in `plain`, the table of chunk types that our writer emits; PLAIN_CHUNKS: not in the table. */
@@ -155,16 +155,16 @@ static bool takes_plain_chunk(const struct png_chunk *chunk, int *next, char why
 {
     int row = plain_row(chunk);
     if (row == PLAIN_CHUNKS)
-        return FAIL("unexpected chunk %c%c%c%c: Plantcast's pictures have no such chunk", printable(chunk->type[0]),
+        return FAIL("unexpected PNG chunk %c%c%c%c: the picture was changed, or not signed by Plantcast", printable(chunk->type[0]),
                     printable(chunk->type[1]), printable(chunk->type[2]), printable(chunk->type[3]));
     bool again = row + 1 == *next && plain[row].repeats;
     if (row < *next && !again)
-        return FAIL("chunk %.4s occurs twice, or in another order than in Plantcast's pictures", plain[row].type);
+        return FAIL("PNG chunk %.4s occurs twice, or in another order than in Plantcast's pictures", plain[row].type);
     for (int i = *next; i < row; i++)
         if (plain[i].required)
-            return FAIL("chunk %.4s is missing, or in another order than in Plantcast's pictures", plain[i].type);
+            return FAIL("PNG chunk %.4s is missing, or in another order than in Plantcast's pictures", plain[i].type);
     if (plain[row].bytes && (chunk->length != plain[row].length || memcmp(chunk->data, plain[row].bytes, chunk->length) != 0))
-        return FAIL("chunk %.4s differs from the same chunk of Plantcast's pictures", plain[row].type);
+        return FAIL("PNG chunk %.4s differs from the same chunk of Plantcast's pictures", plain[row].type);
     *next = row + 1;
     return true;
 }
@@ -181,7 +181,7 @@ bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords,
     while (next_chunk(png, count, &at, &chunk)) {
         bool is_text = memcmp(chunk.type, "zTXt", 4) == 0;
         if (is_text && (texts == keyword_count || next > 0 || !has_keyword(chunk.data, chunk.length, keywords[texts])))
-            return FAIL("chunk zTXt occurs twice, or in another order than in Plantcast's pictures");
+            return FAIL("PNG chunk zTXt occurs twice, or in another order than in Plantcast's pictures");
         texts += is_text;
         if (!is_text && texts < keyword_count)
             return FAIL("the PNG file has no text chunk %s directly after its header", keywords[texts]);

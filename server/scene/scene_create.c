@@ -105,7 +105,9 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
             if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
-            log_err(log, "asset %s: the influence of the sensors in group %s was prepared with another tag list, disc_m, gp or wall",
+            log_err(log,
+                    "asset %s: the influence of the sensors in group %s was prepared with another tag list, `disc_m`, `gp`, or "
+                    "metal wall (`thickness_m`, `conductivity`, `heat_transfer`)",
                     asset->plant->id, group->id);
             return false;
         }

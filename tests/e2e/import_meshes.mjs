@@ -136,21 +136,21 @@ test('glTF: names of files with percent signs and accents, required looks, missi
         materials: [{ name: 'paint', pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }] }));
     const { status, stdout, stderr } = plantcast('import', join(folder, 'look.gltf'), '-o', join(folder, 'plant'));
     assert.equal(status, 0, stderr);
-    assert.match(stdout, /left out: the file requires the extension KHR_texture_basisu, which affects only the look of the model/);
+    assert.match(stdout, /left out: the file requires the glTF extension KHR_texture_basisu, which Plantcast ignores, because it affects /);
     assert.match(stdout, /left out: material 0 'paint': the base colour texture: the texture's image is missing: 'none\.png'/);
     const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
     assert.match(ran('plantcastd', '--check').stdout,
-        /not prepared yet \(.*\)\. Not checked before plantcast-prep has run: textures and extensions that are not drawn, /);
+        /not prepared yet \(no prepared files in .*\), so some things were not checked: glTF textures and extensions that /);
     // The check names what was left out, even after a second run of plantcast-prep, which does not read the model again.
     for (let run = 0; run < 2; run++) {
         assert.equal(ran('plantcast-prep').status, 0);
         const checked = ran('plantcastd', '--check').stdout;
-        assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: the file requires the extension KHR_texture_basisu/);
+        assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: .* requires the glTF extension KHR_texture_basisu/);
         assert.match(checked, /warning: model .*look\.glb: left out: material 0 'paint': the base colour texture/);
     }
     writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
     assert.match(plantcast('import', join(folder, 'r.gltf'), '-o', join(folder, 'other')).stderr,
-        /requires the extension CESIUM_RTC, which is not supported/);
+        /requires the glTF extension CESIUM_RTC, which Plantcast does not support/);
 }));
 
 const read = (folder, name, bytes) => {
@@ -180,7 +180,7 @@ test('FBX: surfaces without place, with two places or without finite corners are
     assert.ok(twice.json.nodes.some(({ matrix }) => matrix?.[12] === 7), JSON.stringify(twice.json.nodes));
     for (const number of ['-1.#IND', '1.#INF', '1.#QNAN0', 'nan'])
         assert.match(read(folder, 'nan.fbx', fbx().replace('a: 0,', `a: ${number},`)).out,
-            /left out: \d+ triangles with corners that are not finite, in Feed pump\n/);
+            /left out: \d+ triangles whose coordinates are infinite or not numbers, in Feed pump\n/);
 }));
 
 test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () => withMaterials((folder) => {
@@ -240,7 +240,7 @@ test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }
         nodes: [...['T-1', 'L-2', 'P-3', 'E-4'].map((name, i) => ({ name, mesh: i })), { name: 'S-5', mesh: 0 }] }));
     assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'the node\'s mesh has no triangles' }]);
     assert.match(out, /not shown: 2 nodes that consist only of lines or points: L-2, P-3\n/);
-    assert.deepEqual(left_out, ['the file uses the extension ACME_bent, which is not supported',
+    assert.deepEqual(left_out, ['the file uses the glTF extension ACME_bent, which Plantcast does not support',
         "not in the file's default scene: 1 node with a mesh, node 4 'S-5'"]);
 }));
 
@@ -252,7 +252,7 @@ test('glTF: the diffuse colour of older materials, odd kinds of images, other ch
         images: ['image/jpg', 'application/octet-stream', ''].map((type) => ({ uri: `data:${type};base64,${png}` })),
         textures: [{ source: 0 }, { source: 1 }, { source: 2 }], materials: [0, 1, 2].map((index) =>
             old({ diffuseFactor: [1, 0, 0, 1], diffuseTexture: { index } })) }));
-    assert.deepEqual(left_out, ['the file requires the extension KHR_materials_pbrSpecularGlossiness: diffuse colours are kept, ' +
+    assert.deepEqual(left_out, ['the file requires the glTF extension KHR_materials_pbrSpecularGlossiness: diffuse colours are kept, ' +
         'specular colours are ignored']);
     const json = Buffer.from(JSON.stringify({ ...JSON.parse(gltf()), buffers: [{ byteLength: 42 }] }).padEnd(2000));
     const [first, bin, other] = [['JSON', json], ['BIN', triangle], ['ACME', Buffer.alloc(8)]];
@@ -353,7 +353,7 @@ test('broken files are read or refused in one line, and leave nothing behind', {
         assert.doesNotMatch(stderr, /bad_alloc/);
         refused += status !== 0;
         if (status === 0 && /^nan|^far/.test(name))
-            assert.match(stdout, /left out: \d+ triangles with corners that are not finite/, name);
+            assert.match(stdout, /left out: \d+ triangles whose coordinates are infinite or not numbers/, name);
     });
     assert.ok(refused > 20, `${refused} refused`);
 }));

@@ -130,7 +130,7 @@ test('an old death certificate is ignored', options, async () => {
     const late = await broker.client();
     const death = (bdSeq) => encode({ timestamp: Date.now(), metrics: [{ name: 'bdSeq', type: 'UInt64', value: bdSeq }] });
     await late.tell('spBv1.0/U100/NDEATH/edge', death(node.bdSeq + 1));
-    await plant.daemon.line(/U100\/edge: an old death certificate \(bdSeq 1; the birth certificate has 0\) is ignored/);
+    await plant.daemon.line(/U100\/edge: an old Sparkplug death certificate \(bdSeq 1; the birth certificate has 0\) is ignored/);
     await until('TI-1', good);
     await late.tell('spBv1.0/U100/NDEATH/edge', death(node.bdSeq));
     await until('TI-1', dead);
@@ -148,7 +148,7 @@ test('a lost message leaves no value Good; the node is asked for its birth only 
         if (rebirth === 'no')
             for (const [name, value] of [['TI-2', -7.5], ['PI-1', 5], ['XS-1', 1]])
                 await until(name, { quality_name: 'Uncertain_LastUsableValue', value });
-        await plant.daemon.line(/U100\/edge: messages lost: received number 5, expected 2/);
+        await plant.daemon.line(/U100\/edge: Sparkplug messages lost: received sequence number 5, expected 2/);
         if (rebirth === 'yes')
             await waitFor('a request for its birth', () => node.births > births);
         await until('TI-1', { ...good, value: rebirth === 'no' ? 30 : 20.5 });
@@ -173,7 +173,7 @@ test('who was born before we came is read once its birth is known', options, asy
     await stranger.leave();
     await sleep(200);
     node.publishNodeData({ timestamp: Date.now(), metrics: [{ name: 'Inlet/Temperature', type: 'Double', value: 30 }] });
-    await plant.daemon.line(/U100\/edge: values ignored: no birth certificate yet; `rebirth: yes` requests it/);
+    await plant.daemon.line(/U100\/edge: values ignored: no Sparkplug birth certificate yet; `rebirth: yes` requests it/);
     await until('TI-1', { quality_name: 'Bad_WaitingForInitialData' });
     await plant.daemon.stop();
     await plant.run('payload: sparkplug, rebirth: yes', ROWS);
@@ -218,7 +218,7 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
     node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', type: 'Int32', value: -5 }] });
     await until('TI-2', { ...good, value: -5 }); // the device may send another birth
     await until('PI-1', { quality_name: 'Bad_ConfigurationError' });
-    await plant.daemon.line(/U100\/edge\/skid: the birth certificate has no metric 'Raw', nor metrics of other tags/);
+    await plant.daemon.line(/U100\/edge\/skid: the Sparkplug birth certificate has no metric 'Raw', nor metrics of other tags/);
 });
 
 // 4,000 metrics, five times a second, `each` of them per message.

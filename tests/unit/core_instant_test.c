@@ -44,7 +44,8 @@ TEST(each_comes_to_the_bit)
     assert_null(core_instant_read(text.at, text.length, &first_us, NULL));
     assert_int_equal(first_us, 0);
     assert_string_equal(core_instant_read(text.at, text.length, &first_us, got),
-                        "the number of readings in the core's answer differs from this plant's number of tags");
+                        "the core's answer has readings of more or fewer tags than this plant has: copy the core's plant file and tag "
+                        "list to this machine, then reload");
     text_finish(&text);
 }
 

@@ -167,15 +167,16 @@ CASE(rotations_have_a_length)
     assert_float_equal(l->model.nodes[0].world[0], 0, 1e-12);
     assert_float_equal(l->model.nodes[0].world[1], 1, 1e-12);
     assert_float_equal(l->model.nodes[0].world[10], 1, 1e-12);
-    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': the rotation is not a unit quaternion");
-    refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': the rotation");
+    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': the node's rotation in the glTF file is a quaternion of length 0, not 1");
+    refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': the node's rotation");
 }
 
 CASE(wrong_numbers_are_refused)
 {
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":7}") ACCESSORS "}",
             "mesh 0 'm', primitive 0: indices: index 5 refers to vertex 4, but there are only 4 vertices");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":6},\"indices\":1}") ACCESSORS "}", "POSITION: element 1 is not finite");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":6},\"indices\":1}") ACCESSORS "}",
+            "POSITION: element 1 is infinite or not a number");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":12},\"indices\":1}") ACCESSORS "}",
             "4 elements do not fit into bufferView 0");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":13},\"indices\":1}") ACCESSORS "}", "elements do not fit into the");
@@ -442,7 +443,7 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
         { "\"_OWN\":11", "node 0 'i': EXT_mesh_gpu_instancing: the instances have neither TRANSLATION, ROTATION nor SCALE" },
         { "\"TRANSLATION\":11,\"SCALE\":15", "node 0 'i': EXT_mesh_gpu_instancing: 2 and 3 instances" },
         { "\"TRANSLATION\":10", "node 0 'i': EXT_mesh_gpu_instancing: TRANSLATION: 2 components, expected 3" },
-        { "\"TRANSLATION\":6", "TRANSLATION: element 1 is not finite" },
+        { "\"TRANSLATION\":6", "TRANSLATION: element 1 is infinite or not a number" },
     };
     for (size_t i = 0; i < sizeof(instances) / sizeof(instances[0]); i++) {
         char *json = test_printf(HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":"

@@ -438,8 +438,8 @@ CASE(wrong_types_and_references_are_refused_by_name)
         { "nodes", "children", "5", "node 0 'sheet': children is not a list" },
         { "nodes", "children", "[0]", "a cycle" },
         { "nodes", "matrix", "[1,0,0]", "node 0 'sheet': matrix is not 16 numbers" },
-        { "nodes", "matrix", "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]", "the last row of the matrix is not 0 0 0 1" },
-        { "nodes", "translation", "[1e300,0,0]", "the position of the node is not finite or exceeds" },
+        { "nodes", "matrix", "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]", "the last row of the node's glTF matrix is not 0 0 0 1" },
+        { "nodes", "translation", "[1e300,0,0]", "the node's position is infinite, not a number, or beyond" },
         { "nodes", "skin", "0", "there is no skin 0" },
         { "nodes", "name", "5", "name is not text" },
         { "nodes", "weights", "[0.5]", "morph targets are not supported" },
@@ -507,8 +507,8 @@ CASE(heads_are_checked)
         { "{\"asset\":{\"version\":\"1.0\"}}", "glTF version '1.0'" },
         { "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", "glTF version '2.1'" },
         { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"CESIUM_RTC\"]}",
-          "CESIUM_RTC, which is not supported" },
-        { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[5]}", "requires the extension" },
+          "CESIUM_RTC, which Plantcast does not support" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[5]}", "requires the glTF extension" },
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":{}}", "nodes is not a list" },
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[5]}", "node 0: is not an object" },
         { "{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
@@ -641,14 +641,14 @@ CASE(textures_lie_where_their_transform_puts_them)
     static const char *const looks[] = { "KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness", "EXT_mesh_features",
                                          "EXT_structural_metadata", "EXT_texture_avif" };
     for (size_t i = 0; i < sizeof(looks) / sizeof(looks[0]); i++) {
-        char said[160];
+        char said[240];
         maker = seed_open(15, "textured.glb", &sheet);
         json_object_set_new(maker.root, "extensionsRequired", json_pack("[s]", looks[i]));
         try_model(l, &maker);
         assert_good(l);
-        snprintf(said, sizeof(said), "the file requires the extension %s%s", looks[i],
+        snprintf(said, sizeof(said), "the file requires the glTF extension %s%s", looks[i],
                  strstr(looks[i], "Specular") ? ": diffuse colours are kept, specular colours are ignored"
-                                              : ", which affects only the look of the model");
+                                              : ", which Plantcast ignores, because it affects only the look of the model");
         assert_string_equal(l->model.left_out[0], said);
         assert_true(l->model.materials[0].base_color_texture != ASSET_NO_TEXTURE);
     }

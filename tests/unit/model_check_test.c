@@ -130,12 +130,12 @@ CASE(transforms_that_cannot_be_prepared_are_refused)
     static const struct {
         const char *transform, *why;
     } transforms[] = {
-        { "\"translation\":[1e16,0,0]", "is not valid: node 1: the position of the node is not finite or exceeds 1e15" },
+        { "\"translation\":[1e16,0,0]", "is not valid: node 1: the node's position is infinite, not a number, or beyond 1e15" },
         { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,-1e300,0,1]",
-          "is not valid: node 1: the position of the node is not finite or exceeds 1e15" },
-        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0]", "is not valid: node 1: the last row of the matrix is not 0 0 0 1" },
+          "is not valid: node 1: the node's position is infinite, not a number, or beyond 1e15" },
+        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0]", "is not valid: node 1: the last row of the node's glTF matrix is not 0 0 0 1" },
         { "\"matrix\":[1,0,0,0]", "is not valid: node 1: matrix is not 16 numbers" },
-        { "\"rotation\":[0,0,0,0]", "is not valid: node 1: the rotation is not a unit quaternion" },
+        { "\"rotation\":[0,0,0,0]", "is not valid: node 1: the node's rotation in the glTF file is a quaternion of length 0, not 1" },
         { "\"rotation\":[0,0,1]", "is not valid: node 1: rotation is not 4 numbers" },
         { "\"scale\":[1,1,\"1\"]", "is not valid: node 1: scale is not 3 numbers" },
         { "\"translation\":5", "is not valid: node 1: translation is not 3 numbers" },

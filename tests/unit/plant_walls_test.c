@@ -155,7 +155,7 @@ CASE(what_is_wrong_is_said_at_its_place)
             "  - grid: [b b]\n    panes: [{ area: b, clock: yes, text: x }, { area: b, views: v }, { area: z, clock: yes, every_s: 9 },"
             " { area: b, tiles: [] }]");
     FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" },
-          { "plant.yaml", 8, 18, "a character that is not allowed in addresses" },
+          { "plant.yaml", 8, 18, "a blank, a control character or a non-ASCII letter" },
           { "plant.yaml", 9, 18, "the address must not begin with #" },
           { "plant.yaml", 9, 9, "view 'v' is listed twice (first at line 8)" }, { "plant.yaml", 10, 3, "view" },
           { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },

@@ -339,7 +339,7 @@ TEST(test_what_is_not_shown_is_named)
                         "lost\tbyte 408\t/G\tgroup\t\t3 of the 3 primitives of the group are left out: primitive at byte 408: "
                         "unknown kind of primitive\n"
                         "error\t1\tRVM: /H: 1 of the 2 primitives of the group is left out: cylinder at byte 992: "
-                        "the primitive has no extent\n"
+                        "its dimensions in the RVM file are zero, negative or contradictory\n"
                         "left out: 1 obstruction volume of /G\nleft out: 1 insulation volume of /G\n");
     cad_model_destroy(&model);
     text_finish(&file);

@@ -175,16 +175,16 @@ TEST(test_udt_kinds)
           "A/P/T", "", "", "xyz", 1, NULL },
         { "a parameter without a value", PROVIDER(TYPE("Pump", "'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("[{Dev}]1")) "]"),
           INSTANCE("P", "Pump", "")),
-          "A/P/T", "", "", "[{Dev}]1", 1, "1 addresses refer to parameters that have no value: A/P/T ([{Dev}]1)" },
+          "A/P/T", "", "", "[{Dev}]1", 1, "1 addresses refer to parameters of Ignition types (UDT) that have no value: A/P/T ([{Dev}]1)" },
         { "a parameter that is itself", PROVIDER(TYPE("Pump", "'parameters':{'D':{'value':" BOUND("{D}") "}},'tags':[" MEMBER("T",
           ",'opcItemPath':" BOUND("{D}")) "]"), INSTANCE("P", "Pump", "")),
           "A/P/T", "", "", "{D}", 1, "have no value: A/P/T" },
         { "an unknown type", PROVIDER("", INSTANCE("P", "Pump", ",'tags':[" MEMBER("T", ",'engUnit':'bar'") "]")), "A/P/T", "bar", "",
           "", 1,
-          "1 instances have a type that is not in the export; export the folder of types too: A/P (Pump)" },
+          "1 instances of Ignition types (UDT) have a type that is not in the export; export the folder of types too: A/P (Pump)" },
         { "a type within itself", PROVIDER(TYPE("L", "'tags':[" INSTANCE("I", "L", "") "," MEMBER("T", "") "]"), INSTANCE("P", "L", "")),
           "A/P/T",
-          "", "", "", 1, "1 instances have a type that contains itself: its inner copies are left out: A/P/I (L)" },
+          "", "", "", 1, "1 instances of Ignition types (UDT) have a type that contains itself: its inner copies are left out: A/P/I (L)" },
         { "types that are each other's parents",
           PROVIDER(TYPE("X", "'typeId':'Y','tags':[" MEMBER("T", ",'engUnit':'bar'") "]") "," TYPE("Y", "'typeId':'X'"), INSTANCE("P",
             "X", "")),
@@ -197,7 +197,7 @@ TEST(test_udt_kinds)
           "A/P/T", "", "", "32 32 2 1 006 -3", 1, NULL },
         { "a division by zero", PROVIDER(TYPE("Pump", "'parameters':{'N':{'value':3}},'tags':[" MEMBER("T", ",'opcItemPath':"
             BOUND("{N/0}")) "]"), INSTANCE("P", "Pump", "")),
-          "A/P/T", "", "", "{N/0}", 1, "addresses refer to parameters that have no value: A/P/T ({N/0})" },
+          "A/P/T", "", "", "{N/0}", 1, "addresses refer to parameters of Ignition types (UDT) that have no value: A/P/T ({N/0})" },
         { "three types above each other, each with a default of its own",
           PROVIDER(PUMP "," TYPE("Mid", "'typeId':'Pump','parameters':{'No':{'value':5}}") "," TYPE("Top", "'typeId':'Mid','tags':["
             MEMBER("T", ",'engHigh':9") "," MEMBER("X", "") "]"),
@@ -619,7 +619,7 @@ TEST(test_refused)
         { "[1, 2]", "no tags" },
         { "<Tags><Tag name=\"T1\"/></Tags>", "XML is not supported" },
         { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}",
-          "the file contains no tags: 1 instances have a type" },
+          "the file contains no tags: 1 instances of Ignition types (UDT) have a type" },
     };
     struct tag_export list;
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {

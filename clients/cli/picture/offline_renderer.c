@@ -105,7 +105,7 @@ static bool add_colormaps(struct offline_renderer *offline, const struct snapsho
             continue;
         bool read = image_ramp(path, rgb, why);
         if (!read || !colormap_add(offline->plant, path, (const uint8_t(*)[3])rgb)) {
-            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path, read ? "the plant has too many colour maps" : why);
+            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path, read ? "the plant already has 16 colour maps, the maximum" : why);
             return false;
         }
     }

@@ -368,7 +368,8 @@ void say_empty(assimp_reader *r, const aiNode *node)
         r->lines.push_back(name.empty() ? "a node without a name" : name);
     else
         printf("lost\t\t%s\tnode\t\t%s\n", name.c_str(),
-               types == 0 ? "the node's mesh has no triangles" : "none of the node's triangles has finite corners");
+               types == 0 ? "the node's mesh has no triangles"
+                          : "all triangles of the node have coordinates that are infinite or not numbers");
 }
 
 /* Returns the mesh for a node in the written GLB file, creating it if necessary. Returns -1 if the node has no triangles. */
@@ -427,7 +428,7 @@ void matrix_of(const aiNode *node, const transform &place, double matrix[16])
         for (unsigned column = 0; column < 4; column++) {
             matrix[4 * column + row] = place[row][column];
             if (!std::isfinite(matrix[4 * column + row]))
-                refuse("node '%.80s': the position of the node is not finite", node->mName.C_Str());
+                refuse("node '%.80s': the node's position is infinite or not a number: export the model again", node->mName.C_Str());
         }
 }
 
@@ -577,7 +578,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     write_scene(&r.out, output, "");
     say_textures(scene);
     if (r.lost > 0)
-        printf("left out: %zu triangles with corners that are not finite, in %s\n", r.lost, listed(r.holed).c_str());
+        printf("left out: %zu triangles whose coordinates are infinite or not numbers, in %s\n", r.lost, listed(r.holed).c_str());
 }
 
 } // namespace

@@ -82,5 +82,5 @@ export function uncutOpenings(model, voids, geometry, solids) {
 
 // Returns one line of the reader's output for each opening that web-ifc did not cut out of its element. Format: error record of
 // preprocess/import/findings.h.
-export const openingLines = (model, uncut) => uncut.map(({ opening, host, why }) => fields('error', 1, `the opening #${opening} ${
-    model.nameOf(opening)} is not cut from #${host} ${model.nameOf(host)}${why ? `: ${why}` : ''}`));
+export const openingLines = (model, uncut) => uncut.map(({ opening, host, why }) => fields('error', 1, `#${host} ${
+    model.nameOf(host)} is shown without its opening #${opening} ${model.nameOf(opening)}${why ? `: ${why}` : ''}`));

@@ -259,7 +259,7 @@ void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item>
         for (const TopoDS_Shape &cutter : cutters) {
             BRepAlgoAPI_Cut cut(shape, cutter);
             if (!cut.IsDone() || cut.Shape().IsNull())
-                throw unsupported("the openings of this element cannot be cut");
+                throw unsupported("Open CASCADE cannot cut the openings out of this element");
             shape = cut.Shape();
         }
         if (!TopExp_Explorer(shape, TopAbs_FACE).More())

@@ -56,7 +56,7 @@ triangles triangles_of(const ifc_model &in, const TopoDS_Shape &shape)
         throw unsupported("this shape has no triangles left");
     for (const gp_Pnt &at : out.points)
         if (!std::isfinite(at.X()) || !std::isfinite(at.Y()) || !std::isfinite(at.Z()))
-            throw unsupported("a vertex of this shape is not finite");
+            throw unsupported("a coordinate of this shape is infinite or not a number");
     return out;
 }
 

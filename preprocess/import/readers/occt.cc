@@ -213,7 +213,7 @@ void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const
     if (of.faces == 0)
         why = reason_without_faces(r, XCAFDoc_ShapeTool::GetShape(label));
     else if (of.missing == 0)
-        why = "the part's " + std::to_string(of.faces) + " faces have no extent, or corners that are not finite";
+        why = "the part's " + std::to_string(of.faces) + " faces have no extent, or coordinates that are infinite or not numbers";
     else
         why = std::to_string(of.missing) + " of the part's " + std::to_string(of.faces) + " faces could not be tessellated";
     if (why.empty())
@@ -415,7 +415,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     if (!units.empty())
         printf("units: %s\n", units.c_str());
     if (r.skipped_faces > 0)
-        printf("left out: %zu faces with corners that are not finite\n", r.skipped_faces);
+        printf("left out: %zu faces whose coordinates are infinite or not numbers\n", r.skipped_faces);
 }
 
 /* Runs convert() and calls refuse() for Open CASCADE exceptions, which do not derive from std::exception. */

@@ -42,7 +42,7 @@ static bool add_own(struct view_address *out, const struct connection *connectio
         return false;
     if (view_address_set(out, arg))
         return true;
-    message_fail(error, "bad_field", "view: the view and the query have too many arguments");
+    message_fail(error, "bad_field", "view: the view and the query together have more than %d arguments", VIEW_ADDRESS_ARGS);
     return false;
 }
 

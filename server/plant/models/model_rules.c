@@ -333,7 +333,8 @@ static bool head_good(json_t *root, char *why)
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         if (!name || (!model_rules_known(name) && !model_rules_look(name)))
-            return wrong(why, "the model requires the extension %.100s, which is not supported", name ? name : "without a name");
+            return wrong(why, "the model requires the glTF extension %.100s, which Plantcast does not support",
+                         name ? name : "without a name");
     }
     static const struct model_rule scene = { "", "scene", INDEX, MAY, "scenes", 0 };
     return rule_good(&(struct rule_check){ root, NULL, 0, -1, why }, &scene, root);

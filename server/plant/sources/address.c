@@ -185,7 +185,8 @@ static bool read_bit(const char **p, struct modbus_address *out, char why[200])
         return false;
     }
     if (out->table == TABLE_COIL || out->table == TABLE_DISCRETE) {
-        snprintf(why, 200, "a %s is a single bit and cannot have .%ld", out->table == TABLE_COIL ? "coil" : "discrete input", bit);
+        snprintf(why, 200, "a %s is a single bit: omit .%ld, which would select a bit of a register",
+                 out->table == TABLE_COIL ? "coil" : "discrete input", bit);
         return false;
     }
     out->bit = (int)bit;

@@ -42,8 +42,8 @@ static void check_files(struct yaml_reader *reader, const struct yaml_map *map, 
 static void check_will(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
 {
     if (mqtt->will && (strncmp(mqtt->will, WILL_PREFIX, strlen(WILL_PREFIX)) != 0 || strpbrk(mqtt->will, "+#")))
-        yaml_error(reader, yaml_map_place(map, "will"), "will: expected a topic that begins with %s, found '%.60s'", WILL_PREFIX,
-                   mqtt->will);
+        yaml_error(reader, yaml_map_place(map, "will"),
+                   "will: expected a topic that begins with %s and contains neither + nor #, found '%.60s'", WILL_PREFIX, mqtt->will);
 }
 
 static void check_paths(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)

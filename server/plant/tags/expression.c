@@ -12,6 +12,7 @@
 #include "plant/parse/number.h"
 
 enum { MAX_STEPS = 256, MAX_DEPTH = 32, MAX_ARGUMENTS = 64 };
+static_assert(MAX_STEPS == 256 && MAX_DEPTH == 32 && EXPRESSION_INPUTS == 64, "the error texts below name these limits");
 
 enum operation { OP_NUMBER, OP_INPUT, OP_ADD, OP_SUBTRACT, OP_MULTIPLY, OP_DIVIDE, OP_POWER, OP_NEGATE, OP_FUNCTION };
 
@@ -135,7 +136,7 @@ static char peek(struct expression_parser *parser)
 static bool add_step(struct expression_parser *parser, struct expression_step step)
 {
     if (parser->out->count == MAX_STEPS)
-        return fail(parser, "expected a shorter expression%s", "");
+        return fail(parser, "expected at most 256 numbers, tags and operations%s", "");
     parser->out->steps[parser->out->count++] = step;
     return true;
 }
@@ -166,7 +167,7 @@ static bool add_input(struct expression_parser *parser, int found)
     while (i < out->input_count && out->inputs[i] != found)
         i++;
     if (i == EXPRESSION_INPUTS)
-        return fail(parser, "expected fewer tags%s", "");
+        return fail(parser, "expected at most 64 different tags%s", "");
     if (i == out->input_count)
         out->inputs[out->input_count++] = found;
     return add_step(parser, (struct expression_step){ .operation = OP_INPUT, .index = (int)i });
@@ -258,7 +259,7 @@ static bool parse_power(struct expression_parser *parser)
 static bool parse_signed(struct expression_parser *parser)
 {
     if (++parser->depth > MAX_DEPTH)
-        return fail(parser, "brackets are nested too deep%s", "");
+        return fail(parser, "brackets and signs are nested more than 32 deep%s", "");
     bool negative = peek(parser) == '-', good;
     if (negative)
         parser->p++;

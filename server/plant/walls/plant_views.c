@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the plant file's `views`: views that users can open by name. */
+#include <assert.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -7,6 +8,8 @@
 #include "plant/walls/wall.h"
 
 static const char ID_CHARS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+
+static_assert(NAMED_VIEW_TITLE_BYTES == 121 && NAMED_VIEW_ADDRESS_BYTES == 2049, "the texts below name these limits");
 
 bool named_view_id_valid(const char *id)
 {
@@ -16,18 +19,18 @@ bool named_view_id_valid(const char *id)
 
 const char *named_view_title_wrong(const char *title)
 {
-    return strlen(title) >= NAMED_VIEW_TITLE_BYTES ? "the text is too long" : NULL;
+    return strlen(title) >= NAMED_VIEW_TITLE_BYTES ? "the title is longer than 120 bytes" : NULL;
 }
 
 const char *named_view_address_wrong(const char *address)
 {
     if (strlen(address) >= NAMED_VIEW_ADDRESS_BYTES)
-        return "the text is too long";
+        return "the address is longer than 2048 bytes";
     if (address[0] == '#')
         return "the address must not begin with #";
     for (const char *at = address; *at; at++)
         if ((unsigned char)*at <= ' ' || (unsigned char)*at >= 127)
-            return "the address contains a character that is not allowed in addresses";
+            return "the address contains a blank, a control character or a non-ASCII letter: percent-encode such characters";
     return NULL;
 }
 

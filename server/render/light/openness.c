@@ -67,7 +67,8 @@ bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene)
     *openness = (struct openness){ 0 };
     bool good = path && cache_file_open_if_good(&openness->file, gpu_scene->gl->log, path, magic, key_of(gpu_scene));
     if (good && openness->file.count != GROUND_TEXELS + vertices_of(gpu_scene)) {
-        log_warn(gpu_scene->gl->log, "cache file %s: has the sky light of %zu points, but the plant needs %zu; the light is computed again",
+        log_warn(gpu_scene->gl->log,
+                 "cache file %s: has the ambient light of %zu points, but the plant needs %zu; the light is computed again",
                  path, openness->file.count, GROUND_TEXELS + vertices_of(gpu_scene));
         good = false;
     }

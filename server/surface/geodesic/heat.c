@@ -69,7 +69,9 @@ struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint
     return heat;
 error:
     log_err(log, "cannot prepare the heat method for a surface of %zu points and %zu triangles: %s", in->point_count, in->tri_count,
-            heat->common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
+            heat->common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
+                                                        "check the asset's model for extremely thin triangles"
+                                                      : "out of memory");
     heat_destroy(&heat);
     return NULL;
 }
@@ -129,7 +131,7 @@ bool heat_solve(const struct heat *heat, const struct heat_source *sources, size
         for (size_t i = 0; i < heat->in->point_count; i++)
             out[s * heat->in->point_count + i] = heat->laplacian.row_of[i] == TRIMESH_NONE ? 0 : u[s * n + heat->laplacian.row_of[i]];
     if (!u)
-        log_err(heat->log, "cannot compute heat distances from %zu sources on %zu points: out of memory", source_count, n);
+        log_err(heat->log, "cannot compute distances by the heat method from %zu sensors on %zu points: out of memory", source_count, n);
     solver_finish(&solver);
     return u != NULL;
 }

@@ -54,7 +54,7 @@ static void on_connected(void *arg, bool session_present)
 {
     struct mqtt_source *mqtt = arg;
     counter_inc(mqtt->connects, 1);
-    log_debug(mqtt->base.log, "source %s: connected, %s session", mqtt->base.config->id, session_present ? "with the former" : "a new");
+    log_debug(mqtt->base.log, "source %s: connected, %s session", mqtt->base.config->id, session_present ? "the earlier" : "a new");
     mqtt_client_subscribe(mqtt->client, mqtt->subscriptions, mqtt->subscription_count);
     if (mqtt->subscription_count == 0)
         on_subscribed(mqtt);

@@ -110,7 +110,7 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
 /* Writes the values of a message to the tags of its topic. Returns false with the reason in `why` if the message is refused. */
 static bool take(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_message *message, char why[200])
 {
-    snprintf(why, 200, "too long");
+    snprintf(why, 200, "longer than %d MiB", MQTT_MAX_PAYLOAD >> 20);
     if (message->count > MQTT_MAX_PAYLOAD) {
         all_bad(mqtt, topic);
         return false;

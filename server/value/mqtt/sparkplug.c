@@ -134,7 +134,7 @@ static void ask(struct sparkplug *sparkplug, struct sparkplug_node *node, int64_
         return;
     node->is_wanted = false;
     node->asked_ns = now_ns;
-    log_info(sparkplug->params.log, "source %s: %s/%s: requesting the birth certificate", sparkplug->params.source, node->group,
+    log_info(sparkplug->params.log, "source %s: %s/%s: requesting the Sparkplug birth certificate", sparkplug->params.source, node->group,
              node->name);
     sparkplug->params.ask(sparkplug->params.arg, node->group, node->name);
 }
@@ -249,10 +249,10 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
         value.quality = QUALITY_BAD_SENSOR_FAILURE;
     bool good = type == born && (quality_is_bad(value.quality) || sparkplug_number(metric, type, &value.value));
     if (!good && type != born)
-        snprintf(why, 200, "metric %.60s had type %s in the birth certificate, and now has %s", name, sparkplug_type_name(born),
+        snprintf(why, 200, "Sparkplug metric %.60s had type %s in the birth certificate, and now has %s", name, sparkplug_type_name(born),
                  sparkplug_type_name(type));
     else if (!good)
-        snprintf(why, 200, "metric %.60s has type %s, which is not a number", name, sparkplug_type_name(type));
+        snprintf(why, 200, "Sparkplug metric %.60s has type %s, which is not a number", name, sparkplug_type_name(type));
     if (!good)
         value.quality = QUALITY_BAD_CONFIGURATION;
     write_value(sparkplug, tag, &value);
@@ -320,8 +320,8 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
         stamped_writer_add_bad(sparkplug->params.writer, tag, QUALITY_BAD_CONFIGURATION);
     }
     if (missing > 0)
-        log_warn(sparkplug->params.log, "source %s: %s: the birth certificate has no metric '%.60s'%s", sparkplug->params.source, of->name,
-                 sparkplug->params.plant->tags[first].signal.path, missing > 1 ? ", nor metrics of other tags" : "");
+        log_warn(sparkplug->params.log, "source %s: %s: the Sparkplug birth certificate has no metric '%.60s'%s", sparkplug->params.source,
+                 of->name, sparkplug->params.plant->tags[first].signal.path, missing > 1 ? ", nor metrics of other tags" : "");
     return good;
 }
 
@@ -354,8 +354,8 @@ static void follow(struct sparkplug *sparkplug, struct sparkplug_node *node, con
         return;
     if (sparkplug->params.gaps)
         counter_inc(sparkplug->params.gaps, 1);
-    log_warn(sparkplug->params.log, "source %s: %s/%s: messages lost: received number %d, expected %d", sparkplug->params.source,
-             node->group, node->name, seq, wanted);
+    log_warn(sparkplug->params.log, "source %s: %s/%s: Sparkplug messages lost: received sequence number %d, expected %d",
+             sparkplug->params.source, node->group, node->name, seq, wanted);
     doubt_all(sparkplug, node);
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
 }
@@ -402,10 +402,10 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
     if (!node->told)
-        log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no birth certificate yet%s", sparkplug->params.source,
+        log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no Sparkplug birth certificate yet%s", sparkplug->params.source,
                  node->group, node->name, sparkplug->params.rebirth ? "" : "; `rebirth: yes` requests it");
     node->told = true;
-    snprintf(why, 200, "the message came before the node's birth certificate");
+    snprintf(why, 200, "the message came before the node's Sparkplug birth certificate");
     return false;
 }
 
@@ -418,8 +418,8 @@ static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);
     node->next_seq = (payload->seq + 1) % 256;
-    log_info(sparkplug->params.log, "source %s: %s/%s: online (birth certificate received)", sparkplug->params.source, node->group,
-             node->name);
+    log_info(sparkplug->params.log, "source %s: %s/%s: online (Sparkplug birth certificate received)", sparkplug->params.source,
+             node->group, node->name);
     return said->topic == SIZE_MAX || take_birth(sparkplug, node, said->topic, payload, why);
 }
 
@@ -430,12 +430,12 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
         return true;
     if (bd_seq >= 0 && node->bd_seq >= 0 && bd_seq != node->bd_seq) {
         log_info(sparkplug->params.log,
-                 "source %s: %s/%s: an old death certificate (bdSeq %lld; the birth certificate has %lld) is ignored",
+                 "source %s: %s/%s: an old Sparkplug death certificate (bdSeq %lld; the birth certificate has %lld) is ignored",
                  sparkplug->params.source, node->group, node->name, (long long)bd_seq, (long long)node->bd_seq);
         return true;
     }
-    log_warn(sparkplug->params.log, "source %s: %s/%s: offline (death certificate received)", sparkplug->params.source, node->group,
-             node->name);
+    log_warn(sparkplug->params.log, "source %s: %s/%s: offline (Sparkplug death certificate received)", sparkplug->params.source,
+             node->group, node->name);
     node_dies(sparkplug, node, SIZE_MAX);
     return true;
 }
@@ -450,7 +450,7 @@ static bool take_in_order(struct sparkplug *sparkplug, const struct said *said, 
     if (said->verb == DBIRTH)
         return take_birth(sparkplug, said->node, said->topic, payload, why);
     if (said->verb == DDEATH) {
-        log_warn(sparkplug->params.log, "source %s: %s: offline (death certificate received)", sparkplug->params.source,
+        log_warn(sparkplug->params.log, "source %s: %s: offline (Sparkplug death certificate received)", sparkplug->params.source,
                  sparkplug->params.topics->at[said->topic].name);
         topic_dies(sparkplug, said->topic);
         return true;
@@ -472,12 +472,12 @@ bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *mess
     snprintf(why, 200, "retained messages are ignored, because they may be old");
     if (message->is_retained)
         return false;
-    snprintf(why, 200, "too long");
+    snprintf(why, 200, "longer than %d MiB", MQTT_MAX_PAYLOAD >> 20);
     if (message->count > MQTT_MAX_PAYLOAD || !sparkplug_payload_read(message->payload, message->count, &payload, why))
         return false;
     bool good = said.verb == NDEATH || payload.seq >= 0;
     if (!good)
-        snprintf(why, 200, "the message has no sequence number");
+        snprintf(why, 200, "the message has no Sparkplug sequence number (seq)");
     else if (said.verb == NBIRTH)
         good = take_node_birth(sparkplug, &said, &payload, why);
     else if (said.verb == NDEATH)

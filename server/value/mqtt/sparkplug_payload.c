@@ -122,13 +122,17 @@ bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_pa
     struct sparkplug_metric *metrics = payload ? mem_try_array(payload->n_metrics + 1, sizeof(*metrics)) : NULL;
     *out = (struct sparkplug_payload){ .seq = -1 };
     if (!metrics) {
-        snprintf(why, 200, payload || left < MAX_UNPACKED_BYTES / 2 ? "the message has too many metrics" : "not a Sparkplug B payload");
+        if (payload || left < MAX_UNPACKED_BYTES / 2)
+            snprintf(why, 200, "decoding its Sparkplug metrics takes more than %d MiB of memory: publish fewer metrics in one message",
+                     MAX_UNPACKED_BYTES >> 20);
+        else
+            snprintf(why, 200, "not a Sparkplug B payload");
         if (payload)
             sparkplug__payload__free_unpacked(payload, &allocator);
         return false;
     }
     if (payload->uuid && !strcmp(payload->uuid, "SPBV1.0_COMPRESSED")) {
-        snprintf(why, 200, "compressed payloads are not supported");
+        snprintf(why, 200, "compressed Sparkplug payloads are not supported: switch compression off in the node");
         sparkplug__payload__free_unpacked(payload, &allocator);
         mem_free(metrics);
         return false;

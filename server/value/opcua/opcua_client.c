@@ -217,8 +217,9 @@ static int discover_at(struct opcua_client *client, const struct addrinfo *at, i
     char address[INET6_ADDRSTRLEN + 20];
     bool is_6 = at->ai_family == AF_INET6;
     const char *path = client->source->opcua.path ? client->source->opcua.path : "";
-    if (getnameinfo(at->ai_addr, at->ai_addrlen, address, sizeof(address), NULL, 0, NI_NUMERICHOST) != 0) {
-        snprintf(why, 200, "none of the addresses of %.100s can be used", client->host);
+    int status = getnameinfo(at->ai_addr, at->ai_addrlen, address, sizeof(address), NULL, 0, NI_NUMERICHOST);
+    if (status != 0) {
+        snprintf(why, 200, "an IP address of the host %.100s cannot be used: %.60s", client->host, gai_strerror(status));
         return -EHOSTUNREACH;
     }
     mem_free(client->numeric_url);

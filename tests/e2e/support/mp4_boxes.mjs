@@ -43,7 +43,7 @@ function patched(path, at, hex) {
 }
 
 const TRAK = 'moov/trak', STBL = `${TRAK}/mdia/minf/stbl`, AVC1 = `${STBL}/stsd/avc1`;
-const else_ = (type) => `box ${type} has contents that`, none = (type) => `unexpected box ${type}`;
+const else_ = (type) => `box ${type} has contents that`, none = (type) => `unexpected MP4 box ${type}`;
 
 // Returns [what, bytes, why] for each alteration. Sample offsets are not adjusted, because verification refuses the boxes
 // first.
@@ -72,7 +72,7 @@ export function alteredFilms(film) {
             if (at === `${TRAK}/tkhd`)
                 one.writeUInt16BE(one.readUInt16BE(84) + 16, 84);
             return null;
-        }), 'the size in box avc1 differs'],
+        }), 'the size in MP4 box avc1, '],
         ['a hidden track', alter(patched(`${TRAK}/tkhd`, 11, '00')), else_('tkhd')],
         ['played faster', alter(patched('moov/mvhd', 28, '00020000')), else_('mvhd')],
         ['blended', alter(patched(`${TRAK}/mdia/minf/vmhd`, 12, '0024ffff')), else_('vmhd')],
