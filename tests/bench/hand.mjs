@@ -14,7 +14,7 @@ const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 3
     ['1280x720', 'jpeg', 300, 0, 34, 55], ['1280x720', 'jpeg', 0, 125000, 34, 55], ['1920x1080', 'jpeg', 0, 0, 34, 30],
     ['1920x1080', 'jpeg', 200, 0, 34, 30]];
 const BROWSER_MS = 25; // goal: largest processor time of the browser per update
-let width, height, name, results; // of the link being measured: size of the picture in pixels, name in the printed rows, results
+let width, height, name, results; // data of the link being measured: size of the picture in pixels, name in the printed rows, results
 const SECONDS = Number(process.env.SECONDS) || 5, TRIES = Number(process.env.TRIES) || 20, HZ = 60, CALM_MS = 400;
 const ARGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
 function say(what, value, unit, more = {}) {

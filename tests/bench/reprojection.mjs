@@ -97,8 +97,8 @@ function partOff(a, b, count) {
     return off / count;
 }
 
-// Returns a level of half the width and height, as WebGL makes it. Levels have two values per pixel: brightness and the drawn
-// fraction.
+// Returns a mip level with half the width and height, averaged as WebGL does. A level has two values per pixel: brightness and
+// the drawn fraction.
 function half({ width, height, values }) {
     const out = { width: Math.max(1, width >> 1), height: Math.max(1, height >> 1) };
     const at = (x, y, c) => values[2 * (Math.min(height - 1, y) * width + Math.min(width - 1, x)) + c];
@@ -109,7 +109,8 @@ function half({ width, height, values }) {
     return out;
 }
 
-// Reduced levels of a warped picture. The first is a linear blit: the mean of the four pixels in the middle of each square.
+// Returns the mip levels of a warped picture, from which greys are computed. The first is a linear blit: the mean of the four
+// pixels in the middle of each square.
 function levelsOf(pixels, shown, width, height) {
     const wide = Math.ceil(width / REDUCED), middle = REDUCED / 2, values = new Float64Array(2 * wide * Math.ceil(height / REDUCED));
     for (let i = 0; i < values.length / 2; i++)
@@ -192,7 +193,8 @@ function movedPicture(first, second) {
     return { shown, pixels: warped(first, shown) };
 }
 
-// Position of a colour of the flat look in the colour map; -1: the colour is not in the map.
+// Returns a function that finds the position of a pixel's colour (flat look) in the colour map; it returns -1 if the map lacks
+// the colour.
 function reader(map) {
     const places = new Map();
     for (let i = 0; i < 256; i++)

@@ -412,7 +412,7 @@ test('each address has as many sessions as one may, by what the proxy says', { s
     await other.hello();
     assert.equal((await (await of('203.0.113.9')).until('a close', (c) => c.closed)).code, 1013);
     clients[0].close();
-    const again = await until('room for another', async () => { // once the daemon has noticed the end
+    const again = await until('room for another', async () => { // succeeds once the daemon has noticed that the first client is gone
         const client = await of('203.0.113.7');
         client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'] });
         await client.until('welcome or a close', ({ texts, closed: end }) => end ?? texts.some(({ type }) => type === 'welcome'));

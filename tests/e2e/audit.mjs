@@ -353,7 +353,7 @@ test('a full file is renamed, and a new one begins', { skip }, async () => {
 
 test('syslog by TLS: each line as RFC 5424, after an outage too, and only to whom a certificate vouches for', { skip }, async () => {
     const key = readFileSync(path('log.key')), cert = readFileSync(path('log.pem'));
-    const port = await freePort(); // stays reserved while no server listens
+    const port = await freePort(); // a port that no other program gets while no syslog server listens
     syslog = new SyslogServer(key, cert);
     await syslog.listen(port);
     await start('--audit-syslog', `localhost:${port}`, '--audit-ca', path('log.pem'), '--audit-cert', path('log.pem'),

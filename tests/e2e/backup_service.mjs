@@ -24,7 +24,7 @@ const ok = ({ code, out, err }) => {
     return out;
 };
 
-// Prepares and serves p1 as the unit does: as the user plantcast, with the options file.
+// Prepares and serves the plant p1 as its systemd unit does: as the user plantcast, with the options file.
 async function serve(root) {
     const prepared = `--prepared ${STATE}/prepared --history ${STATE}/history`;
     const [program, args] = root.line(`. ${ETC}/options; exec setpriv --reuid plantcast --regid plantcast --init-groups sh -euc "` +

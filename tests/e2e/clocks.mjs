@@ -16,7 +16,9 @@ let nodes;
 before(async () => {
     if (options.skip)
         return;
-    nodes = await Nodes.create({ slowDevice: true }); // allows slow answers, because a picture without a Good reading has no age
+    // lets the device answer slowly: otherwise readings would be Bad on a busy machine, and a picture without a Good reading
+    // has no age
+    nodes = await Nodes.create({ slowDevice: true });
     await nodes.plant.set({ 'TI-1': 20, 'TI-2': 20, 'PI-1': 5 });
 });
 after(() => nodes?.destroy());

@@ -47,7 +47,7 @@ function aim(client, eye) {
     return client.seq;
 }
 
-// Sets the readings; returns the time from which frames show them.
+// Sets TI-1. Returns the time from which frames show the value.
 async function setWarm(plant, value) {
     await plant.tell(`set TI-1 ${value}`);
     return until(`${value} to be read`, async () => {

@@ -13,7 +13,7 @@ import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/
 const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 240000 };
 const CHECKS_MS = 1500; // the proxy checks its servers once a second
 const HOST = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
-let server, two, renderer, proxy, plain; // plain: the proxy in front of the cores alone
+let server, two, renderer, proxy, plain; // plain: a proxy in front of the two cores only, without renderers
 
 before(async () => {
     if (skip)

@@ -18,7 +18,7 @@ before(async () => {
     plant = await TinyPlant.create();
     plant.keepFresh();
     await plant.start();
-    await plant.set({ 'TI-1': 94, 'TI-2': 94, 'PI-1': 5 }); // gives the field one colour everywhere
+    await plant.set({ 'TI-1': 94, 'TI-2': 94, 'PI-1': 5 }); // readings that give the field one colour everywhere
 });
 after(() => plant?.destroy());
 
@@ -171,7 +171,7 @@ test('pictures without depth are not shown, and the view says so; a locked sessi
     await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
     await page.evaluate(() => {
         globalThis.plantcast.session.on('frame', (frame) => Object.assign(frame, { depth: globalThis.isMended ? frame.depth : null }));
-        globalThis.device.quaternion.set(0, Math.sin(0.1), 0, Math.cos(0.1)); // makes the server draw another picture
+        globalThis.device.quaternion.set(0, Math.sin(0.1), 0, Math.cos(0.1)); // turns the head, so that the page requests another picture
     });
     await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.warning?.[1].includes('no depth'));
     const depths = await page.evaluate(() => {

@@ -239,7 +239,7 @@ test('what goes wrong is one line, and the plant before stays', options, async (
 
 test('an import that fails or is cancelled once the new models are in place: the models before come back, too', options, async () => {
     const served = await Served.start();
-    // without kept versions of replaced files (NAME.1, ...)
+    // returns the folder's files by name, without kept versions of replaced files (NAME.1, ...)
     const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true })
         .filter((entry) => entry.isFile() && !/\.\d+$/.test(entry.name))
         .map(({ name }) => [name, createHash('md5').update(readFileSync(join(served.folder, name))).digest('hex')]));

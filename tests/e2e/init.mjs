@@ -37,7 +37,8 @@ test('init makes folders, plant file, certificate and tokens, and the daemon ser
     assert.equal(said.address, `https://localhost:${port}/`);
     assert.deepEqual([mode(etc('one')), mode(etc('one/tokens')), mode(etc('one/tls/privkey.pem'))], ['750', '640', '640']);
     assert.ok(existsSync(join(root, 'var/lib/plantcast/one/tags.csv')) && !existsSync(etc('one/tags.csv')));
-    mkdirSync(etc('one/plant.prepared')); // exists while plantcast-prep runs for the first time
+    // a folder of prepared files without a manifest, as while plantcast-prep runs for the first time
+    mkdirSync(etc('one/plant.prepared'));
     const check = runProgram('plantcastd', ['--check', etc('one/plant.yaml')]);
     assert.deepEqual([check.code, /not prepared yet/.test(check.out)], [0, true], check.err);
     rmdirSync(etc('one/plant.prepared'));

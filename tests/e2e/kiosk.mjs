@@ -235,7 +235,7 @@ const noAnalyze = spawnSync('systemd-analyze', ['--version']).error ? 'no system
 test('systemd finds nothing wrong with its units', { skip: noAnalyze }, () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-units-')), names = ['.service', '-restart.service', '-restart.timer'];
     try {
-        for (const name of names) // the programs that the units start are not installed here
+        for (const name of names) // starts /bin/true instead of the kiosk's programs, which are not installed here
             writeFileSync(join(folder, `plantcast-kiosk${name}`), readFileSync(`deploy/systemd/plantcast-kiosk${name}`, 'utf8')
                 .replaceAll('/usr/lib/plantcast/kiosk', '/bin/true'));
         writeFileSync(join(folder, 'seatd.service'), '[Service]\nExecStart=/bin/true\n');

@@ -402,7 +402,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
         await page.locator('.legend').getByText('Location assumed').waitFor();
         await page.evaluate(() => { location.hash = '#tag=ART1105BA_TT02'; });
         await page.locator('#card').getByText('Location assumed').waitFor();
-        // Draws the plant without the walls.
+        // hides the walls, so that the picture shows the equipment
         const walls = ['-HZA05-B', '-HZB05-B', '-HZC05-B', '-HAA01---B', 'IMAGE-DALLE', '-HZ0501M-', 'ORIGINE_BATIMENT'];
         const view = `width=1280&height=800&group=temperature&hidden=${walls.map(encodeURIComponent).join(',')}`;
         const bare = await fetch(`${url}snapshot.png?${view}`);

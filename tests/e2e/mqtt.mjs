@@ -51,7 +51,8 @@ test('numbers come to the tags of their topics, scaled, and as old as they are',
     await until('TI-2', { ...good, value: -30 });
     await until('PI-1', { ...good, value: 5 });
     await until('XS-1', { ...good, value: 1 });
-    await until('OLD', { quality_name: 'Bad_CommunicationError' }); // stale; without any value it would have another quality
+    // the tag has a value, but a stale one; a tag without a value would have another quality
+    await until('OLD', { quality_name: 'Bad_CommunicationError' });
     await until('TI-1', good);
     const counts = [['messages_total{source="broker",result="ok"}', 4], ['messages_total{source="broker",result="refused"}', 0],
         ['samples_total{source="broker"}', 5], ['connects_total{source="broker"}', 1], ['up{source="broker"}', 1]];
@@ -85,7 +86,8 @@ for (const protocol of ['5', '3.1.1'])
         await broker.restart();
         for (const end = performance.now() + 90000; await metric('up{source="broker"}') !== 1; await sleep(100))
             assert.ok(performance.now() < end, 'connected again');
-        await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 1); // a connected broker does not make the value current
+        // the value is still stale: a new connection to the broker does not make it current
+        await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 1);
         await publisher.tell('plant/ti1', 20);
         await until('TI-1', { ...good, value: 20 });
         broker.freeze();

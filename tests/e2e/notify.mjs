@@ -223,7 +223,9 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
         const [next] = await until('the next one is told', () => hooks[1].taken.length > 0 && hooks[1].taken);
         assert.deepEqual(next.alarms.map(({ tag, escalation }) => [tag, escalation]), [['TI-1', 1]]);
         await acknowledge(plant, 'TI-1', ['H']);
-        await set(plant, 'TI-2', limits.high); // once the last recipient is due for TI-2, TI-1 would have been due too
+        // raises an alarm that reaches all recipients in turn; by the time it reaches the last one, TI-1's alarm would have
+        // done so too
+        await set(plant, 'TI-2', limits.high);
         const [last] = await until('the last one is told', () => hooks[2].taken.length > 0 && hooks[2].taken);
         assert.deepEqual(last.alarms.map(({ tag }) => tag), ['TI-2']);
     } finally {
@@ -301,7 +303,7 @@ receivers: [{ name: hook, webhook_configs: [{ url: "http://127.0.0.1:${hook.port
         await until('none stands any more', async () => (await alerts()).length === 0);
     } finally {
         manager.kill();
-        await ended; // it writes to its folder until then
+        await ended; // waits for the program's end, because it writes to its folder until then
         await hook.close();
         await plant.destroy();
     }

@@ -364,7 +364,7 @@ test('a slow provider: codes wait in bounds, and the rights of 40 people end in 
     provider.delay_ms = 1000;
     const began = Date.now(), answers = [];
     let answerCodes;
-    provider.codesWait = new Promise((done) => { answerCodes = done; }); // no code is answered before all are sent
+    provider.codesWait = new Promise((done) => { answerCodes = done; }); // the provider answers no code before all codes are sent
     for (let i = 0; i < 90; i++)
         answers.push((await beginFrom(`127.0.0.${20 + i % 9}`))('code=made-up').then((response) => response.statusCode));
     answerCodes();

@@ -253,7 +253,8 @@ test('an imported gap, blanks and state words are no data, in pictures, readings
     const late = day + 3600, middle = 12 + 68 * (late - 70) / (2 * day - 70);
     for (const source of [`${url}/`, plant.file])
         assert.ok(Math.abs(pick(source, late) - middle) < 0.5, `${source}: ${pick(source, late)}, not ${middle}`);
-    const joined = await told('TI-1', day, day + 60); // only the points before and after this time span
+    // nothing was recorded in this span: only the points before and after it are returned
+    const joined = await told('TI-1', day, day + 60);
     assert.deepEqual(joined.map(([, value, quality]) => [value, quality]), [[12, 0], [80, 0]]);
 
     const without = runProgram('plantcast', ['history', 'export', plant.file, '--tags', 'TI-1', '--from', String(from + 65), '--to',

@@ -166,7 +166,7 @@ test('a list is saved: the difference first, then active for all, with the old o
         assert.equal(again.plant.configuration, saved.configuration);
         assert.deepEqual(again.tags.find(({ name }) => name === 'TI-9').position.map((x) => Math.round(x * 1000)), [0, 500, 123]);
     }
-    let nearest = []; // a sensor counts once its first reading has arrived from the device
+    let nearest = []; // repeats the pick, because a sensor counts only once its first reading has arrived from the device
     while (nearest.length === 0) {
         other.say({ type: 'pick', seq: ++seq, x: 160, y: 90, camera: { eye: [0.1, 4, 0.15], target: [0, 0, 0.1] } });
         ({ nearest } = await other.text('picked'));

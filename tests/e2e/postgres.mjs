@@ -376,7 +376,7 @@ test('a replacement machine gets the plant\'s history and continues it', options
     await assertSame(from);
 });
 
-// The extension is not in Debian: the test shows only that, and how it is used.
+// TimescaleDB is not in Debian: a fake create_hypertable() in the database records how it is called.
 test('a database with TimescaleDB: the points are a hypertable of weeks', options, async () => {
     configure();
     server.ask(`SET allow_system_table_mods = on; INSERT INTO pg_extension(oid, extname, extowner, extnamespace, extrelocatable, extversion)

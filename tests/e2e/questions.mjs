@@ -102,7 +102,7 @@ test('who asks for all, all the time, leaves others their answers', options, asy
             had += bytes.length;
             if (!going)
                 socket.destroy();
-            // 503: the server has not yet noticed that the earlier connections closed
+            // asks again later: 503 because the server has not yet noticed that the earlier connections closed
             else if (bytes.toString('latin1', 0, 12).endsWith(' 503'))
                 setTimeout(() => socket.write(head(all)), 200);
             else if (bytes.subarray(-5).toString() === '0\r\n\r\n')

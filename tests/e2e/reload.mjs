@@ -190,7 +190,7 @@ test('who waits too long for an answer is told so, and can ask again', options, 
             try {
                 closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK)); // releases the reload that waits for the pipe
             } catch (error) {
-                assert.equal(error.code, 'ENXIO'); // no reload waits for the pipe
+                assert.equal(error.code, 'ENXIO'); // ENXIO: no reload has the pipe open for reading
             }
             again = await ask();
         }

@@ -272,9 +272,10 @@ test('killed in the middle, or out of disk: the old plant or the new one', patie
         const now = filesOf(plant), hourAgo = new Date(Date.now() - 3600000);
         // leaves a trial file, like a program that was killed while it tried the new plant file
         writeFileSync(join(plant, `.trial.${child.pid}.yaml`), '');
-        for (const name of readdirSync(plant).filter((left) => left.includes(`.${child.pid}.`))) // a file of the last minute may be in use
+        // makes the left files look old: the program would not delete files of the last minute, which may be in use
+        for (const name of readdirSync(plant).filter((left) => left.includes(`.${child.pid}.`)))
             utimesSync(join(plant, name), hourAgo, hourAgo);
-        // untouched: the import changed nothing; otherwise the next import completes this one
+        // untouched: the killed import changed no file; otherwise the next import completes its changes
         const untouched = Object.keys(old).every((name) => now[name] === old[name]);
         kept += untouched;
         if (untouched)

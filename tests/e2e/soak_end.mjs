@@ -32,7 +32,7 @@ const mountsOf = (folder) => readFileSync('/proc/mounts', 'utf8').split('\n').fi
 // Starts the soak test as the Makefile does, in its own process group like a shell's job.
 function soak(t, bin = BIN) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-soak-')), { NODE_TEST_CONTEXT, ...env } = process.env;
-    chmodSync(folder, 0o711); // for PostgreSQL, which runs as another user
+    chmodSync(folder, 0o711); // lets PostgreSQL, which runs as another user, enter the folder
     const child = spawn('tests/long/contained', ['node', 'tests/long/host.mjs'], { detached: true, stdio: ['ignore', 'pipe', 'pipe'],
         env: { ...env, TMPDIR: folder, PLANTCAST_BIN: bin, MINUTES: '1' } });
     const run = { folder, child, said: '', ended: new Promise((done) => child.once('close', (code, signal) => done({ code, signal }))) };

@@ -106,7 +106,7 @@ test('births and data, by name and by alias, of every kind of number', options, 
 
 test('the death of a device and of a node makes all its tags Bad at once', options, async (t) => {
     await plant.run('payload: sparkplug', ROWS);
-    const node = await startNode({ mqttOptions: { reconnectPeriod: 0 } }); // connects again only when it is told to
+    const node = await startNode({ mqttOptions: { reconnectPeriod: 0 } }); // the client does not reconnect by itself
     await until('XS-1', { ...good, value: 1 });
     let died = performance.now();
     node.publishDeviceDeath('skid', { timestamp: Date.now() });
@@ -216,7 +216,7 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
     await until('XS-1', { ...good, value: 0 });
     await refused(3);
     node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', type: 'Int32', value: -5 }] });
-    await until('TI-2', { ...good, value: -5 }); // the device may send another birth
+    await until('TI-2', { ...good, value: -5 }); // another birth certificate of the device is accepted
     await until('PI-1', { quality_name: 'Bad_ConfigurationError' });
     await plant.daemon.line(/U100\/edge\/skid: the Sparkplug birth certificate has no metric 'Raw', nor metrics of other tags/);
 });
@@ -231,7 +231,7 @@ for (const each of [4000, 40])
         const born = numbers.map((i) => ({ name: name(i), alias: i, type: 'Float', value: -1 }));
         node.publishNodeBirth({ timestamp: Date.now(), metrics: born });
         await until(name(MANY - 1), { ...good, value: -1 });
-        const own = 1; // the metric of startNode() that is a tag
+        const own = 1; // number of metrics in startNode() that are tags
         await waitFor('all births being counted', async () => await metric('samples_total') >= MANY + own);
         const before = await metric('samples_total'), begun = performance.now();
         let sent = 0, round = 0;

@@ -72,7 +72,8 @@ test('one of two leads, the other follows and is not ready; a renderer finds who
     assert.equal(terms(two.other(core)), 0);
     await core.program.line(/history: read \d+ points from PostgreSQL/);
     const months = readdirSync(join(two.plant.folder, core.name, 'history')).filter((name) => /^history-[\d-]+\.sqlite$/.test(name));
-    assert.ok(months.length < 3, `no months without points: ${months}`); // two months if a month has just begun
+    // only months with points have a file: one, or two if a month has just begun
+    assert.ok(months.length < 3, `no months without points: ${months}`);
     t.diagnostic(`${core.name} leads`);
 });
 
@@ -295,7 +296,7 @@ test('a database that answers but refuses every change is logged once, and once 
     assert.equal(server.psql(`REVOKE UPDATE ON ${table} FROM plantcast`).status, 0);
     try {
         await until('the refusal in the log', () => count('permission denied') === 1);
-        const before = beat(), end = performance.now() + 3000; // several turns of the lease's thread
+        const before = beat(), end = performance.now() + 3000; // time for several turns of the thread that renews the lease
         await until('several turns', () => performance.now() > end);
         assert.equal(beat(), before, 'no change is written');
         assert.ok(await two.ready(core), 'the core leads by the promise of its standby');

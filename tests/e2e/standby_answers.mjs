@@ -79,7 +79,7 @@ for (const reloads of [false, true])
             t.diagnostic(`${isConfirmed ? 'confirmed' : 'not confirmed'}, and ${state} at the next leader`);
             assert.ok(!isConfirmed || state === 'acknowledged', `confirmed, and ${state} at the next leader`);
             anna.close();
-            if (state !== 'acknowledged') { // acknowledges again, so that the alarm can end
+            if (state !== 'acknowledged') { // another operator acknowledges the alarm again, so that it can end
                 const ben = await other.node.client({}, { token: two.nodes.tokens.operator });
                 acknowledge(ben);
                 await ben.text('alarmed');

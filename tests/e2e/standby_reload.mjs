@@ -43,7 +43,7 @@ test('what was recorded behind a cut is read although the plant is reloaded mean
 
 test('a standby that comes again and again does not have it read as often', { ...options, skip: skip || long }, async () => {
     const core = await two.leader(), other = two.other(core);
-    await until('nothing left', async () => { // waits for the end of the previous test's work
+    await until('nothing left', async () => { // waits until the core no longer reads points that the previous test left in the database
         const { length } = core.program.said.match(READ) ?? [];
         await sleep(13000);
         return length === core.program.said.match(READ)?.length;
@@ -81,7 +81,7 @@ test('a standby with the same changed files loads them when the leader does', op
     core.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration \w+ replaced \w+ after [\d.]+ s, requested by the core/);
     await two.followed(core);
-    // the same configuration again: models may have changed
+    // reloads the same configuration again, as if models had changed
     other.program.said = '';
     core.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration (\w+) replaced \1 after [\d.]+ s, requested by the core/);

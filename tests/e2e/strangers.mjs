@@ -85,7 +85,7 @@ test('through a proxy that nobody told of: 403, on every way to listen', { skip 
             for (const Host of args.includes('--host') ? ['localhost', 'plant.example'] : ['localhost'])
                 for (const [path, headers] of [['/api/v1/tags', {}], ['/metrics', bearer(tokens.viewer)], ['/stream', UPGRADE]])
                     assert.equal((await ask(path, { ...headers, Host, [name]: value }, secure)).status, 403, `${what}: ${name} ${path}`);
-        // nor does a client that uses a host name open to others have any rights
+        // a client that uses a host name open to others has no rights either
         if (args.includes('--host') && !args.includes('--trust-local'))
             assert.ok([401, 403].includes((await ask('/api/v1/tags', { Host: 'plant.example' }, secure)).status), what);
     }
@@ -238,7 +238,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     const engineer = await PlainClient.open(plant.port);
     assert.equal((await engineer.hello({ token: tokens.engineer })).role, 'engineer');
     engineer.close();
-    await plant.daemon.line(/token engineer-1/); // waits for this log line; the earlier ones exist by then
+    await plant.daemon.line(/token engineer-1/); // waits for the newest of these log lines; the earlier ones then exist, too
     assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, the token is unknown \(\d/g).length, 6);
     assert.equal(lines(/by HTTP: token operator-1, role operator: refused, the token has expired/g).length, 1);
     assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);

@@ -30,7 +30,8 @@ async function startVideo(...args) {
     return program;
 }
 
-// Decodes a stream's frames with ffmpeg. Returns the row of blocks at the bottom of each, as [{ tenths, card, sound }].
+// BITS: length of the time in the time code that plantcast-video draws as a row of blocks. codeOf() returns { tenths (of
+// seconds since 1970), card (true: the frame shows a text card), sound (true: the parity is right) }.
 const BITS = 36, BLOCKS = BITS + 4;
 function codeOf(row) {
     const bits = [...row].map((value) => (value > 127 ? 1 : 0));
@@ -167,7 +168,7 @@ test('a server that dies or hangs: a card within 3 s, and pictures again by them
         }
         await reader.until(({ card }) => !card);
     }
-    plant.sim.child.kill('SIGSTOP'); // values are stale after 1 s
+    plant.sim.child.kill('SIGSTOP'); // the device stops answering, so its values are stale after 1 s
     const begun = Date.now(), { at } = await reader.until(({ card }) => card);
     promise(t, 'from the last value to the card', at - begun, 5000);
     assert.match(video.said, /no sensor shown delivers a value/);

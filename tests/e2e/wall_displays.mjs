@@ -106,7 +106,7 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
         };
         look();
     });
-    await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor(); // the pump is outside this view
+    await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor(); // waits for the view that does not contain the pump
     await plant.ask('set PI-1 95');
     await page.locator('.pane.views.called h2', { hasText: 'PI-1' }).waitFor();
     await page.locator('.pane.alarms li.waiting', { hasText: 'PI-1' }).waitFor();
@@ -287,7 +287,8 @@ test('a tour shows each view for its time, with its text', options, async () => 
     const [titles, begun] = await other.page.evaluate(() => [globalThis.titles, globalThis.begun]);
     const texts = ['From above · Seen from the stack', 'Whole unit'];
     assert.deepEqual(titles.slice(0, 4), [...texts, ...texts]);
-    for (const [i, dwellMs] of [[0, 6000], [1, 4000]]) { // the first view begins once the page has its shape
+    // how long each of the first two views was shown; the first one counts once the page has its shape
+    for (const [i, dwellMs] of [[0, 6000], [1, 4000]]) {
         const tookMs = begun[i + 1].at - begun[i].at, { late } = begun[i + 1];
         assert.ok(tookMs > dwellMs - late - 300 && tookMs < dwellMs + late + 600, `${i}: ${tookMs} ms, late by ${late}`);
     }

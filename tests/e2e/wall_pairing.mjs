@@ -173,7 +173,7 @@ const PATHS = ['tags', 'plant', 'views', 'notes', 'alarms', 'alarms/journal', 'p
 
 test('a display\'s secret reads only that display, even before its first message', options, async () => {
     const first = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
-    const second = `pc_${'1'.repeat(64)}`; // the secret whose digits were approved
+    const second = `pc_${'1'.repeat(64)}`; // the secret with which display 2 connects once its digits are approved
     const tiles = await displayClient(2, second, true), pictures = await displayClient(1, first, false);
     for (const secret of [first, second])
         for (const path of [...PATHS.map((one) => `api/v1/${one}`), 'metrics', 'snapshot.png', 'snapshot.png?view=whole'])

@@ -259,7 +259,8 @@ test('one that takes nothing is left out and told so, and comes back', options, 
     const isLate = (text) => text.type === 'tiles' && text.late.some(({ display }) => display === 4);
     const at = await leader.until('what is late', () => leader.texts.some(isLate) && leader.texts.findIndex(isLate));
     await stuck.until('being told', () => tilesSaid(stuck).late.some(({ display, since_us: us }) => display === 4 && us > 1.6e15));
-    const then = leader.texts.slice(0, at).findLast(({ type }) => type === 'present').picture; // the last one before it was left out
+    // the last picture ordered before that display was left out
+    const then = leader.texts.slice(0, at).findLast(({ type }) => type === 'present').picture;
     assert.ok(then <= number + 3, 'nothing is shown without it before');
     await leader.until('pictures of the others', () => presents(leader).at(-1).picture > then + 5);
     assert.ok(presents(stuck).at(-1).picture <= then);

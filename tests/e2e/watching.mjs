@@ -103,7 +103,8 @@ test('prometheus-add keeps the file\'s other jobs, and scraping survives the sit
         shell(`${add} one`);
         assert.equal(readFileSync(etc('prometheus/prometheus.yml'), 'utf8'), config, 'a second run changes nothing');
         assert.equal(statSync(etc('prometheus/plantcast-one.token')).mode & 0o077, 0);
-        rmSync(etc('prometheus/plantcast-one.token')); // as on a machine where the plant was restored
+        // removes Prometheus's token file, as on a machine where only the plant was restored
+        rmSync(etc('prometheus/plantcast-one.token'));
         shell(`${add} one`);
         assert.equal(readFileSync(etc('plantcast/one/tokens'), 'utf8').match(/prometheus/g).length, 1);
         const [, options] = readFileSync(etc('plantcast/one/options'), 'utf8').match(/^PLANTCAST_OPTIONS="(.*)"$/m);

@@ -47,10 +47,10 @@ struct object {
 /* Only one thread calls GL at a time: a context belongs to one thread, and during a plant reload the other thread waits. */
 static struct faults *faults;
 static struct object objects[OBJECTS];
-static EGLContext current, gone; /* a lost context stays the current one */
+static EGLContext current, gone; /* current context, and the lost context, which stays the current one */
 static EGLDisplay display;
 static uint32_t calls_left;
-static bool full; /* glGetError is to report "out of memory" */
+static bool full; /* true: the next glGetError must report "out of memory" */
 static struct {
     PFNEGLGETPROCADDRESSPROC get_proc;
     PFNEGLCREATECONTEXTPROC create_context;
@@ -116,7 +116,7 @@ static bool take_room(enum gl_object_kind kind, GLuint name, uint64_t bytes)
 {
     int i = 0;
     if (gone == current || !name || !bytes)
-        return true; /* calls on a lost context do nothing */
+        return true; /* nothing to count: the context is lost, or nothing is allocated */
     if (faults->room_bytes && faults->used_bytes + bytes > faults->room_bytes) {
         faults->refused++;
         full = true;
@@ -281,7 +281,7 @@ static const GLubyte *GLAD_API_PTR call_glGetString(GLenum name)
 #define ENTRY(name) { #name, (GLADapiproc)call_##name, (GLADapiproc *)&real_##name }
 static const struct {
     const char *name;
-    GLADapiproc ours, *real; /* NULL: the real function is already known */
+    GLADapiproc ours, *real; /* ours: replaces the real function; real: receives the real function's address, NULL: it is already known */
 } functions[] = {
     { "eglCreateContext", (GLADapiproc)create_context, NULL },
     { "eglDestroyContext", (GLADapiproc)destroy_context, NULL },

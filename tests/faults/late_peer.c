@@ -17,7 +17,7 @@
 #define EXPORTED __attribute__((visibility("default")))
 #define FDS 4096
 
-static atomic_llong asked_ms[FDS]; /* when writability was first asked for since the last write; 0: not asked */
+static atomic_llong asked_ms[FDS]; /* by socket: time when poll() first asked whether it is writable since the last write; 0: not asked */
 
 static long long now_ms(void)
 {

@@ -78,6 +78,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     fclose(nowhere);
     plant_destroy(&plant);
     diag_finish(&diag);
-    owned_release(owned); /* otherwise a long run would keep the paths of all inputs */
+    owned_release(owned); /* releases the paths that this input's run created; a long run would otherwise keep those of all inputs */
     return 0;
 }

@@ -301,7 +301,7 @@ TEST(test_white_furnace)
     }
     print_message("# white in white: %.1f %% of the pixels off by more than 3 %%, the worst by %.1f %%\n", 100.0 * off / all, 100 * worst);
     scene_finish(&scene);
-    assert_true(off <= 0.04 * all && worst <= 0.07); /* where a neighbour hides one of the few sky directions */
+    assert_true(off <= 0.04 * all && worst <= 0.07); /* tolerates pixels where a neighbour hides one of the few sky directions */
 }
 
 /* A dark, smooth dielectric reflects a few percent in its middle and much more at its rim. */

@@ -115,7 +115,7 @@ static void add_cube(struct toy *toy, const char *id, const double at[3])
     struct test_shape shape = { 0 };
     for (int face = 0; face < 6; face++) {
         double corner[3] = { 0 }, u[3] = { 0 }, v[3] = { 0 };
-        int axis = face / 2, far = face % 2; /* u x v points out of the cube */
+        int axis = face / 2, far = face % 2; /* u, v: the face's sides; u x v points out of the cube */
         corner[axis] = far;
         u[(axis + (far ? 1 : 2)) % 3] = 1;
         v[(axis + (far ? 2 : 1)) % 3] = 1;
@@ -165,7 +165,7 @@ TEST(test_a_wall_hides_what_is_behind)
     renderer_use_gl(stand.renderer, true);
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
     view.tier = TIER_PREVIEW;
-    view.width_px = 1280; /* here the margin around boxes is less than the gap between the cubes */
+    view.width_px = 1280; /* at this size the margin around boxes is less than the gap between the cubes */
     view.height_px = 720;
     double middle_m = 0.5 * (ROW + 0.02 * (ROW - 1));
     view.camera =

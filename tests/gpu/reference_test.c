@@ -23,7 +23,8 @@ static struct rig rig;
 /* --- comparing ------------------------------------------------------------------------------------------------------------- */
 
 struct reference_tally {
-    /* over: errors at the pixel's own point; beyond: errors against the finest level within a pixel */
+    /* compared: number of pixels; over: those with an error at their own point; beyond: those with an error against the finest
+       level within a pixel; flags_differ: those with other flags */
     size_t compared, over, beyond, flags_differ;
     double worst, worst_beyond;
     int worst_camera;
@@ -36,7 +37,8 @@ static bool has_value(const float pixel[4])
 
 struct pixels_seen { /* values of all pixels of a picture, as one camera sees them */
     const struct view *view;
-    float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference values on the displayed level */
+    /* by pixel: drawn values; reference values on the displayed level; reference values on the finest level */
+    float (*shown)[4], (*here)[4], (*finest)[4];
     bool shown_is_finest;
 };
 
@@ -207,9 +209,10 @@ static void compare_views(struct site *site, const struct reference_display *way
         view_default(site->scene, width_px, height_px, &view);
         ask_for(site, way, &view);
         view.tier = way->tier;
-        if (i % 2) /* every other view has the plant file's reach */
+        if (i % 2) /* every other view has an unlimited reach; the others keep the plant file's */
             view.field.reach_m = (double)INFINITY;
-        site->random = way->seed + (uint64_t)i; /* a case has the same views, whichever levels are drawn */
+        /* the seed does not depend on the drawn levels, so a case has the same views for all of them */
+        site->random = way->seed + (uint64_t)i;
         synthetic_random(&site->random);
         look_at_some_asset(site, away[i / 2], &view);
         assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, seen.shown));

@@ -42,7 +42,7 @@ function shuffled(list, random) {
     return out;
 }
 
-// ends: receives the names of nodes that ended unexpectedly.
+// Causes one fault and records its consequences. ends: receives the names of nodes that ended unexpectedly.
 async function oneFault(site, fault, random, ends) {
     const { cycles, alerts } = site, row = { fault: fault.name, load: loadavg()[0], failures: [] };
     const firing = (names) => names.filter((name) => alerts.firing.has(name));

@@ -28,7 +28,7 @@ struct relay_chunk {
 struct relay_direction { /* one direction of a connection; a ring buffer of chunks */
     int from, to;
     double bytes_per_s; /* limit of the speed in bytes per second; 0: no limit */
-    int64_t free_ns;    /* nanoseconds; time from which the next byte may be read */
+    int64_t free_ns;    /* monotonic time in nanoseconds from which the next byte may be read */
     unsigned first, count;
     struct relay_chunk *chunks;
 };

@@ -26,7 +26,8 @@ async function withPage(screen, f) {
     try {
         await waitForPicture(browser.page);
         await waitForHealth(browser.page, 'live');
-        await browser.page.evaluate(() => globalThis.plantcast.modules.get('cameraController')); // it is loaded when it is first needed
+        // loads the camera controller now; by itself, the page loads it at the first input
+        await browser.page.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
         await arrive(browser.page);
         await f(browser.page);
         assert.deepEqual(browser.errors, []);
@@ -141,7 +142,8 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     const places = await page.evaluate(() =>
         globalThis.plantcast.overlay.markers.map(({ tag, x, half, alarm }) => ({ group: tag.group, x, half, alarm: Boolean(alarm) })));
     for (const { group, x, half, alarm } of places) {
-        assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `${group} in half ${half}`); // alarms are marked in both halves
+        // each half marks the sensors of its own group, and tags in alarm of any group
+        assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `${group} in half ${half}`);
         assert.equal(half, box.x + x >= middle - 1 ? 1 : 0);
     }
     assert.ok(places.some(({ half }) => half === 0) && places.some(({ half }) => half === 1));
@@ -427,7 +429,8 @@ test('phones: the chart of a trend is read, its table fits, and a picture remain
         temperatures.forEach((tag, i) => (i === 0 ? showTrend : addTrend)(tag));
     });
     await page.waitForFunction(() => globalThis.plantcast.trends?.series.size === 3);
-    await page.locator('#trend-span label').nth(4).tap(); // of 30 days, only minutes are recorded: the table has its column for that
+    // chooses 30 days, of which only minutes are recorded, so that the table shows its column for incomplete periods
+    await page.locator('#trend-span label').nth(4).tap();
     await page.locator('#trend-tags.lacks .known').first().waitFor();
     for (const [width, height] of PHONES) {
         const name = `${width}x${height}`, isLying = width > height;

@@ -238,7 +238,7 @@ test('several alarms are acknowledged at once, only visible ones; a filter', opt
 
 test('a new alarm is announced once, with tag, state and value', options, async () => {
     await settleAll();
-    // alarms of earlier tests may be queued until the next announcement
+    // waits until the announcer is idle, because alarms of earlier tests may still be queued
     await page.waitForFunction(() => (globalThis.plantcast.modules.there('announcer')?.timer ?? null) === null);
     await page.evaluate(() => {
         const element = document.getElementById('alarm-said');
@@ -406,7 +406,8 @@ test('the moment before an alarm: half a minute earlier, there, and the alarm is
     const row = page.locator('#alarms-list tr').first(), name = await row.locator('td[data-col=tag]').textContent();
     const raisedUs = await page.evaluate((of) =>
         globalThis.plantcast.session.model.alarms.list().find(({ tag }) => tag.name === of).raisedUs, name);
-    // the history of an instant is complete only after 3 s; until then the server shows an earlier one
+    // waits until the alarm is 4 s old: the history of an instant is complete only after 3 s, and until then the server shows
+    // an earlier one
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 4e6, raisedUs);
     await row.locator('.moment-go').click();
     await page.waitForFunction(() => globalThis.plantcast.session.time.atUs !== null);

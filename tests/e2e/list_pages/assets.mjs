@@ -202,7 +202,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         search.dispatchEvent(new Event('input'));
         await new Promise((done) => setTimeout(done, 500));
     }, [ms, EACH]);
-    await use(sweep(3000, 500)); // first use, which creates everything that is created only once
+    await use(sweep(3000, 500)); // uses the page for the first time, which creates everything that is created only once
     let before = await heap(), after;
     // A busy machine may create some objects only later; a real leak grows each time.
     for (let times = 0; times < 4 && !(after && isSteady(before, after)); times++) {

@@ -61,7 +61,7 @@ test('a tag that stands nowhere is put onto the surface by a click, and its fiel
     await says('#engineer .tags li', 'TI-9 spare.*not placed');
     await page.locator('#engineer .tags button').first().click();
     await says('#engineer .hint', '^TI-9: click on the surface');
-    await land(page); // waits because the panel's opening has moved the picture
+    await land(page); // waits until the picture stands still, because the panel's opening has moved it
     const { x, y } = await at([0.2, -0.5, 0.2]);
     await page.mouse.click(x, y);
     await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}distances along the surface');
@@ -204,7 +204,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     const tablet = await openPage(`http://127.0.0.1:${plant.port}/`, TABLET), on = tablet.page;
     await ready(on);
     await on.locator('#engineer-toggle').tap();
-    // the camera would fly to a tag that is not visible
+    // waits until TI-1 is visible, because the camera would fly to a hidden tag
     await on.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag, occluded }) => tag.name === 'TI-1' && !occluded));
     await on.locator('#engineer .tags button', { hasText: 'TI-1' }).tap();
     await look(on, [2.6, -2.2, 1.6]);

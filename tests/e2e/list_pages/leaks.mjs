@@ -7,7 +7,8 @@ import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 300000 };
 const WARM_UP = 3, CYCLES = 5, HEAP_KB = 25; // HEAP_KB: largest growth of the heap per cycle
-const TRIES = 40, PAUSE_MS = 250;            // the page may differ for a moment, for example while it shows a message
+// TRIES: maximum number of comparisons, PAUSE_MS apart: for a moment the page may differ, for example while it shows a message
+const TRIES = 40, PAUSE_MS = 250;
 // Without compiled code, whose size depends on how long functions run, the heap has nearly the same size in each run.
 const JITLESS = ['--js-flags=--jitless'];
 let plant, browser, page, devTools;

@@ -61,7 +61,7 @@ for (const [name, language, screen] of PAGES) {
         try {
             await waitForPicture(page);
             await waitForHealth(page, 'live');
-            // the watchdog's canvas appears 5 s after the start
+            // waits for the watchdog's canvas, which appears 5 s after the start
             await page.locator('canvas.watchdog.watches').waitFor({ state: 'attached' });
             if (screen === PHONE)
                 await page.waitForFunction(() => globalThis.plantcast.modules.there('warp'));

@@ -92,7 +92,7 @@ test('a notification that is lost is noticed, and all nodes are read', options, 
     await until('TI-1', { ...good, value: 20 });
     await until('TI-2', { ...good, value: 21.5 });
     await server.tell({ lose: true });
-    await server.set('TI-1', 61); // this change is lost, maybe together with the next one
+    await server.set('TI-1', 61); // the server drops the notification of this change, maybe together with the next one
     await server.set('TI-2', 62);
     await until('TI-2', { ...good, value: 62 });
     await until('TI-1', { ...good, value: 61 });

@@ -39,7 +39,7 @@ const gripAt = async (on, id) => {
 test('a plane is dragged by its arrow: it goes where the hand goes, and the camera stays', options, async () => {
     await setClip(page, { planes: [[1, 0, 0, 0.1]] });
     const camera = await readCamera(page), [x, y] = await gripAt(page, 'plane0');
-    const to = await drawnAt(page, await page.evaluate(async () => { // returns where the handle will be after half a metre
+    const to = await drawnAt(page, await page.evaluate(async () => { // returns the position of the handle after a drag by half a metre
         const { spotsOf } = await import('/core/clip_gizmo.js'), { grip, spot } = document.querySelector('.grip');
         const [px, py, pz] = spotsOf(grip)[spot.number];
         return [px + 0.5, py, pz];

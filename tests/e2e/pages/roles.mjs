@@ -99,7 +99,8 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     await pages.operator.locator('#shelve button[type="submit"]').tap();
     await everyRole(async (page, role) => {
         await offers(page, role === 'viewer' ? [] : ['unshelve'], role, '#alarms-aside');
-        await page.locator('#alarms-aside tr', { hasText: /by operator-1, calibration/ }).waitFor(); // everybody is told who and why
+        // every role sees who shelved the alarm, and why
+        await page.locator('#alarms-aside tr', { hasText: /by operator-1, calibration/ }).waitFor();
     });
     await pages.engineer.locator('[data-action="unshelve"]').tap();
     await everyRole((page) => waitForState(page, ['unacknowledged']));

@@ -108,7 +108,7 @@ export class IdentityProvider {
                 }
                 const [status, json] = this.answer(request.url, new URLSearchParams(body), request.headers.authorization);
                 const say = () => response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
-                response.once('close', () => { // the answer was not delivered: the client that stopped waiting does not have the new token
+                response.once('close', () => { // the client closed before the answer arrived, so it does not have the new token
                     if (!response.writableFinished)
                         this.live.delete(json.refresh_token);
                 });

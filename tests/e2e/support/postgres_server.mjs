@@ -48,7 +48,7 @@ export class PostgresServer {
         rmSync(join(this.data, 'postmaster.pid'), { force: true });
         this.child = spawn(join(FOLDER, 'postgres'), ['-D', this.data, '-p', String(this.port), '-h', '127.0.0.1', '-k', this.folder,
             '-c', 'shared_buffers=16MB', '-c', 'max_connections=20',
-            '-c', 'fsync=off', // a slow disk would delay a lease renewal beyond the time that a leader may act
+            '-c', 'fsync=off', // no fsync: a slow disk would delay a lease renewal beyond the time that a leader may act
         ], { stdio: ['ignore', 'pipe', 'pipe'], cwd: this.folder, ...as });
         this.said = '';
         for (const pipe of [this.child.stdout, this.child.stderr])

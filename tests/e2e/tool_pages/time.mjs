@@ -317,7 +317,7 @@ test('in the dark theme the chart is dark, and its lines and limits are read', o
     const rgbOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
     const { ground, lines, limit, grave, ink } = await page.evaluate(() => globalThis.plantcast.trends.look);
     await page.waitForFunction((is) => getComputedStyle(document.getElementById('trends')).backgroundColor === is,
-        `rgb(${rgbOf(ground).join(', ')})`); // once its style sheet is loaded, the panel has the colour `ground` too
+        `rgb(${rgbOf(ground).join(', ')})`); // waits for the panel's style sheet, which gives the panel the colour `ground`
     assert.ok(Math.max(...rgbOf(ground)) < 90, ground);
     for (const colour of [...lines, limit, grave, ink])
         assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `${colour} on ${ground}`);
@@ -467,7 +467,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
     await page.locator('#time-span').selectOption('2592000');
     await page.locator('#time-slider').focus();
     await page.keyboard.press('ArrowRight');
-    await instantOf(us + 60e6); // a step of one minute, although one of the slider's 2000 steps would be 21 minutes
+    await instantOf(us + 60e6); // one press moves by a minute, although one of the slider's 2000 steps would be 21 minutes
     await page.locator('#time-span').selectOption('3600');
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');

@@ -9,8 +9,8 @@ const PAUSE_MS = 4 * SHOWN_MS, AGAIN_MS = 5000, EARLIER_MS = 60000;
 const EVENTS = ['raise', 'acknowledge', 'clear'];
 
 export class AlarmCycles {
-    // plant: passes commands to the simulator; operators: acknowledge in turn; tags: all at the same time, each with its own
-    // alarms.
+    // plant: passes commands to the simulator; operators: acknowledge in turn; tags: names of the tags whose alarms run through
+    // cycles, all at the same time.
     constructor(plant, operators, tags) {
         Object.assign(this, { began: Date.now(), plant, operators, tags, failures: [], total: 0, notKept: 0, idle: new Set() });
         this.isPaused = this.isOver = false;

@@ -43,7 +43,7 @@ class PageSocket {
 }
 
 export class Operator {
-    // watched: name of a tag whose reading changes all the time.
+    // watched: name of a tag whose reading changes all the time: while no change arrives, the operator is blind.
     constructor({ name, port, token, watched }) {
         Object.assign(this, { name, watched, tags: [], bad: new Set(), alarms: new Map(), live: false, frameAt: 0, gaps: [], seq: 0 });
         this.visits = 0; // number of connections that opened

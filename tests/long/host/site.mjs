@@ -50,7 +50,8 @@ export class Site {
         for (const step of [this.startServer, this.makeTwo, this.startCores, this.startRenderers, this.balance, this.watch]) {
             this.mustGoOn();
             const done = step.call(this), isMaking = !this.two;
-            await (isMaking ? done : Promise.race([done, end])); // destroy() ends what the later steps wait for
+            // stops waiting when destroy() is called, except during the steps before the cores exist
+            await (isMaking ? done : Promise.race([done, end]));
         }
     }
     async startServer() {
