@@ -157,7 +157,7 @@ static int read_ourselves(void *arg)
     return good ? 0 : 1;
 }
 
-/* Prints a report line (format: findings.h) that counts the glTF nodes whose mesh has no triangles. */
+/* Prints a record for the import's report (format: findings.h) with the number of glTF nodes whose mesh has no triangles. */
 static void say_empty_nodes(const struct gltf_model *model)
 {
     struct text names = { 0 };

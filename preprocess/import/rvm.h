@@ -23,7 +23,7 @@ struct rvm_params {
     double chord_m;        /* largest allowed distance between a chord and the true surface, metres */
     bool keep_covered;     /* true: keep faces covered by a face of a neighbouring primitive; false: leave them out */
     const char *encoding;  /* encoding of the names given by the user; NULL: the encoding given in the file, else a detected one */
-    struct text *findings; /* receives report lines (format: findings.h) about lost primitives; NULL: none */
+    struct text *findings; /* receives records about lost primitives for the import's report (format: findings.h); NULL: none */
 };
 
 /* Appends the groups of an RVM file and their triangles to the model; the file's `count` bytes are in memory. Returns false if

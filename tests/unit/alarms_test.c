@@ -16,7 +16,7 @@ struct stage { /* fixture. Limits: TT: LL 0, L 10, H 80, HH 90; PT: H 5 with a d
     struct alarms *alarms;
     struct snapshot *snapshot;
     char log[4000]; /* lines about all alarm events so far */
-    int told[8];    /* for each tag, the most severe alarm that on_tag() last received */
+    int told[8];    /* by tag: the most severe alarm with which on_tag() was last called */
 };
 
 static void on_change(void *arg, const struct alarm_change *change)

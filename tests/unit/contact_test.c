@@ -245,7 +245,8 @@ struct contact_case {
     uint64_t shape, faults;
 };
 
-/* Tests pairs of boxes given by seeds of random shapes and faults; the default run tests every third pair. */
+/* Tests random pairs of boxes. Each entry of `drawn` has two seeds: one for the shapes of the boxes, one for the faults in
+   their meshes. The default run tests every third pair. */
 static void score_drawn(const char *name, int row, const struct contact_case *drawn, size_t count, enum cad_fault fault)
 {
     const struct cad_random was = chance;

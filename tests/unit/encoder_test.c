@@ -188,7 +188,7 @@ TEST(jpeg_sends_only_what_changed)
     decode_parts(change, bgr);
     assert_true(worst_difference(now, bgr, 0) <= 16);
     packet_unref(&change);
-    assert_int_equal(encoder_send(encoder, before, &params), 0); /* the client already shows this frame */
+    assert_int_equal(encoder_send(encoder, before, &params), 0); /* nothing is sent: the client already shows this frame */
     assert_int_equal(encoder_receive(encoder, &change), -EAGAIN);
     params.key = true;
     assert_int_equal(encoder_send(encoder, before, &params), 0);

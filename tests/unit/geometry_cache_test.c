@@ -377,7 +377,8 @@ CASE(killed_midway_it_goes_on)
     bool model_read;
     json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns"), *folder = temp_path(c->folder, "kept"), why[200];
-    /* the first limit is in the record of the fifth sensor, which begins up to 1 kB after the end of the file */
+    /* file size limits: inside the record of the fifth sensor, which begins up to 1 kB after the end of the file; and in the
+       middle of the asset file */
     const size_t limits[] = { bytes_of(columns) + 1024 + 100, bytes_of(before) / 2 };
     struct folder_file mapped;
     struct asset_view view;

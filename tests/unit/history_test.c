@@ -252,7 +252,8 @@ CASE(long_times_keep_spikes_and_gaps)
                 high = fmax(high, bucket->high);
                 low = fmin(low, bucket->low);
                 bad_us += tag == 1 ? (double)bucket->bad_us : 0;
-                if (tag == 1 && quality_is_bad(bucket->quality) && i + 1 < series.buckets.count) /* Bad lasts until the next bucket */
+                /* a Bad reading lasts until the next bucket */
+                if (tag == 1 && quality_is_bad(bucket->quality) && i + 1 < series.buckets.count)
                     bad_us += (double)(bucket[1].t_us - bucket->t_us - series.bucket_us);
                 assert_true(i == 0 || bucket->t_us > series.buckets.at[i - 1].t_us);
             }

@@ -106,7 +106,8 @@ CASE(long_rows_are_taken)
     assert_int_equal(s->counts.tags, 2);
     struct history_series series = read_series(s, "h", "FT-1");
     assert_int_equal(series.points.count, 5); /* five points, including one without a value, after which the line ends */
-    assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S); /* the hour that occurs twice in that night */
+    /* the two rows are an hour apart: in that night their local time occurs twice */
+    assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S);
     assert_true(series.points.at[1].value == 2.5);
     assert_true(isnan(series.points.at[2].value) && series.points.at[2].quality == QUALITY_BAD_COMMUNICATION_ERROR);
     history_series_finish(&series);

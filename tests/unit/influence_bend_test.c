@@ -13,7 +13,7 @@ static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
 struct bend_case { /* a shape with coarse triangles, and random points in them at which the field is checked */
     struct cad shape;
-    float (*positions)[3], (*facing)[3]; /* of the vertices, then of the random points; `facing` (normals) is unused for vertices */
+    float (*positions)[3], (*facing)[3]; /* by vertex, then by random point: position; normal (`facing`), unused for vertices */
     uint32_t tri[PLACES];
     double weights[PLACES][3], normals[PLACES][3];
 };

@@ -214,7 +214,7 @@ TEST(test_fin_on_long_triangles_is_marked)
     finish(&fine);
 }
 
-static double log_slope; /* of the exact solution between two caps: slope of the temperature over ln tan(theta / 2) */
+static double log_slope; /* exact solution between two caps: slope of the temperature over ln tan(theta / 2) */
 
 static double exact_sphere(const double at[3])
 {

@@ -149,7 +149,7 @@ static void on_database(struct lease_world *world, struct flight *flight)
     answer->good = asked.good;
     answer->sent_ns = asked.sent_ns;
     memcpy(answer->standby, asked.standby, sizeof(answer->standby));
-    answer->from = asked.what; /* kind of the question that this answers */
+    answer->from = asked.what; /* kind of the question that this message answers */
 }
 
 /* --- a node --------------------------------------------------------------------------------------------------------------------- */

@@ -205,7 +205,8 @@ TEST(a_view_splits)
     view_default(small_scene(), 641, 360, &view);
     view = both_changed(view, "{\"type\":\"params\",\"seq\":1,\"colormap\":\"viridis\",\"split\":{\"distance\":\"euclidean\"}}");
     assert_true(view.split && view.field.distance == DISTANCE_GEODESIC && view.right.field.distance == DISTANCE_EUCLIDEAN);
-    assert_int_equal(view.right.colormap, colormap_find(NULL, "viridis")); /* the right half takes over what the left half had */
+    /* a view that is split: the right half takes over the left half's colour map */
+    assert_int_equal(view.right.colormap, colormap_find(NULL, "viridis"));
     view = both_changed(view, "{\"type\":\"params\",\"seq\":2,\"colormap\":\"cividis\",\"split\":{\"group\":\"pressure\"}}");
     assert_true(view.field.group == 0 && view.right.field.group == 1 && view.right.range_max == 16);
     assert_int_equal(view.right.colormap, colormap_find(NULL, "viridis"));

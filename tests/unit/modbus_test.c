@@ -132,7 +132,7 @@ CASE(resets_do_no_harm)
 CASE(dripping_device_holds_no_longer_than_the_deadline)
 {
     modbus_case_add_registers(s, 20);
-    s->plant->sources[0].timeout_ms = 1000; /* a complete answer would take 49 x 0.3 s */
+    s->plant->sources[0].timeout_ms = 1000; /* much shorter than a complete answer, which would take 49 x 0.3 s */
     s->device.manner = DEVICE_DRIPPING;
     device_start(&s->device);
     int64_t begin_ns = clock_mono_ns();
@@ -459,7 +459,7 @@ CASE(reconnects_with_a_thousand_files_open)
         files[i] = dup(2);
     assert_true(files[FILES - 1] >= 1024);
     device_start(&s->device);
-    for (int i = 0; i < LOW; i++) /* the test device's libmodbus also needs a descriptor below 1024 */
+    for (int i = 0; i < LOW; i++) /* frees descriptors below 1024, which the test device's libmodbus needs, too */
         close(files[i]);
     modbus_case_expect(s, 0, QUALITY_GOOD, 8);
     for (int i = LOW; i < FILES; i++)

@@ -194,7 +194,7 @@ CASE(an_id_that_another_view_has_gets_longer)
     short_links_close(&links);
 }
 
-/* Shares that many views, which nobody shares again. */
+/* Shares `count` different views, numbered from `first`, each of them only once. */
 static void share_many(struct short_links *links, int first, int count)
 {
     char id[SHORT_LINK_ID_BYTES], view[40];

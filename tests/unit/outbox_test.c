@@ -187,7 +187,7 @@ CASE(it_escalates_until_acknowledged)
     assert_int_equal(deliver(f, OPS, T0 + 20 * MIN + 3 * S), 1);
     put(f, 0, LOCAL, false, false, T0, T0 + 21 * MIN);
     assert_int_equal(deliver(f, OPS, T0 + 60 * MIN), 0);
-    assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* alarm of the second escalation, which was waiting */
+    assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* the alarm of the second escalation is delivered: it had waited */
     assert_int_equal(deliver(f, BOSS, T0 + 90 * MIN), 0);
     put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* the alarm is raised again */
     assert_int_equal(deliver(f, OPS, T0 + 91 * MIN + 3 * S), 1);
@@ -206,7 +206,7 @@ CASE(nobody_is_told_twice_after_a_restart)
     struct alarm old = alarm_of(f, 0, LOCAL, true, true, T0), settled = alarm_of(f, 1, LOCAL, true, false, T0 - S);
     struct alarm missed = alarm_of(f, 2, LOCAL, true, true, T0 + 4 * S);
     outbox_put(f->outbox, &old, true, T0 + 10 * S);
-    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* this alarm was acknowledged before any notification was due */
+    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* settled: an alarm that was acknowledged before any notification was due */
     outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the daemon ended: only the journal has it */
     assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
     assert_int_equal(message.count, 1);

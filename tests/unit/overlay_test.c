@@ -173,7 +173,7 @@ TEST(the_window_is_what_is_left_free)
     assert_true(none.right == 1);
 }
 
-/* Returns how many pixels of a half's right edge the legend covers at half height. */
+/* Returns how many pixels of the middle row the legend covers at the right edge of a half of the split view. */
 static int legend_px(const struct frame *frame, int half)
 {
     int count = 0;

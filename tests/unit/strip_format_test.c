@@ -83,5 +83,5 @@ TEST(test_long_names_and_nonsense)
     strip_encode(&odd, code);
     assert_false(strip_decode(code, &strip, &mended)); /* a logarithm of 0 */
     memset(code, 0, sizeof(code));
-    assert_false(strip_decode(code, &strip, &mended)); /* all parity bits are right, but it is not a strip */
+    assert_false(strip_decode(code, &strip, &mended)); /* all parity bits are right, but the contents are not those of a legend strip */
 }

@@ -47,7 +47,7 @@ test('a viewer takes the parameters of the field from the saved view', () => {
 test('after a reload or a reconnect, a viewer takes these parameters from the view again', () => {
     const { session } = greeted('viewer'), group = session.model.groups[1];
     session.setParams({ named: 'own', group: group.id, look: 'flat', strength: 2, selected: 'E-101' });
-    // must be everything that the session shows, because the server starts from the named view's parameters
+    // contains everything that the session shows, because the server starts from the named view's parameters
     const again = regained(session, 'own');
     assert.deepEqual([again.named, again.group, again.look, again.selected, again.strength], ['own', group.id, 'flat', 'E-101', undefined]);
     assert.deepEqual([again.clip, again.split], [null, null]);

@@ -45,7 +45,8 @@ test('a pin leaves room between itself and the alarm ring of its own point, so t
 test('a pin without free room covers as few markers as it can', () => {
     const half = { left: 0, top: 0, right: 150, bottom: 200 }, marks = [];
     for (let y = 0; y < 200; y += 18)
-        for (let x = 0; x < 150; x += y > 100 && y < 140 ? 100 : 30) // two rows have fewer markers, but neither leaves room for a pin
+        // two rows have fewer markers, but still no room for a pin between them
+        for (let x = 0; x < 150; x += y > 100 && y < 140 ? 100 : 30)
             marks.push({ left: x, right: x + 12, top: y, bottom: y + 12 });
     const covered = (box) => marks.filter((mark) => meets(box, mark)).length;
     const box = placePin(pin(60, 60), half, [], [], marks);

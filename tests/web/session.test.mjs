@@ -106,7 +106,7 @@ test('who leads knows who follows, and gives the lead to one of them', () => {
     const heard = [];
     session.on('followers', () => heard.push(session.followers));
     socket.say({ type: 'followers', count: 2, sessions: [7, 9], names: ['kim', null] });
-    socket.say({ type: 'followers', count: 1, sessions: [7] }); // the message as a client without a token gets it
+    socket.say({ type: 'followers', count: 1, sessions: [7] }); // the message as the server sends it to clients without a token
     assert.deepEqual(heard, [{ count: 2, sessions: [7, 9], names: ['kim', null] }, { count: 1, sessions: [7], names: [] }]);
     giveLead(session, 9);
     assert.deepEqual(last(socket.sent), { type: 'lead', session: 9 });

@@ -11,7 +11,8 @@ const files = ['app', 'core', 'wall', 'handover'].flatMap(filesIn);
 const pages = ['index.html', 'wall.html', 'handover.html'].map(read);
 const page = pages.join('\n') + files.filter((name) => /\.(js|html)$/.test(name)).map(read).join('\n');
 const words = new Set(page.match(/[\w-]+/g));
-const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`); // class names such as p1, p2, ...
+// numbered class names such as p1, p2, ..., which the page makes from a letter and a number
+const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`);
 const isTheChartsOwn = (name) => name.startsWith('u-');
 
 // Returns the selectors of a style sheet without the declarations, including those of rules inside @media and the like.
