@@ -33,7 +33,8 @@ struct plant_runtime_context { /* objects that a reload does not replace */
 struct plant_runtime {
     const struct plant_runtime_context *context;
     struct plant *plant;
-    struct plant_services services; /* services of the plant; on a daemon that follows a core, core_link takes the place of `sources` */
+    /* services that sessions use; on a daemon that follows a core, core_link provides the readings instead of `sources` */
+    struct plant_services services;
     struct publisher *publisher;    /* thread that publishes readings and alarms to an MQTT broker; NULL: nothing is published */
     struct source **sources;        /* sources of readings, with the same indices as plant->sources */
     struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */

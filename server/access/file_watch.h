@@ -6,7 +6,8 @@
 #include <stdint.h>
 #include <sys/stat.h>
 
-struct file_stamp { /* state of the file when it was read; all 0: the file did not exist */
+/* properties of a file from stat(), by which a changed file is recognised; all 0: the file did not exist */
+struct file_stamp {
     int64_t seconds, nanoseconds, bytes;
     uint64_t inode;
     unsigned mode, owner;

@@ -42,7 +42,8 @@ void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES])
         memset(hash, 0, TOKEN_HASH_BYTES);
 }
 
-/* Generates a random token. Its prefix distinguishes it from its hash, for users and for tools that scan files for secrets. */
+/* Generates a random token. Tokens begin with a prefix, so that users, and tools that scan files for secrets, can tell a token
+   from the hash of a token. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1])
 {
     uint8_t bytes[RANDOM_BYTES];

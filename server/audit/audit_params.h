@@ -11,7 +11,8 @@ struct audit_params {
     struct log *log;
     struct counters *counters;
     const char *path;                     /* path of the audit file */
-    size_t most_bytes;                    /* size in bytes at which the audit file is renamed and a new one started; 0: 64 MB */
+    /* size in bytes at which the audit file is full: it is then renamed and a new one is started; 0: 64 MB */
+    size_t most_bytes;
     const char *syslog;                   /* HOST[:PORT] of a syslog server over TLS; NULL: none */
     const char *syslog_ca;                /* PEM file of the CA certificates to trust for the syslog server; NULL: the operating system's */
     const char *syslog_cert, *syslog_key; /* PEM files of our client certificate and its private key for the syslog server; NULL: none */

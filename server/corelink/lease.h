@@ -67,7 +67,7 @@ bool lease_may_bid(const struct lease *lease, int64_t now_ns);
    lease_saw() with the current row. */
 void lease_bid(struct lease *lease);
 void lease_won(struct lease *lease, int64_t sent_ns);
-/* Returns true if this node could bid, were it not for the leader's refusal (lease->refused). */
+/* Returns true if the leader's refusal (lease->refused) is the only reason why this node may not bid for the lease now. */
 bool lease_is_barred(const struct lease *lease, int64_t now_ns);
 /* Makes the promise not to bid for the lease for LEASE_NS from now. Returns false if this node cannot promise that. */
 bool lease_promise(struct lease *lease, int64_t now_ns);

@@ -13,17 +13,19 @@
 #define FIELD_DRIFT_H
 #include "field/neighbours.h"
 
-/* DRIFT_HOURS: hours in a week; DRIFT_HOURS_LEAST: minimum number of hours with values of all sensors that a verdict requires */
+/* DRIFT_HOURS: hours in a week; DRIFT_HOURS_LEAST: a verdict requires at least this many hours in which all sensors have values
+   */
 enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 };
 enum { DRIFT_NEAREST = 2 }; /* maximum number of nearest sensors whose readings are terms of the model */
-#define DRIFT_SIGMAS 3.0    /* smallest drift over the week that must be found, in standard deviations (struct drift: scatter) */
-/* smallest estimated drift that counts as found, in standard deviations; below DRIFT_SIGMAS, because a drift of DRIFT_SIGMAS is
-   sometimes underestimated */
+/* A drift over the week of this size must be found. In standard deviations (member scatter of struct drift). */
+#define DRIFT_SIGMAS 3.0
+/* An estimated drift counts as found from this size on, in standard deviations. Smaller than DRIFT_SIGMAS, because the estimate
+   of a drift of DRIFT_SIGMAS is sometimes too small. */
 #define DRIFT_SIGMAS_LEAST 2.5
-#define DRIFT_ERRORS 5.0 /* the estimate of a drift must also be at least this many times its own standard error */
+#define DRIFT_ERRORS 5.0 /* an estimated drift counts as found only if it is also at least this many times its own standard error */
 
 enum drift_verdict {
-    DRIFT_UNKNOWN, /* too little data, fewer than three sensors, or changes of the plant that hide any drift */
+    DRIFT_UNKNOWN, /* no verdict: too little data, fewer than three sensors, or changes of the plant that would hide a drift */
     DRIFT_NONE,    /* no drift: a drift of DRIFT_SIGMAS standard deviations would have been found */
     DRIFT_FOUND,
 };

@@ -62,7 +62,8 @@ const struct field_params *field_params_of(struct field *field, int asset, const
 const struct trial *field_take_trial(struct field *field, const struct field_params *params);
 /* Releases a trial. Accepts a pointer to NULL; sets the pointer to NULL. */
 void field_give_trial(struct field *field, const struct trial **trial);
-/* Writes the baseline of the difference to *out. Returns false if params show no difference or the baseline was forgotten. */
+/* If params show the difference from a baseline, writes that baseline to *out. Returns false if they show no difference, or if
+   the baseline was forgotten. */
 bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out);
 #define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
 /* Sets the limit of the cache in bytes, initially FIELD_DEFAULT_BYTES. The field last requested is kept even if it exceeds the
@@ -117,9 +118,12 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
 struct field_sensor {
     int tag;
     float surface_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
-    uint32_t column;    /* index of the sensor in the asset file; trial sensors have indices from the file's number of sensors on */
+    /* index of the sensor in the asset file; sensors on trial that the file lacks have the indices after those of the file's
+       sensors */
+    uint32_t column;
     bool in_file;       /* true: a column of the file has the sensor's geodesic distances; false: along_m has them */
-    /* geodesic distance of each vertex if the file lacks them; NULL: not known yet, or straight-line distances are used */
+    /* [vertex]: geodesic distance from the sensor, if the file lacks it; NULL: not computed yet, or straight-line distances are
+       used */
     const float *along_m;
     float strength, decay;
     /* the sensor's value in the weighted sum; scaled to 0..1 for interpolation `paper`; for a difference, the reading minus the

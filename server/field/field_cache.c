@@ -118,7 +118,8 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    /* some columns of G (a sensor's weights) are cached, but there is no room for all: keeps the cached ones */
+    /* some columns of G (a column is one sensor's weights) are cached already; there is no room for all columns, so only those
+       stay cached */
     else if (field->bytes - had + bytes > field->bound)
         return;
     else

@@ -58,7 +58,8 @@ static struct trial_layout *find(const struct field *field, int asset, const str
     return tried;
 }
 
-/* Returns parameters for a constant field on the asset: all sensor positions are assumed, so the group's have no effect. */
+/* Returns parameters for a constant field on the asset. All sensor positions there are assumed, so one sensor gives the value
+   everywhere, and the group's parameters have no effect. */
 static const struct field_params *even_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
     const struct field_layout *layout = field_layout(field, asset, params);

@@ -9,7 +9,9 @@
 
 struct layout_sensor {
     int tag;               /* index in plant->tags */
-    uint32_t column;       /* index of the sensor in the asset file; trial sensors have indices from the file's number of sensors on */
+    /* index of the sensor in the asset file; sensors on trial that the file lacks have the indices after those of the file's
+       sensors */
+    uint32_t column;
     float surface_m[3];    /* position of the sensor in metres, in the coordinates of the asset file */
     uint32_t vertex;       /* index of the asset file's vertex that is nearest to the sensor */
     bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m instead of the file */

@@ -27,8 +27,12 @@
 #define STEP_LIMIT 1e6
 /* number of updates after which everything is summed again, which keeps the accumulated rounding below 1e-9 of the range */
 #define MAX_ADDED 4096
-#define JOB_WORK 30000.0 /* estimated work in nanoseconds from which another thread is woken to share in an update */
-#define SMALL_WORK 1e6   /* nanoseconds; when many assets are updated, an update with less work than this runs on one thread */
+/* an update is divided among threads in pieces of about this much work, estimated in nanoseconds: less is not worth waking
+   another thread */
+#define JOB_WORK 30000.0
+/* estimated work in nanoseconds below which the update of an asset stays on one thread, while several assets are updated in
+   parallel */
+#define SMALL_WORK 1e6
 #define MAKE_WORK 1.0    /* estimated nanoseconds to compute one sensor's weight at one vertex and add it */
 #define ADD_WORK 0.15    /* estimated nanoseconds to add a weight that is already computed */
 

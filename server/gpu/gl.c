@@ -112,7 +112,8 @@ static void set_conventions(struct gl *gl)
    each preceded by "; ". Returns NULL if none works. */
 static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
-    bool asked = kind != GL_AUTO || device; /* a caller who asks for a kind or device may get a software device in the first attempt */
+    /* true: the caller asks for a kind or a device, so that even the first attempt may use a software device */
+    bool asked = kind != GL_AUTO || device;
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
         bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;

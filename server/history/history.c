@@ -299,7 +299,8 @@ static int read_months(struct history_reader *reader, const struct month_request
     int *months = month_list(reader->folder, &count), error = 0, first = month_of(of->from_us), last = month_of(of->to_us);
     while (begin < count && months[begin] < first)
         begin++;
-    /* a month that cannot be read ends the search for a distant point, but does not fail the query */
+    /* Searches earlier months, one by one, for the point from which the line enters the time span. If one of these months
+       cannot be read, the search ends, but the query does not fail. */
     for (size_t i = begin; i > 0 && !error && !has_begun(gather); i--)
         if ((error = read_month(reader, months[i - 1], of, gather, left_out)) && i < begin) {
             error = 0;
@@ -319,7 +320,8 @@ static int read_buckets(struct history_reader *reader, const struct month_reques
 {
     struct gather gather = { .out = out, .length_us = of->level < 0 ? out->bucket_us : history_level_us[of->level], .done_us = INT64_MIN };
     out->buckets.count = 0;
-    /* if buckets are computed from points, the preceding point is also needed, because its value holds until a step at the first point */
+    /* if buckets are computed from points, also reads the last point before the range: until a step at the first point in the
+       range, that point's value holds */
     struct month_request before = { of->tag, of->level, of->level < 0 ? of->from_us - 1 : of->from_us, of->to_us };
     int error = read_months(reader, &before, &gather, NULL);
     if (!error && of->level < 0)
@@ -359,7 +361,8 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
                    struct history_series *out)
 {
     const struct month_request of = { tag, -1, from_us, to_us };
-    /* includes one point before and one after the range; reading may find two more, in neighbouring months */
+    /* maximum number of points to return: those in the range, one before and one after it. Reading may find two more, in
+       neighbouring months */
     const size_t most = (size_t)max_points + 2;
     struct history_left_out left_out = { 0 };
     int index = reader->plant ? plant_find_tag(reader->plant, tag) : -1;

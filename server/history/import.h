@@ -15,7 +15,8 @@ struct import_params {
     /* UTC time in microseconds that corresponds to 0 in the time column; INT64_MIN: the column has timestamps instead */
     int64_t start_us;
     int64_t unit_us;        /* microseconds per unit of the numbers in the time column */
-    int64_t longest_gap_us; /* longest time in microseconds between two samples of a tag that is not a gap; 0: determined for each tag */
+    /* longest time in microseconds between two samples that does not count as a gap in recording; 0: chosen for each tag */
+    int64_t longest_gap_us;
 };
 
 struct import_counts {

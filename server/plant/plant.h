@@ -31,7 +31,7 @@ enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 /* initial display state of an asset: shown, ghosted (outline only) or hidden */
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN };
-enum { PLANT_STARTS = 4096 }; /* maximum number of assets (the first of the plant file) that can be hidden or ghosted individually */
+enum { PLANT_STARTS = 4096 }; /* only this many assets, the first ones in the plant file, can be hidden or ghosted individually */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
     DATA_BIT,
@@ -221,7 +221,7 @@ struct plant_source {
     char *file;         /* path of the CSV file that a replay source plays */
     double speed;
     bool loop;
-    char *login; /* path of a file with the user on the first line, the password on the second */
+    char *login; /* path of a file with the user name on the first line and the password on the second */
     struct plant_mqtt mqtt;
     struct plant_opcua opcua;
     bool simulated; /* true: a simulator provides the readings of this source, so they are not measured */
@@ -271,7 +271,7 @@ struct plant_quality_tag {
 
 enum { PLANT_SENTINELS = 4 };
 struct opcua_deadband { /* smallest change of a node that the OPC UA server reports */
-    double value; /* 0: every change; NaN (only of a tag): the tag uses the deadband of its source */
+    double value; /* the smallest change; 0: every change is reported; NaN (only for a tag): the deadband of the tag's source applies */
     bool percent; /* true: in percent of the node's range (EURange); false: in the node's unit */
 };
 

@@ -11,8 +11,8 @@ struct plant_sensor {
     int tag; /* index in plant->tags */
     /* name of the model node that gives the position; "": the middle of the asset; NULL: position_m is used. The plant owns the text */
     const char *node;
-    /* hash (XXH3-64) of `node`; 0: position_m is used. If the sensor's place is assumed: a hash, with another seed, of `node` or
-       position_m */
+    /* 0: position_m gives the position. Otherwise the hash (XXH3-64) of `node`. If the sensor's place is assumed, the hash of
+       `node` or position_m, computed with another seed, so that it differs from that of a known place */
     uint64_t node_hash;
     double position_m[3]; /* position in the asset's coordinate frame (metres, Z up); zero if `node` is set */
 };

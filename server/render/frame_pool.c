@@ -73,7 +73,8 @@ uint8_t *frame_pool_take(struct frame_pool *pool, size_t bytes)
 
 void frame_pool_give(struct frame_pool *pool, uint8_t *pixels, size_t bytes)
 {
-    /* keeps the buffer for reuse in place of the oldest spare buffer, which is freed below */
+    /* keeps this buffer for reuse. If there is no free place, it takes the place of the oldest spare buffer, which is freed
+       below */
     if (pool && pixels && bytes <= SPARE_BYTES) {
         pthread_mutex_lock(&pool->lock);
         struct spare_buffer oldest = pool->spares[pool->next];

@@ -29,7 +29,7 @@ enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
 enum { VIEW_LINES = PLANT_ISOLINES };
-struct color_scale { /* settings of a view's scale other than colour map, range and colour step. All zero: the defaults */
+struct color_scale { /* settings of a view's colour scale, apart from colour map, range and colour step; all zero: the default settings */
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending values that separate bands of uniform colour; used instead of a continuous ramp */
     int break_count;

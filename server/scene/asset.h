@@ -32,7 +32,8 @@ struct asset *asset_open(struct log *log, const char *path);
 /* Maps and checks the file KEY.influence next to the asset's file, unless it is open already. Logs and returns false if there
    is no valid file. Call from one thread only, before others use the asset. */
 bool asset_open_influence(struct log *log, struct asset *asset);
-/* Returns a placeholder for an asset that could not be prepared: one invisibly small triangle, no sensors. */
+/* Returns an asset to use in place of one that could not be prepared: it has one triangle, too small to be visible, and no
+   sensors. */
 struct asset *asset_stand_in(void);
 struct asset *asset_ref(struct asset *asset);
 void asset_unref(struct asset **asset);        /* releases the asset and sets *asset to NULL; accepts a pointer to NULL */

@@ -297,7 +297,8 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
 
 /* --- all assets of the scene ------------------------------------------------------------------------------------------------ */
 
-/* Gives missing assets the bounds of the plant, so that a view of one shows the plant. Returns false if all are missing. */
+/* Gives the assets that could not be prepared the bounding box of the plant, so that a view of such an asset shows the plant.
+   Returns false if no asset could be prepared. */
 static bool bound_missing(struct scene *scene)
 {
     for (size_t i = 0; i < scene->asset_count; i++)
@@ -410,7 +411,9 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
     memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
     camera->fov_deg = view->fov_deg;
-    if (!camera_valid(camera)) /* the camera looks straight down, along `up`, which is invalid: sets `up` to north, as on a map */
+    /* the camera looks straight down, so that `up` is parallel to the view, which is invalid: sets `up` to north, as on a map
+       */
+    if (!camera_valid(camera))
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }
 

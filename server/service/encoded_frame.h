@@ -14,7 +14,9 @@ enum frame_absence {
 
 struct encoded_frame { /* encoded frame; the code that collected it owns it, and frees it with encoded_frame_destroy() */
     uint64_t client;
-    uint64_t number;       /* sequence number of the client's request, assigned when drawing begins; a larger number shows a newer state */
+    /* number that the client's request gets when its drawing begins; of two frames for a client, the one with the larger number
+       shows the newer state */
+    uint64_t number;
     struct packet *packet; /* encoded frame; NULL: there is none, and `absence` says why */
     struct packet **earlier; /* packets of a shared stream that the client missed and must decode first, oldest first */
     int earlier_count;

@@ -16,8 +16,8 @@ struct render_service;
 struct render_service_params {
     struct log *log;
     enum gl_kind gl;
-    bool per_fragment; /* true: compute the field for each fragment instead of each vertex; for comparison in tests */
-    bool by_gl;        /* true: draw all frames with GL, even if the GL implementation is a software renderer; for comparison in tests */
+    bool per_fragment; /* true: computes the field at each fragment instead of at each vertex, so that tests can compare both */
+    bool by_gl;        /* true: draws all frames with GL, even if GL runs on the processor, so that tests can compare both ways */
     const struct gl_device *gl_device; /* GPU to use; NULL: the first hardware GPU that works */
     const struct scene *scene;
     struct store *store;

@@ -99,7 +99,9 @@ struct frame_delivery {
     struct pacer pacer;
     uint64_t newest_number;          /* sequence number of the newest frame received from the render service */
     bool newest_refined;             /* true: the frame with the number newest_number is refined */
-    struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all earlier ones */
+    /* frames that are ready to be sent, oldest first. A frame that arrives and decodes without earlier frames replaces the
+       whole list */
+    struct encoded_frame *ready;
     bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
     /* [step]: number of sessions, this one included, that show this view and need that step of the quality ladder */
@@ -145,7 +147,7 @@ struct travel {
 
 /* Texts that are still to be sent to the client (session_texts.c). */
 struct owed_texts {
-    /* true: the text with that name is due; loop_checks: the complete list of loop checks is due */
+    /* true: the text with that name must still be sent; loop_checks: the complete list of loop checks must be sent */
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
     uint32_t params_seq;    /* sequence number of the client's message that the next `params` message answers */
     int64_t tags_ns;        /* monotonic time when the last message with readings (`tags`) was sent */

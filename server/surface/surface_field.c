@@ -206,7 +206,7 @@ SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db
     /* cut / dy: position of the straight path's crossing with the edge, counted from a */
     float dx = x - sx, dy = y + sy, cut = sx * y + x * sy;
     float straight2 = dx * dx + dy * dy;
-    /* if da or db is INFINITY, the conditions are not all true, and the result is INFINITY */
+    /* if da or db is INFINITY, at least one of the two comparisons is false, so straight2 becomes INFINITY */
     straight2 = cut >= 0 ? straight2 : INFINITY;
     straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
     return straight2 < best2 ? straight2 : best2;

@@ -5,7 +5,8 @@
 #define VALUE_DERIVED_H
 #include "value/source.h"
 
-struct derived_state; /* the results that were last written, to detect changes; use the struct in one thread only */
+/* the results of derived tags that were written last, so that only changes are written; use it in one thread only */
+struct derived_state;
 
 /* Starts the thread that computes derived tags. Returns it as a source, which plant->sources does not contain; end it with
    source_stop(). NULL if the thread could not be started (logged). */

@@ -233,7 +233,8 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
     if (!link->lookup)
         link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
     int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
-    /* the system's resolver has not returned yet: the next attempt to connect waits for the same lookup */
+    /* the system's resolver has not answered yet; link->lookup is kept, so that the next attempt to connect waits for the same
+       answer */
     if (status == -ETIMEDOUT)
         return status;
     for (; to; to = to->ai_next) {

@@ -17,7 +17,8 @@ enum { LISTEN_TIMEOUTS = 4, SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOS
 static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
 /* a failed connection is blamed on reconnecting too early only if the device's last answer is at most this old */
 static const int64_t TOLERANCE_NS = 2 * NS_PER_S;
-/* time limit for the first answer on a connection if the previous connection had no answer at all; doubled after more such connections */
+/* time limit for the first answer on a connection, if the previous connection got no answer at all. It is doubled after more
+   such connections */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
 /* first delay to try between connecting and the first request. For RTU over TCP, whose frames have no transaction numbers, so
    that requests must not be repeated */
@@ -85,7 +86,8 @@ static void learn_start(struct modbus_source *modbus)
     bool known = manners->first_wait_ns > 0, repeated = answered_ns - sent_ns < timeout_ns / 2;
     char found[200];
     if (answered_ns - manners->connect_delay_ns < timeout_ns) {
-        manners->first_wait_ns = 0; /* the answer was not late after all: an earlier delay had another reason */
+        /* the first answer of this connection came in time, so an earlier delay had another reason: forgets it */
+        manners->first_wait_ns = 0;
         return;
     }
     if (answered_ns > manners->first_wait_ns / 2)

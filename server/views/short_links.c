@@ -77,7 +77,7 @@ static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK
 /* Returns whether a new link may be made, and counts it. */
 static bool may_add(struct short_links *links, int64_t now_us)
 {
-    /* upper bound of whole_us, relative to now; a larger value means that the clock was set back */
+    /* whole_us is never more than this far in the future; if it is, the clock was set back */
     if (links->whole_us < now_us || links->whole_us > now_us + BURST_LINKS * LINK_US)
         links->whole_us = now_us;
     if (links->whole_us > now_us + (BURST_LINKS - 1) * LINK_US)
@@ -126,7 +126,8 @@ enum refusal_code short_links_share(struct short_links *links, const char *view,
     why = kept_list_put(&links->kept, list);
     if (added)
         *added = !stored && !why;
-    return stored ? REFUSAL_NONE : why; /* success: the link is stored on disk, even if it cannot be marked as used now */
+    /* success even if the file cannot be written now: the link is on disk already, only its last use is not */
+    return stored ? REFUSAL_NONE : why;
 }
 
 const char *short_links_find(const struct short_links *links, const char *id)

@@ -18,7 +18,7 @@ extern "C" {
 /* Allocates the pixels of an image, after checking that `bytes` bytes of file can contain that many pixels of `channels`
    channels. Returns false with the reason in `why`. */
 bool image_allocate(struct image *image, uint32_t width_px, uint32_t height_px, int channels, size_t bytes, char why[IMAGE_WHY_BYTES]);
-/* Decode PNG and JPEG with libpng and libjpeg. On failure, the caller frees the pixels. */
+/* The functions decode a PNG file with libpng, and a JPEG file with libjpeg. On failure, the caller frees the pixels. */
 bool image_read_png(struct image *image, const void *bytes, size_t size, char why[IMAGE_WHY_BYTES]);
 bool image_read_jpeg(struct image *image, const void *bytes, size_t size, bool *cmyk, char why[IMAGE_WHY_BYTES]);
 

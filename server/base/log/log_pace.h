@@ -11,7 +11,8 @@ enum { LOG_PACE_BYTES = 64 };
 
 struct log_pace { /* rate limit of one kind of log line. Set first_ns and longest_ns, and all other members to zero */
     int64_t first_ns, longest_ns;
-    int64_t pause_ns, next_ns; /* length of the current pause, and its end (monotonic); next_ns 0: no line has been written yet */
+    /* pause_ns: length of the current pause; next_ns: monotonic time when it ends; 0: no line has been written yet */
+    int64_t pause_ns, next_ns;
     long unsaid;
 };
 

@@ -15,11 +15,13 @@ enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
    against the depth buffer. The first round draws 1/8 of all triangles untested; each later round draws as many as all rounds
    before. */
 enum { FIRST_ROUND_DIVISOR = 8 };
-/* minimum number of triangles of an asset for its bounding box to be tested: drawing fewer triangles costs no more than the test */
+/* the bounding box of an asset is tested only if the asset has at least this many triangles; drawing fewer costs no more than
+   the test */
 static const int MIN_TESTED_TRIANGLES = 200;
 /* margin around an asset's bounding box, as a fraction of the box's size, because positions are 32-bit floats */
 static const double MARGIN_PART = 1e-3;
-/* additional margin around an asset's bounding box in pixels, at the distance of the box's farthest corner: GPUs round sample coverage */
+/* additional margin of an asset's bounding box, in pixels at the distance of the box's farthest corner, because GPUs round
+   which pixels a triangle covers */
 static const double MARGIN_PX = 1;
 
 bool occlusion_init(struct occlusion *occlusion, struct log *log)

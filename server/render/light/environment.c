@@ -9,8 +9,8 @@
 #include "base/mem.h"
 #include "render/light/ggx.h"
 
-/* size in pixels of the built-in sky's image. The sky varies with elevation only, so a few columns suffice to integrate its spherical
-   harmonics */
+/* size in pixels of the image of the built-in sky. The sky varies with elevation only, so a few columns are enough for
+   computing its spherical harmonics */
 enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 };
 enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
 /* Radiance is clipped at this multiple of the environment map's mean radiance. Brighter spots are the sun or lamps, and the

@@ -215,7 +215,8 @@ bool light_step(struct light *light, const struct light_key *key, int64_t budget
     if (!environments_wait(light->environments, key->environment, budget_ns / 2))
         return false;
     if (!light->bake && !begin(light, key))
-        /* the bake could not begin. Returning true (ready) makes the caller call light_get(), which tries again and reports the failure */
+        /* The bake could not begin. The function says that the light is ready, so that the caller calls light_get(), which
+           tries again and reports the failure. */
         return true;
     environments_bind(light->environments, bake_key(light->bake)->environment);
     while (!issued && spent_ns + last_ns <= budget_ns) {

@@ -25,7 +25,9 @@ struct label_item {             /* one per visible marker */
     int held;    /* slot (candidate position around the marker) of its label in the previous frame, or LABEL_NONE */
     bool ring;   /* true: the marker has an alarm ring, so its label has the highest rank, LABEL_BEYOND */
     int callout; /* call-out (label shared by several alarm rings) that contained the item in the previous frame, or LABEL_NONE */
-    int asset;   /* equipment of the marker's tag: in a flood of alarms, rings of the same asset share a call-out; LABEL_NONE: none */
+    /* index of the asset to which the marker's tag belongs; in a flood of alarms, all rings of an asset share a call-out.
+       LABEL_NONE: none */
+    int asset;
 };
 struct label_area {
     struct label_box box;

@@ -40,10 +40,9 @@ struct rings {
        labels remain */
     double least;
     struct ring_group *groups;
-    /* for each alarm ring, in the order of `order`: position in pixels that represents the ring when near rings are grouped
-       (set_anchors) */
+    /* [ring, in the order of `order`]: position in pixels by which the ring is grouped with near rings (set_anchors) */
     double (*anchors)[2];
-    int *group_of;          /* for each alarm ring, in the order of `order`: index of its group in `groups` */
+    int *group_of;          /* [ring, in the order of `order`]: index in `groups` of the group to which the ring belongs */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
 };

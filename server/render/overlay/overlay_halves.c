@@ -54,7 +54,8 @@ static void write_caption(struct caption *caption, const struct pen *pen, const 
         add_number(caption, pen, isfinite(a->reach_m) ? WORD_REACH : WORD_REACH_UNLIMITED, a->reach_m);
     if (a->fill != b->fill)
         add_line(caption, pen, a->fill == FILL_NONE ? WORD_NOT_FILLED : WORD_FILLED, NULL);
-    /* true: both halves change the weights of the same sensors in the same way; compared as in field_params_equal() */
+    /* true: both halves override the strength and decay of the same sensors with the same values; compared as in
+       field_params_equal() */
     bool same_sensors = a->override_count == b->override_count &&
                         !memcmp(a->overrides, b->overrides, a->override_count * sizeof(*a->overrides));
     if (!same_sensors && a->override_count > 0)

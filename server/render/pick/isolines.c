@@ -18,7 +18,8 @@ enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 1
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
 /* minimum distance between possible label positions on isolines, as a fraction of the asset's size */
 static const double SPACING = 0.1;
-/* minimum distance between labels of the same isoline in a frame, as a multiple of that between labels of different isolines */
+/* minimum distance between two labels of one isoline in a frame, as a multiple of the minimum distance between labels of
+   different isolines */
 static const double SAME_LINE_FACTOR = 4;
 
 void isolines_init(struct isolines *isolines, size_t asset_count)

@@ -15,7 +15,8 @@
 enum { MAX_CROSSINGS = 64 };          /* maximum number of triangle edges that one step of a stroke may cross */
 /* step length for tracing strokes (short streamlines), as a fraction of the distance between arrows */
 static const double STEP_PART = 0.35;
-/* smallest cosine between the directions of consecutive steps of a stroke (120 degrees): sharper turns are vortices too small to trace */
+/* A stroke ends where its direction turns by more than 120 degrees from one step to the next: the cosine is then below this.
+   Such turns are vortices too small to trace. */
 static const double MIN_DOT = -0.5;
 
 /* --- neighbours ------------------------------------------------------------------------------------------------------------- */
@@ -183,7 +184,8 @@ static struct direction midway(const struct stroke_point *last, const struct dir
         from[c] = (double)half->normal[c];
         to[c] = (double)last->place.normal[c];
     }
-    /* opposite normals come from triangles that are wound inconsistently: the direction is then not turned */
+    /* opposite normals mean that the triangles are wound inconsistently, not that the surface turns round: the direction is
+       then not turned */
     if (vec_dot(from, to) > 0)
         vec_turn(v, from, to);
     for (int c = 0; c < 3; c++)

@@ -12,9 +12,10 @@
 #include "plant/influence.h"
 #include "render/reference/reference.h"
 
-/* content hash of fields->lost, the placeholder for fields without memory; no other entry has this hash */
+/* content hash of fields->lost, which replaces every field for which there is no memory; no other entry has this hash */
 static const uint64_t LOST = 0x6c6f7374;
-/* default size limit of the cache, applied separately to main memory and to GPU memory: enough for about 700 assets of 66,000 vertices */
+/* default size limit of the cache in bytes. It applies to main memory and to GPU memory separately, and is enough for about 700
+   assets of 66,000 vertices */
 static const size_t BOUND_BYTES = (size_t)384 << 20;
 
 void fields_init(struct fields *fields, struct log *log, struct field *field)

@@ -17,8 +17,8 @@ struct frame_plan {
     double error_px; /* maximum surface error of a level of detail, in pixels of the frame (lod_selection.h); 0: finest levels only */
     int *visible;    /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
-    /* by index in `visible`: number of the asset's vertices, counted from the first in the file, whose field values drawing and
-       labelling read */
+    /* [index in `visible`]: number of the asset's vertices whose field values are needed for drawing and labels; they come
+       first in the asset file */
     size_t *vertex_counts;
     /* --- set by frame_plan_complete() --- */
     /* field of each asset; NULL: the asset shows no field. Valid until a plan with newer readings is completed */

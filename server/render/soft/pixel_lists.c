@@ -22,7 +22,8 @@ struct node {
        padded to LANES. The arrays STATE and INDEX (index of the sensor in field->sensors) hold integers. */
     float *columns[COLUMNS];
     int count;
-    /* polynomials that replace the far sensors: those whose weight is smooth in the square of pixels; its member `sensors` is not set */
+    /* polynomials that replace the far sensors (those whose weights are smooth in the square of pixels). The member `sensors`
+       of this list is not used */
     struct pixel_list far;
     float least;           /* lower bound of the sum of the weights of the far sensors, which polynomials replace */
     float left;            /* part of the error budget that is left for further polynomials, as a fraction of the sum of all weights */
@@ -266,7 +267,8 @@ SOFT_INLINE lanes distances_of(const struct eight_sensors *of, const struct box 
    limits; FAR_M: there is none */
 struct nearest_bounds {
     float used, lost, no_limits;
-    /* base-2 logarithm of roughly the largest weight of any sensor at these points; weights are divided by that weight to fit in floats */
+    /* base-2 logarithm of about the largest weight of any sensor at these points. Weights are divided by the largest weight, so
+       that they fit into floats */
     float top;
 };
 

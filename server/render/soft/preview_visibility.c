@@ -66,7 +66,8 @@ static uint32_t weights_at(const struct preview_triangle *spot, double x, double
         double part = sum != 0 ? w[i + 1] / sum : 0;
         out[i] = part <= 0 ? 0 : part >= 1 ? 65535 : (uint32_t)(part * 65535 + 0.5);
     }
-    if (out[0] + out[1] > 65535) /* rounding may lift the sum of the two corner weights above 65535, which means 1 */
+    /* rounding may make the sum of the two weights larger than 65535, which means 1: corrects one of the weights */
+    if (out[0] + out[1] > 65535)
         out[1] = 65535 - out[0];
     return out[0] | out[1] << 16;
 }

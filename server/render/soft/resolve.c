@@ -202,7 +202,8 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
    of the colour map or, on a logarithmic scale, field values. */
 struct eight_shown {
     lanes w1, w2, carried;
-    /* -1: field_colors() may colour the pixel; 0: the pixel or a corner of its triangle has a flag, so flagged_color() must colour it */
+    /* mask of pixels: -1: field_colors() may colour the pixel; 0: flagged_color() must, because the pixel or a corner of its
+       triangle has a flag */
     lanes_int known;
     struct eight_places places; /* surface points of the eight pixels; fields evaluated from sensors are evaluated there */
 };
@@ -315,7 +316,8 @@ typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
-    /* true: no corner of the surfaces first..end-1, whose colours are stored, has flags, and the frame has no isolines */
+    /* true: none of the triangles of the surfaces first..end-1, whose colours are stored, has a flag at a corner, and the frame
+       has no isolines */
     bool all_known;
     uint32_t known[PARTS_AHEAD];                          /* 0: a corner has flags */
     uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* colour times share */

@@ -90,7 +90,8 @@ struct soft_found {
     bool both_sides;
     float eye_m[3]; /* eye position in the coordinates of the asset file, in metres */
     struct soft_rect rect;
-    /* id of the first triangle of the first item; an item is a part, whose ids begin PART_TRIANGLES above those of the item before */
+    /* id of the first triangle of the first part in `items`. The ids of each part begin PART_TRIANGLES above those of the part
+       before */
     uint32_t first_id;
     struct soft_item *items;
     size_t count, capacity;

@@ -91,7 +91,8 @@ struct visibility_buffer {
     uint32_t *surfaces;             /* per pixel, as described above */
     uint32_t *weights;              /* by pixel: weights of two corners of its triangle, 16 bits each: second corner | third corner << 16 */
     uint8_t *rows;                  /* by pixel: row of the shaded colour map, that is, the brightness of the surface */
-    /* by pixel: light that the pixel reflects in the glossy look; NULL: another look; `rows` then holds the brightness */
+    /* [pixel]: light that the pixel reflects in the glossy look. NULL: the frame has another look, and `rows` has the
+       brightness of surfaces */
     struct visibility_gloss *gloss;
     const struct soft_tones *tones; /* set with gloss; not owned */
     /* Ink of each pixel (line drawn over its colour, VISIBILITY_INK). In pixels whose colour no reading changes,

@@ -8,13 +8,16 @@ static const int64_t RTT_WINDOW_NS =
     /* length of a window for which the minimum round-trip time is kept; a round trip counts in the window in which it was
        measured and in the next one */
     15 * NS_PER_S;
-/* upper limit of a measured round trip; a longer one is caused by a queue somewhere, not by the network's delay */
+/* longest round trip that is taken to be the network's delay; a longer one is caused by a queue somewhere, and counts as this
+   time */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
-/* lower limit of a measured transfer time; a faster transfer only shows that bandwidth is plentiful */
+/* shortest transfer time that a measurement counts; a shorter one only shows that bandwidth is plentiful, and counts as this
+   time */
 static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4;
 /* a frame counts as having waited for the decoder if its decoding started within this time after the acknowledgement of the frame before */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
-/* size in bytes of a frame below which its measurement may only raise the bandwidth estimate, not lower it */
+/* frames of fewer bytes than this may only raise the estimate of the bandwidth, because the measurement is too rough to lower
+   it */
 static const size_t SMALL_BYTES = 4096;
 static const double SAMPLE_WEIGHT = 0.25; /* weight of a new measurement in smoothed values, 0..1 */
 

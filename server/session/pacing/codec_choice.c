@@ -10,9 +10,11 @@
 /* expected bytes per pixel of a JPEG frame (196 kB at 1920x1080, quality 78), and frames per second, from which the bandwidth
    for JPEG is computed */
 static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;
-/* measured bandwidth as a multiple of what JPEG needs: above PLENTY a switch to JPEG is allowed, below SCARCE the codec returns to H.264 */
+/* Limits on the measured bandwidth, as a multiple of the bandwidth that JPEG needs. Above PLENTY, the codec may change to JPEG;
+   below SCARCE, it changes back to H.264. */
 static const double PLENTY = 4, SCARCE = 2;
-/* idle part of the processors, 0..1: below BUSY_IDLE_SHARE the codec changes to JPEG, above FREE_IDLE_SHARE back to H.264 */
+/* Limits on the idle part of the processors, 0..1. Below BUSY_IDLE_SHARE, the codec changes to JPEG, which takes less processor
+   time; above FREE_IDLE_SHARE, it changes back to H.264. */
 static const double BUSY_IDLE_SHARE = 0.15, FREE_IDLE_SHARE = 0.4;
 /* how long bandwidth and processor load (codec_facts) must favour the other codec before a switch; long, since a switch costs a
    key frame */

@@ -102,8 +102,8 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         requests[i].codec = member->codec.current;
         requests[i].account = member->room.share ? member->room.share->account : 0;
         requests[i].view.camera_seq = member->view.camera_seq;
-        /* members show the leader's parameters, so their frames carry the leader's params_seq, known to the client from the
-           message `following` */
+        /* members show the leader's parameters. Their frames therefore have the leader's params_seq, which the client knows
+           from the message `following` */
         requests[i].view.params_seq = tiles->leader->view.params_seq;
         requests[i].part = tile_layout_part(&layout, member->tile.place.display);
     }

@@ -75,7 +75,8 @@ static inline void offer(const struct propagation *propagation, struct propagati
         fetch_fans(propagation, point);
     front->distance_m[point] = distance_m;
     if (front->settled[point])
-        /* a settled point (already propagated) is not propagated again: each small correction would spread over the whole surface */
+        /* skips a settled point (one whose neighbours were already offered distances), because each small correction would
+           spread over the whole surface */
         return;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));

@@ -7,7 +7,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MAX_STAR 48 /* a point is removed only if at most this many triangles (its star) are around it; size of arrays */
+#define MAX_STAR 48 /* maximum number of triangles around a point (its star) for the point to be removed; also the size of arrays */
 /* A collapse moves a point onto a neighbour, to remove the point. It must not create a triangle whose height is below this fraction of its
    longest side, unless the triangle was thinner before. */
 #define MIN_HEIGHT 0.02

@@ -10,8 +10,8 @@
 
 /* allowance for rounding errors of positions, relative to the largest coordinate */
 #define ROUNDING 1e-10
-/* faces whose height above the longest side is smaller than this (relative to the model's size) are slivers: their computed plane is not
-   reliable */
+/* a face whose height above its longest side is smaller than this, relative to the model's size, is a sliver: its computed
+   plane is not reliable */
 #define SLIVER 1e-5
 #define BESIDE 1e-4 /* allowance for rounding errors in the intersection of a face with a plane, relative to the face's longest side */
 
