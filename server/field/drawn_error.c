@@ -97,8 +97,8 @@ static void sampler_finish(struct sampler *sampler)
     mem_free(sampler->queue);
 }
 
-/* Evaluates all sensors' weights at the sample points. A sensor's final weight at a point is its element in sampler->weights
-   divided by the point's element in `total`. */
+/* Evaluates the weights of all sensors at the group's sample points. A sensor's final weight at a point is its element in
+   sampler->weights divided by the point's element in `total`. */
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
@@ -453,7 +453,8 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
-    if (plant_group_is_exact(group)) /* false: each pixel evaluates this group's field, so preparation subdivided no triangle for it */
+    /* false: this group's field is evaluated at each pixel of a picture, so preparation subdivided no triangle for it */
+    if (plant_group_is_exact(group))
         return false;
     for (size_t i = 0; i < layout->sensor_count; i++)
         if (weights->configured[i] && !weights->takes_part[i])

@@ -123,7 +123,7 @@ static int reduce(struct drift_rows *rows, double largest)
     return kept;
 }
 
-/* Returns the median of n non-negative numbers. */
+/* Returns the median of n non-negative numbers, which stay unchanged. */
 static double median(const double *of, int n)
 {
     double sorted[DRIFT_HOURS];

@@ -175,7 +175,8 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
-    /* SHOW_UNCERTAINTY and SHOW_BLIND depend on the real sensor positions, so they show nothing if positions are assumed */
+    /* the views of uncertainty and of blindness (SHOW_BLIND: undetectable hot spots) depend on the real sensor positions, so
+       they show nothing if positions are assumed */
     if (field_params_cover(params) && layout && layout->assumed)
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;

@@ -10,8 +10,9 @@
 struct field {
     struct workers *workers;
     const struct scene *scene;
-    struct field_layout **layouts;          /* [asset][group]: sensor layouts; NULL: not created yet, or the asset has no sensor of
-                                               the group */
+    /* [asset][group]: layout (sensors and their distances) of the group on the asset; NULL: not created yet, or the asset has
+       no sensor of the group */
+    struct field_layout **layouts;
     struct field_state **states;            /* [asset]: linked list of the asset's cached states (computed fields) */
     struct weights *weights[FIELD_BUCKETS]; /* hash table of all cached weights, by their key */
     struct baselines *baselines;            /* NULL: none */
@@ -46,9 +47,9 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
 
 /* Returns the bucket (linked list) of the hash table of cached weights to which this hash belongs. */
 struct weights **field_cache_bucket(struct field *field, uint64_t hash);
-/* Drops the state's reference to its weights, which can then be evicted. */
+/* Drops the reference to weights that the state (computed field) holds, which can then be evicted from the cache. */
 void field_cache_release_weights(struct field_state *state);
-/* Removes the state at *link from its asset's list of cached states and destroys it. */
+/* Removes the state (computed field) that *link points to from its asset's list of cached states and destroys it. */
 void field_cache_remove_state(struct field *field, struct field_state **link);
 /* Evicts entries last used before tick `before`, except states with the parameters `keep`, until `need` more bytes fit the
    limit. Evicts the oldest entries first; each search covers an eighth of the time span of last uses, so that searches are

@@ -54,7 +54,7 @@ static void add_pixel_sensor(const struct field_state *state, size_t sensor, uin
     memcpy(to->place_m, from->surface_m, sizeof(to->place_m));
 }
 
-/* Fills *out so that each pixel shows the distance from one sensor. */
+/* Fills *out so that each pixel shows its distance from one sensor of the layout. */
 static void fill_distance(const struct field_state *state, struct pixel_field *out)
 {
     out->show = PIXEL_DISTANCE;

@@ -62,7 +62,7 @@ void influence_fill_destroy(struct influence_fill **fill_ptr)
     *fill_ptr = NULL;
 }
 
-/* Replaces x with L^-1 x, where L is the Cholesky factor and x is 0 before index `first`. */
+/* Solves a triangular system: replaces x with L^-1 x, where L is the Cholesky factor and x is 0 before index `first`. */
 static void solve_lower(const struct influence_fill *fill, size_t first, double *x)
 {
     const size_t n = fill->lost_count;
@@ -104,8 +104,8 @@ static double own_of_used(const struct influence_fill *fill, size_t sensor, doub
     return own;
 }
 
-/* Returns 1 / ((P_LL)^-1)_ll, the precision of lost sensor l given the used sensors, from a column of the factor's inverse. x:
-   scratch buffer. */
+/* Returns the precision (1 / variance) of lost sensor l given the used sensors: 1 / ((P_LL)^-1)_ll, where P_LL is the lost
+   sensors' block of the precision matrix. Computed from a column of the Cholesky factor's inverse. x: scratch buffer. */
 static double own_of_lost(const struct influence_fill *fill, size_t lost, double *x)
 {
     const size_t n = fill->lost_count;

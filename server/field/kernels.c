@@ -207,9 +207,9 @@ KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict
         value[j] = value_of(&own, sum[j], weight[j]);
 }
 
-/* Stores a value in a scalar. Reads and writes the scalar as one 64-bit number: the value is the lower half, and the flags in
-   the upper half stay unchanged. Returns the absolute change as its bits, which sort as integers like the changes themselves
-   (kernel_largest). */
+/* Stores a value in a vertex's struct scalar. Reads and writes the struct as one 64-bit number: the value is the lower half,
+   and the flags in the upper half stay unchanged. Returns the absolute change as its bits, which sort as integers like the
+   changes themselves (kernel_largest). */
 static inline int32_t put(struct scalar *restrict at, float value)
 {
     _Static_assert(sizeof(*at) == 8 && offsetof(struct scalar, value) == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "value first");

@@ -59,7 +59,8 @@ static void add_sensor(struct field_layout *layout, struct layout_sensor sensor)
     layout->sensors[layout->sensor_count++] = sensor;
 }
 
-/* Adds a sensor of the asset file. number: the sensor's index among the group's sensors with a known position. */
+/* Adds to the layout a sensor whose distances are in the asset file. number: the sensor's index among the group's sensors with
+   a known position. */
 static void add_prepared(struct field_layout *layout, const struct scene_sensor *sensor, size_t number)
 {
     const struct asset_view *view = &layout->file->view;
@@ -158,8 +159,7 @@ void layout_set_point(const struct asset_view *file, const struct layout_points 
 
 /* Returns the distance from point p in a triangle to a virtual source s in the triangle's plane that has the given distances
    from the corners: |p - s|^2 = sum_k part_k (|corner_k - s|^2 - |corner_k - p|^2), with part_k the barycentric coordinates of
-   p. If paths from two sides meet within the triangle, no such source exists; the triangle inequality then bounds the distance.
-   */
+   p. If paths from two sides meet within the triangle, no such source exists; the triangle inequality then bounds the distance. */
 static float along_at(const struct field_layout *layout, const struct layout_sensor *sensor, const float *along_m, size_t point)
 {
     const float *part = layout->points->parts[point], *away_m = layout->points->away_m[point];

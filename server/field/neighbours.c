@@ -50,7 +50,8 @@ static float *distances_between(const struct field_layout *layout)
     return along_m;
 }
 
-/* Returns true if another usable sensor is on the same body. Otherwise, the prediction would consist of rounding errors. */
+/* Returns true if another sensor with a usable reading is on the same connected surface (body). Otherwise, the prediction would
+   consist of rounding errors. */
 static bool is_predictable(const struct neighbours *neighbours, const uint8_t *used, size_t sensor)
 {
     const size_t n = neighbours->layout->sensor_count;
@@ -204,7 +205,7 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
     return count;
 }
 
-/* Predicts all sensors from the readings of a snapshot. The caller frees the result (mem_free). */
+/* Predicts the reading of each sensor from the readings of the others in a snapshot. The caller frees the result (mem_free). */
 static struct neighbour *predict_from(const struct neighbours *neighbours, const struct snapshot *snapshot)
 {
     const size_t count = neighbours_count(neighbours);

@@ -97,8 +97,8 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     float most_m = 0, scratch[KERNEL_BLOCK];
     for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
         size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
-        /* uses the distances along triangles even for the heat method: both get the same colour range, so that their pictures
-           can be compared */
+        /* uses the asset file's distances along triangles even for views of heat-method distances: both get the same colour
+           range, so that their pictures can be compared */
         if (mode != DISTANCE_EUCLIDEAN)
             kernel_distances(asset_distance_codes(view, column, at), number, scratch);
         else
@@ -108,7 +108,7 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     return most_m;
 }
 
-/* Rounds up so that the third significant digit becomes 0 or 5: 16.375 becomes 16.5. */
+/* Rounds a range of values up so that the third significant digit becomes 0 or 5: 16.375 becomes 16.5. */
 static double rounded_up(double most_m)
 {
     double step = 0.5 * pow(10, floor(log10(most_m)) - 1);

@@ -36,8 +36,9 @@ static struct nearest nearest_of(const struct pixel_field *field, const float po
     return nearest;
 }
 
-/* Returns a sensor's weight; *term receives the factor with which the sensor's value enters the sum. near_log2: log2 of near_m.
-   top: for interpolation paper, the largest exponent of all sensors at this point, which prevents overflow. */
+/* Returns a sensor's weight at a point; *term receives the factor with which the sensor's value enters the sum. near_log2: log2
+   of near_m, the distance to the nearest sensor. top: for the interpolation `paper`, the largest exponent of all sensors at
+   this point, which prevents overflow. */
 static float weight_of(const struct pixel_field *field, const struct pixel_sensor *sensor, float distance_m, float near_m, float near_log2,
                        float top, float *term)
 {

@@ -16,7 +16,7 @@
 enum { SCALE_BREAKS = PLANT_BREAKS, SCALE_EDGES = 64 };
 struct scale {
     const struct colormap *map;
-    double min, max; /* MIN and MAX of the scale: min < max, and both above 0 if `log` */
+    double min, max; /* ends of the scale: min < max, and both above 0 if the scale is logarithmic (`log`) */
     bool log;
     double interval;             /* width of bands; 0: none */
     double breaks[SCALE_BREAKS]; /* ascending values that separate the bands of colour; they replace `interval` */
@@ -26,15 +26,15 @@ enum { SCALE_BELOW = -1, SCALE_ABOVE = 256 };
 
 /* Returns the value's position on the scale, 0 at MIN and 1 at MAX; value must be positive if the scale is logarithmic. */
 double scale_place(const struct scale *scale, double value);
-/* Returns the value at a position; the inverse of scale_place(). */
+/* Returns the value at a position on the scale (0 at MIN, 1 at MAX); the inverse of scale_place(). */
 double scale_value(const struct scale *scale, double place);
 /* Returns the index in the colour map for a finite value: 0..255, SCALE_BELOW or SCALE_ABOVE. */
 int scale_index(const struct scale *scale, double value);
-/* Writes the colour of a value. */
+/* Writes the scale's colour of a value into rgb. */
 void scale_look_up(const struct scale *scale, double value, uint8_t rgb[3]);
 /* Writes the values at which bands meet, ascending. Returns their number; 0 if there are no bands, or more than SCALE_EDGES values. */
 int scale_edges(const struct scale *scale, double edges[SCALE_EDGES]);
-/* Returns the smallest change that can change a value's colour. */
+/* Returns the smallest difference of two values that may show in their colours. */
 double scale_step(const struct scale *scale);
 
 #endif

@@ -10,8 +10,10 @@
 
 struct update; /* defined in update.h */
 
-struct state_input {           /* contribution of one sensor to the sums from which the field (interpolated values) is computed */
-    double value;              /* the sensor's reading in engineering units; for interpolation paper scaled to 0..1 */
+struct state_input { /* contribution of one sensor to the sums from which the field (interpolated values) is computed */
+    /* the sensor's reading in engineering units; for the interpolation `paper` scaled to 0..1, from the lowest to the highest
+       reading */
+    double value;
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
 
@@ -27,8 +29,10 @@ struct field_state {
     size_t room;             /* number of vertices for which `at` (scalars) and `sums` have room */
     double error_limit;      /* error above which a vertex is marked uncertain; compared with weights->errors; initially 0 */
     unsigned errors_version; /* value of weights->errors_version when vertices were last marked uncertain */
-    double error_scale;      /* factor that converts an element of weights->errors to the error of a drawn value */
-    /* number of updates that added changes to the sums since the sums were last computed in full; the rounding errors accumulate */
+    /* factor that converts an element of weights->errors, which has no unit, to the error of a value in the drawn picture */
+    double error_scale;
+    /* number of updates so far that only added changes of readings to the sums; once rounding errors have accumulated, the sums
+       are computed in full again */
     unsigned added;
     /* [sensor of the layout]. now: readings from the newest snapshot; shown: readings from which the scalars (values at the
        vertices) were computed */
@@ -41,7 +45,7 @@ struct field_state {
         uint8_t *marked;
     } lists[2];
     struct update *update; /* update in progress; NULL: none */
-    size_t wanted;         /* number of vertices requested since the last update, always from the start of the file */
+    size_t wanted;         /* number of vertices, from the first of the asset file on, that callers requested since the last update */
     uint64_t used;
     struct field_state *next;
 };
@@ -52,16 +56,17 @@ struct field_state *state_create(int asset, struct field_layout *layout, const s
 /* Frees the state. Accepts a pointer to NULL; sets the pointer to NULL. */
 void state_destroy(struct field_state **state);
 size_t state_bytes(const struct field_state *state);
-/* Returns how many bytes the state would grow by with room for the first `count` vertices. */
+/* Returns by how many bytes the state's memory would grow with room for the first `count` vertices. */
 size_t state_more_bytes(const struct field_state *state, size_t count);
 /* Allocates memory for the first `count` vertices; assets far from the camera need few. Returns false when out of memory, with nothing
    changed. */
 bool state_grow(struct field_state *state, size_t count);
 
-/* Reads the snapshot into state->now, state->usable and the ages. baseline: subtracted to give a difference; NULL: unknown. */
+/* Reads the sensors' readings from a snapshot into state->now, state->usable and the ages. baseline: snapshot to subtract, for
+   views of differences; NULL: the baseline is unknown. */
 void state_read(struct field_state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
-/* For prepared interpolations: sets the values of lost sensors in state->now to those that follow from the other sensors. The
-   state's weights must match the qualities in state->now. */
+/* For interpolations with weights prepared by plantcast-prep: replaces the values of sensors without a usable reading in
+   state->now by those that follow from the other sensors. The state's weights must be for the qualities in state->now. */
 void state_fill(struct field_state *state);
 /* Returns true if state->weights must be replaced, because they were computed for another set of usable sensors than that in
    state->now. */

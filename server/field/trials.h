@@ -17,9 +17,9 @@ struct trial_reach *trial_reach_create(float *distance_m);
 void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
-    int tag, asset;     /* tag of the sensor, and the only asset that it is on */
-    float surface_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
-    double place_m[3];  /* position of the sensor in plant coordinates */
+    int tag, asset;     /* index of the moved sensor's tag, and index of the only asset that the sensor is on in this trial */
+    float surface_m[3]; /* trial position of the sensor in metres, in the coordinates of the asset file */
+    double place_m[3];  /* trial position of the sensor in metres, in plant coordinates */
     uint32_t vertex;    /* vertex nearest to the position */
     /* geodesic distances from the trial position; NULL: not known yet, straight-line distances are used meanwhile */
     struct trial_reach *reach;
@@ -51,7 +51,7 @@ enum { TRIALS_KEPT = 16 };
 void trials_drop(struct trials *trials, uint32_t id);
 /* Returns true if the trial exists and has not been dropped. */
 bool trials_live(struct trials *trials, uint32_t id);
-/* Returns the trial, held until trials_give(); NULL: there is none. */
+/* Returns the trial with this id, which stays valid until trials_give(); NULL: there is none. */
 const struct trial *trials_take(struct trials *trials, uint32_t id);
 /* Releases a trial. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trials_give(struct trials *trials, const struct trial **trial);

@@ -5,8 +5,8 @@
 #define FIELD_UPDATE_H
 #include "field/state.h"
 
-/* Begins an update of at least the first `count` vertices. Until the update ends, state->now must not change, and the scalars
-   must not be read. */
+/* Begins an update of the values at the first `count` vertices or more. Until the update ends, state->now must not change, and
+   the scalars must not be read. */
 void update_begin(struct field_state *state, size_t count);
 /* Does about `work` nanoseconds (of one core) of the update, but at least one block. Returns true once it is done;
    state->update is then NULL. */
@@ -19,7 +19,8 @@ bool update_is_light(const struct field_state *state);
 void update_run(struct field_state *state);
 /* Completes the update after update_run(). Call only in the thread that owns the field. */
 void update_end(struct field_state *state, uint64_t *versions);
-/* Returns true if the readings in state->now differ by no more than the range that preparation assumed. */
+/* Returns true if the spread of the readings in state->now is at most the range that plantcast-prep assumed when it subdivided
+   triangles. */
 bool update_is_in_range(const struct field_state *state);
 /* Abandons the state's update in progress, if any. */
 void update_forget(struct field_state *state);

@@ -12,16 +12,18 @@
 #include "base/system/huge_pages.h"
 #include "plant/influence.h"
 
-/* for interpolation gp: smallest fraction of the prior's variance that readings must remove for a vertex to have data */
+/* for the interpolation gp (Gaussian process): smallest fraction of the variance expected without readings that readings must
+   remove for a vertex to have data */
 #define MIN_KNOWN_PART 0.1
 /* for interpolation fin: smallest fraction of a value that must come from sensors rather than ambient for a vertex to have data */
 #define MIN_SENSOR_SHARE 0.1
 
-/* largest standard deviation of interpolation gp to show, as a multiple of the prior's; without this limit it would be
-   unbounded on a body whose sensors are all lost */
+/* largest standard deviation that the interpolation gp (Gaussian process) shows, as a multiple of that expected without
+   readings; without this limit it would be unbounded on a body whose sensors are all lost */
 #define MAX_DEVIATIONS 4.0
 
-/* first bytes of a struct weights_key: everything common to all sensors. Must have no padding, because keys are compared bytewise */
+/* first part of the key by which cached weights are found: everything common to all sensors. Must have no padding, because keys
+   are compared bytewise */
 struct key_head {
     const struct asset *file;
     uint32_t interpolation, distance;
@@ -144,7 +146,7 @@ static bool take_errors(struct weights *weights, const float *errors)
         for (int b = 0; b < WEIGHTS_ERRING; b++)
             erring[b] += errors[v] >= ldexpf(1, -b);
     }
-    for (int b = 0; b < WEIGHTS_ERRING; b++) /* counts vertices in integers, because a float counter stops growing at 2^24 */
+    for (int b = 0; b < WEIGHTS_ERRING; b++) /* counts vertices in integers, because counting in a float would stop at 2^24 */
         weights->erring[b] = (float)((double)erring[b] / (double)weights->layout->vertex_count);
     weights->errors_version = 1;
     return weights->errors;
@@ -186,7 +188,7 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
     struct weights *weights = mem_new(sizeof(*weights));
     weights->layout = layout;
     weights->interpolation = params->interpolation;
-    /* prepared interpolations always use distances along the surface, whatever the user chose */
+    /* interpolations prepared by plantcast-prep always use distances along the surface, whatever the user chose */
     weights->distance = interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance;
     weights->power = (float)params->power;
     weights->reach_m = (float)params->reach_m;
@@ -397,8 +399,8 @@ static enum place place_of(float near_m, float lost_m, float no_limits_m, float 
     return lost_m < near_m ? PLACE_LOST : PLACE_GOOD;
 }
 
-/* fin: computes how many metres nearer the sensors would have to be to determine MIN_SENSOR_SHARE of the value. The fraction
-   that they determine falls by a factor of e per decay length. */
+/* for the interpolation fin, computes how many metres nearer the sensors would have to be to determine MIN_SENSOR_SHARE of the
+   value. The fraction that they determine falls by a factor of e per decay length. */
 static void find_beyond(struct weights *weights, size_t begin, size_t count)
 {
     double share[KERNEL_BLOCK] = { 0 };
@@ -421,8 +423,8 @@ void weights_deviations(const struct weights *weights, size_t begin, size_t coun
     }
 }
 
-/* gp: computes how many metres nearer the sensors would have to be to remove MIN_KNOWN_PART of the prior's variance. The
-   fraction that they remove falls by a factor of e^2 per decay length. */
+/* for the interpolation gp, computes how many metres nearer the sensors would have to be to remove MIN_KNOWN_PART of the
+   variance expected without readings. The fraction that they remove falls by a factor of e^2 per decay length. */
 static void find_unknown(struct weights *weights, size_t begin, size_t count)
 {
     float deviations[KERNEL_BLOCK];
