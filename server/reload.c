@@ -298,8 +298,7 @@ static bool wait_for_core(struct reload *reload)
     return !must_wait(reload);
 }
 
-/* Reloads the plant. Returns false if an error, already reported, prevented that; the daemon then continues with the old plant.
-   */
+/* Reloads the plant. Returns false if an error, already reported, prevented that; the daemon then continues with the old plant. */
 static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };

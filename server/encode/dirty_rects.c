@@ -7,8 +7,7 @@
 
 #include "base/mem.h"
 
-/* cost of one more rectangle, given as a number of pixels: its header and tables take as many bytes as that many encoded pixels
-   */
+/* cost of one more rectangle, given as a number of pixels: its header and tables take as many bytes as that many encoded pixels */
 static const long PART_COST_PX = 4096;
 
 static const uint8_t *row(const struct frame *frame, int x_px, int y_px)

@@ -13,8 +13,7 @@
 #define FIELD_DRIFT_H
 #include "field/neighbours.h"
 
-/* DRIFT_HOURS: hours in a week; DRIFT_HOURS_LEAST: a verdict requires at least this many hours in which all sensors have values
-   */
+/* DRIFT_HOURS: hours in a week; DRIFT_HOURS_LEAST: a verdict requires at least this many hours in which all sensors have values */
 enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 };
 enum { DRIFT_NEAREST = 2 }; /* maximum number of nearest sensors whose readings are terms of the model */
 /* A drift over the week of this size must be found. In standard deviations (member scatter of struct drift). */

@@ -30,8 +30,7 @@ static double band_count(const struct scale *scale)
 }
 
 /* Returns the position (0..1) in the colour map of the colour of the band that contains the value. Comparison and division use
-   floats: values are stored as floats, so in double precision a value at the edge of a band could be slightly below that edge.
-   */
+   floats: values are stored as floats, so in double precision a value at the edge of a band could be slightly below that edge. */
 static double band_place(const struct scale *scale, double value)
 {
     if (scale->break_count > 0) {

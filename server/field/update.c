@@ -156,8 +156,7 @@ bool update_is_in_range(const struct field_state *state)
 }
 
 /* Chooses the limit on errors of the weights above which vertices are marked uncertain. The limit stays while it is safe and
-   not much too strict, so that slightly changed readings do not rebuild all flags. Returns true if the flags must be set again.
-   */
+   not much too strict, so that slightly changed readings do not rebuild all flags. Returns true if the flags must be set again. */
 static bool choose_error_limit(struct field_state *state)
 {
     const struct weights *weights = state->weights;

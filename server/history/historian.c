@@ -172,8 +172,7 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
 }
 
 /* Records the Good readings whose newest sample is older than before_us, at the beginning of a month and at the end of the run.
-   So each month's file has the values at its beginning, and values hold until the daemon ends. Call it after take_qualities().
-   */
+   So each month's file has the values at its beginning, and values hold until the daemon ends. Call it after take_qualities(). */
 static void repeat_readings(struct historian *historian, int64_t before_us, int64_t mono_ns, int64_t utc_ns)
 {
     struct history_point newest;
@@ -570,8 +569,7 @@ static void tick(struct historian *historian, bool last)
     bool new_month = historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000);
     if (new_month)
         /* At the end of a month, records every tag's newest sample in the old month's file. A tag's line that continues in the
-           next month then starts from a point on disk, not from a sample that is only in memory and would be lost in a crash.
-           */
+           next month then starts from a point on disk, not from a sample that is only in memory and would be lost in a crash. */
         recorder_end(historian->recorder, &historian->waiting);
     if (!historian->stands_by && (new_month || last))
         repeat_readings(historian, new_month ? month_begin_us(month_of(utc_ns / 1000)) : utc_ns / 1000 - REPEAT_US, mono_ns, utc_ns);

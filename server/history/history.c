@@ -388,8 +388,7 @@ void history_series_finish(struct history_series *series)
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
 /* Returns true if the tag has no value at t_us: its newest recorded sample is older than the tag's `Stale s` (time in seconds
-   for which a value stays usable) allows. If samples had continued to arrive, the historian would have recorded a newer point.
-   */
+   for which a value stays usable) allows. If samples had continued to arrive, the historian would have recorded a newer point. */
 static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
 {
     return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&

@@ -28,8 +28,7 @@ struct import_counts {
     struct charset_choice encoding;
     bool exported; /* true: the file has the columns of `plantcast history export` */
     int64_t from_us, to_us;
-    /* minimum and maximum over all tags, in microseconds, of the longest time between two samples that does not count as a gap
-       */
+    /* minimum and maximum over all tags, in microseconds, of the longest time between two samples that does not count as a gap */
     int64_t longest_us[2];
 };
 

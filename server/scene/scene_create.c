@@ -411,8 +411,7 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
     memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
     camera->fov_deg = view->fov_deg;
-    /* the camera looks straight down, so that `up` is parallel to the view, which is invalid: sets `up` to north, as on a map
-       */
+    /* the camera looks straight down, so that `up` is parallel to the view, which is invalid: sets `up` to north, as on a map */
     if (!camera_valid(camera))
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }

@@ -190,8 +190,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
    it after a pause. Returns true if it did either. */
 bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Tells the client which displays of its wall are connected, if that changed. there: [display - 1]: true: connected. late_us:
-   [display - 1]: UTC microseconds when that display's tile was dropped; 0: it takes part. leads: this session leads the wall.
-   */
+   [display - 1]: UTC microseconds when that display's tile was dropped; 0: it takes part. leads: this session leads the wall. */
 void session_tile_tell(struct session *session, const bool *there, const int64_t *late_us, bool leads);
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */

@@ -144,8 +144,7 @@ void session_tell_time(struct session *session);
 
 /* --- session_follow.c ------------------------------------------------------------------------------------------------- */
 
-/* Each function stores a request of the client: to follow a session, or to hand over the lead. The event loop carries it out.
-   */
+/* Each function stores a request of the client: to follow a session, or to hand over the lead. The event loop carries it out. */
 void session_ask_follow(struct session *session, const struct message *message);
 void session_ask_lead(struct session *session, const struct message *message);
 

@@ -48,8 +48,7 @@ bool alarm_status_is_cleared(enum alarm_status status);
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind);
 
 /* Sort key of the alarms of one tag; the tag shows the alarm that comes first. Active alarms come before alarms whose cause is
-   gone. Among these, the more urgent priority comes first, then the outer limit (HH before H), then the unacknowledged alarm.
-   */
+   gone. Among these, the more urgent priority comes first, then the outer limit (HH before H), then the unacknowledged alarm. */
 struct alarm_grade {
     int priority;
     enum alarm_kind kind;

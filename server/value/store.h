@@ -52,8 +52,7 @@ int64_t store_aged_ns(struct store *store, int tag, int64_t now_mono_ns);
 void store_unlisten(struct store *store, store_listener *listener, void *arg);
 /* Sets the function that is called when a reading, an alarm or a link has changed. The thread that makes the change calls it
    under the store's lock: once, and not again before store_take(). It is not called when time alone makes a reading stale;
-   store_take() returns when that will be. NULL removes the callback, which is no longer called once this function has returned.
-   */
+   store_take() returns when that will be. NULL removes the callback, which is no longer called once this function has returned. */
 void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
 /* Writes samples that arrived at this time. If reading the device failed, call store_link_lost() or store_tags_lost() instead. */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);

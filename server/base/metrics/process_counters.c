@@ -44,8 +44,7 @@ static int64_t boot_s(void)
 static int64_t count_files(void)
 {
     DIR *folder = opendir("/proc/self/fd");
-    /* number of open descriptors; starts at -3 because "." and "..", and the descriptor of the folder itself, are counted too
-       */
+    /* number of open descriptors; starts at -3 because "." and "..", and the descriptor of the folder itself, are counted too */
     int64_t count = -3;
     for (; folder && readdir(folder);)
         count++;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths to one value in JSON, in the syntax of JSONPath (RFC 9535): `$.name['odd name'][0][?@.id=='A.T2'].v`. The leading `$.`,
-   and `@.` in filters, may be omitted. Selectors of several values (wildcards, slices, `..`) are refused. Call from any thread.
-   */
+   and `@.` in filters, may be omitted. Selectors of several values (wildcards, slices, `..`) are refused. Call from any thread. */
 #ifndef PLANT_SOURCES_JSON_PATH_H
 #define PLANT_SOURCES_JSON_PATH_H
 #include <stdbool.h>

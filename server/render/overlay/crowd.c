@@ -52,8 +52,7 @@ static void put(struct item_buckets *crowd, int index)
     *head = index;
 }
 
-/* Counts the chosen markers in one grid cell whose squared distance from `item` is less than `least`; stops at MAX_NEIGHBOURS.
-   */
+/* Counts the chosen markers in one grid cell whose squared distance from `item` is less than `least`; stops at MAX_NEIGHBOURS. */
 static int count_cell(const struct item_buckets *crowd, double column, double row, const struct crowd_item *item, double least)
 {
     int count = 0;

@@ -11,8 +11,7 @@ struct caption { /* caption of one half */
     int count;
 };
 
-/* Adds a line to the caption of one half. word: text of the line, in which `value` replaces {}; value NULL: the text has no {}.
-   */
+/* Adds a line to the caption of one half. word: text of the line, in which `value` replaces {}; value NULL: the text has no {}. */
 static void add_line(struct caption *caption, const struct pen *pen, enum overlay_word word, const char *value)
 {
     if (caption->count < MAX_LINES)
