@@ -177,7 +177,8 @@ static void say_empty_nodes(const struct gltf_model *model)
     text_finish(&names);
 }
 
-/* Prints a report line for each node whose triangles have no area. Instances that share a node number count as one node. */
+/* Prints a record for the import's report (format: findings.h) for each node whose triangles have no area. Instances that share
+   a node number count as one node. */
 static void say_flat_nodes(const struct gltf_model *model)
 {
     for (uint32_t i = 0, next; i < model->node_count; i = next) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts the unreadable primitives of an RVM file by group, and prints one report line (format: findings.h) per group. */
+/* Sorts the unreadable primitives of an RVM file by group, and prints one record per group for the import's report (format:
+   findings.h). */
 #include "preprocess/import/rvm_losses.h"
 
 #include <stdlib.h>

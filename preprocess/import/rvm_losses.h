@@ -21,9 +21,9 @@ struct rvm_losses { /* zero-initialise */
 };
 
 void rvm_losses_add(struct rvm_losses *losses, int node, int kind, size_t byte, const char *why);
-/* Sorts the lost primitives and appends report lines (format: findings.h): for each group without triangles, each group that
- * lost some of its primitives, and the groups of obstruction and insulation volumes. primitives[i]: number of primitives in the
- * file for node i of the model. */
+/* Sorts the lost primitives and appends records for the import's report (format: findings.h): for each group without triangles,
+   each group that lost some of its primitives, and the groups of obstruction and insulation volumes. primitives[i]: number of
+   primitives in the file for node i of the model. */
 void rvm_losses_say(struct rvm_losses *losses, const struct cad_model *model, const size_t *primitives, struct text *said);
 void rvm_losses_finish(struct rvm_losses *losses);
 

@@ -387,8 +387,9 @@ export class Session {
         this.hello(isParam ? this.helloParts : this.helloParts.slice(0, -1));
     }
 
-    // Returns a Map from "tag/half" to { occluded, value, quality } for a picture, with its `isolines`; forgets the markers of earlier
-    // pictures. Tags that are not in the Map have no marker: hidden, clipped or behind the camera. Returns null if no markers are known.
+    // Returns a Map from "tag/half" (half of a split view: 0 left, 1 right) to { occluded, value, quality } for a picture, with
+    // its `isolines`; forgets the markers of earlier pictures. Tags that are not in the Map have no marker: hidden, clipped or
+    // behind the camera. Returns null if no markers are known.
     markersOf(seq) {
         let newest = null;
         for (const known of [...this.markers.keys()].sort((a, b) => a - b).filter((key) => key <= seq)) {

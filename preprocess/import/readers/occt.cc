@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP ENCODING`: reads STEP and IGES with Open CASCADE, in its own
- * process. The assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files, this
- * program builds only some solids (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints report lines (format:
- * findings.h). On failure the last line on stderr is the reason. */
+   process. The assembly tree becomes nodes; each part is tessellated once and shared by its placements. For IFC files, this
+   program builds only some solids (ifc_shapes.hh), and UNITS is the path of a list of elements. Prints records for the import's
+   report (format: findings.h). On failure the last line on stderr is the reason. */
 #include <BRepBndLib.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESControl_Reader.hxx>

@@ -248,9 +248,9 @@ export class Notes {
 
     // positions that follow the picture
 
-    // Places the pins of notes in the left half of the picture. The newest pins are placed first, so that only older pins, which are drawn
-    // below the others, get longer stems. While the camera moves, a pin keeps its distance from its point as long as it covers nothing, so
-    // that it does not jump.
+    // Places the pins of notes in the left half of a split view, or in the whole picture. The newest pins are placed first, so
+    // that only older pins, which are drawn below the others, get longer stems. While the camera moves, a pin keeps its
+    // distance from its point as long as it covers nothing, so that it does not jump.
     show() {
         const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];
         const project = half && projector(picture.camera, half.width, picture.fullHeight), { wide, high } = this.overlay;

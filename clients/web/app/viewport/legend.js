@@ -77,8 +77,8 @@ export function titleOf({ model }, params) {
 }
 
 export class Legend {
-    // paramsOf: returns the picture parameters of the half of the view that this legend explains, or null if the legend stays
-    // empty.
+    // paramsOf: returns the picture parameters of the half of a split view (or the whole view) that this legend explains, or
+    // null if the legend stays empty.
     constructor({ session, element, paramsOf, lying = phone }) {
         Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));

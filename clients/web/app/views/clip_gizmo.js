@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The clip gizmo: handles with arrows on the clip plane, or on the sides and at the centre of the clip box, for mouse, touch,
-// pen and keys. The handles move with the picture in each half of the view. Loaded on the first use of clipping.
+// pen and keys. The handles move with the picture in each half of a split view. Loaded on the first use of clipping.
 import { projector } from '../../core/camera.js';
 import { numberText } from '../../core/format.js';
 import { alongSight, beforeEye, facing, gripsOf, moveBox, moveGrip, spotsOf, wholeOf } from '../../core/clip_gizmo.js';

@@ -34,7 +34,7 @@ export class Compare {
         return this.session.model.plant.time_zone;
     }
 
-    // The session of the page in the right half; null until its first picture.
+    // The session of the page in the right half of the window; null until its first picture.
     get other() {
         const page = this.frame?.contentWindow?.plantcast;
         return page?.session.welcomed && page.session.picture ? page.session : null;
@@ -124,7 +124,7 @@ export class Compare {
             this.go(this.ago.value === 'now' ? null : left - Number(this.ago.value) * 1e6, this.ago.value);
     }
 
-    // us: the instant of the right half; null: the present.
+    // us: the instant that the right half of the window shows; null: the present.
     go(us, chosen = '') {
         this.atUs = us;
         this.ago.value = chosen;
