@@ -7,9 +7,10 @@
 
 /* Parses a line's sequence number and hash, `NUMBER HASH` or `NUMBER:HASH`. Returns false if the text has neither form. */
 bool audit_head_parse(const char *text, struct audit_chain *head);
-/* Reads PATH.head. Returns false if the file does not exist or cannot be parsed. */
+/* Reads sequence number and hash of the audit trail's last line from PATH.head. Returns false if the file does not exist or
+   cannot be parsed. */
 bool audit_head_read(const char *path, struct audit_chain *head);
-/* Writes PATH.head. Returns false if it cannot be written. */
+/* Writes sequence number and hash of the audit trail's last line to PATH.head. Returns false if the file cannot be written. */
 bool audit_head_write(const char *path, const struct audit_chain *head);
 
 #endif

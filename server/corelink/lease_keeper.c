@@ -51,7 +51,7 @@ struct lease_keeper {
     /* --- below: under thread.lock */
     struct lease lease;
     char standby[LEASE_NODE_BYTES]; /* name of the standby core that is connected to this leader, or was until gone_ns */
-    int64_t gone_ns;                /* time when the standby disconnected; 0: it is connected */
+    int64_t gone_ns;                /* time when the standby core disconnected from this leader; 0: it is connected */
     bool follows;                   /* true: the standby has the same version and configuration as this core */
     char *refusal;                  /* why the leader refused this node as its standby; NULL: not refused */
     /* true: this leader has yet to change the lease's database row so that it gives the lease to `standby` */
@@ -63,7 +63,7 @@ struct lease_keeper {
     } questions[ASKED];
 };
 
-/* Returns the time on the clock used for the lease: it keeps running while the machine sleeps, and nobody can set it. */
+/* Returns the time on the clock by which leases end: it keeps running while the machine sleeps, and nobody can set it. */
 static int64_t now_of_lease(void)
 {
     struct timespec now;
@@ -107,7 +107,8 @@ static void set_well(struct lease_keeper *keeper)
     counter_set(keeper->counters.database, 1);
 }
 
-/* Returns the timeout for database requests: a leader's remaining lease time, but at least MIN_TIMEOUT_NS; at most MAX_TIMEOUT_NS. */
+/* Returns the timeout for requests to the database: for a leader its remaining lease time, in any case at least MIN_TIMEOUT_NS
+   and at most MAX_TIMEOUT_NS. */
 static int64_t request_timeout_ns(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -257,7 +258,8 @@ static void look(struct lease_keeper *keeper)
     memcpy(keeper->led_by, row.leader, sizeof(keeper->led_by));
 }
 
-/* Logs once that this node does not take over, although nobody leads, because the leader refused it as standby. */
+/* Logs once that this node does not take the lead, although no core leads, because the last leader refused this node as its
+   standby. */
 static void tell_barred(struct lease_keeper *keeper, bool barred, char *refusal)
 {
     if (barred && !keeper->told_barred)

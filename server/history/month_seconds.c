@@ -27,7 +27,8 @@ static int read_mark(struct month_file *file, int64_t *mark)
     return database_fail(&file->db, code, "cannot be read");
 }
 
-/* Compares rows by time, then by tag: in this order, the differences between successive rows are small. */
+/* Compares points (rows) by time, then by tag: in this order, the differences between successive points are small and compress
+   well. */
 static int by_time_and_tag(const void *a, const void *b)
 {
     const struct month_row *x = a, *y = b;
@@ -38,8 +39,8 @@ static int by_time_and_tag(const void *a, const void *b)
     return x->order < y->order ? -1 : x->order > y->order;
 }
 
-/* Sorts the rows and writes each to `at` as four numbers: tag (with one bit for recorded or held), time, value, quality.
-   Returns the end of the written numbers. */
+/* Sorts the points (rows) of a second and writes each to `at` as four numbers: tag (with one bit for recorded or held), time,
+   value, quality. Returns the end of the written numbers. */
 static uint64_t *put_rows(uint64_t *at, struct month_row *rows, size_t count, bool held)
 {
     uint64_t last_tag = 0, last_t = 0;

@@ -242,8 +242,8 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
                      9);
 }
 
-/* Returns a request to save the tag list `after` if the user has confirmed that list (the message has its hash), otherwise
-   NULL. Takes ownership of `after`. */
+/* Returns a request to save the tag list `after`, or NULL unless the user has confirmed exactly that list (the message has its
+   hash). Takes ownership of `after`. */
 static struct tag_save *order_of(const struct plant *plant, const char *before, char *after, const struct message *message, const char *who)
 {
     char hash[17], real[PATH_MAX];

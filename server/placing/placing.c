@@ -50,7 +50,7 @@ struct placing {
     struct placing_params params;
     char *folder;
     struct trials *trials;
-    struct warm *warm; /* by asset: its relocation object, if in memory */
+    struct warm *warm; /* by asset: the asset's relocation object (computes distances of moved sensors), if in memory */
     struct place_set *sets;
     uint64_t uses, asked;
     pthread_mutex_t lock;

@@ -31,7 +31,7 @@ struct render_backend {
     bool (*step)(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
     /* Completes job->frame: its pixels, markers and labels. On failure, logs the reason and returns false. */
     bool (*end)(struct renderer *renderer, struct render_job *job);
-    /* Frees the state that the backend has stored in the job (render_job.of). */
+    /* Frees what the backend has stored in the job (render_job.of). Call it once the job is done or abandoned. */
     void (*abandon)(struct renderer *renderer, struct render_job *job);
     /* Submits all remaining work to the GPU without waiting; end() waits for the result. On failure, logs the reason and
        returns false. NULL where there is no GPU. */

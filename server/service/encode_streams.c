@@ -141,7 +141,8 @@ static struct encode_stream *add_chain(struct encode_streams *streams)
     return stream;
 }
 
-/* Returns the client's own stream if the client is its only member, so that encoder and packets are reused; otherwise NULL. */
+/* Returns the encode stream that only this client uses, if its codec is the requested one, so that encoder and packets are
+   reused; NULL: there is none. */
 static struct encode_stream *own_chain(const struct encode_streams *streams, const struct request_group *tickets)
 {
     const struct encode_stream_member *link = find(streams, tickets->tickets[0].client);
@@ -239,8 +240,7 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
 }
 
 /* Returns whether a client of the group must get the frame although it already shows the same picture (`always`). Ignores
-   requests that must decode without earlier packets (`alone`): their clients get the stored packets from the last key frame on.
-   */
+   requests that must decode without earlier packets (`alone`): their clients get the stored packets from the last key frame on. */
 static bool must_again(const struct request_group *tickets)
 {
     for (size_t i = 0; i < tickets->count; i++)

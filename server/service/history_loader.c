@@ -42,7 +42,7 @@ struct history_loader {
 
 /* --- requests, from any thread ---------------------------------------------------------------------------------------- */
 
-/* Removes request i from the list of wanted instants. The caller holds the lock. */
+/* Removes the request with index i from the list of past instants whose readings clients wait for. The caller holds the lock. */
 static void remove_at(struct history_loader *loader, size_t i)
 {
     loader->count--;

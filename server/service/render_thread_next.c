@@ -32,7 +32,7 @@ static bool waits_for_long_job(const struct render_thread *thread, const struct 
 
 struct render_turn {
     bool step;                    /* true: draw a step of the long job (a frame drawn in steps); false: serve `client` */
-    struct render_client *client; /* client to serve next; NULL: there is none before wait_until_ns */
+    struct render_client *client; /* client whose request is drawn next; NULL: no request may be drawn before wait_until_ns */
     int64_t wait_until_ns;
 };
 

@@ -484,7 +484,7 @@ void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns
     pthread_mutex_unlock(&store->lock);
 }
 
-/* Returns the earlier of next_ns and since_ns + after_ns; if the latter is not in the future, returns next_ns. */
+/* Returns the earlier of next_ns and since_ns + after_ns, but ignores since_ns + after_ns unless it is in the future. */
 static int64_t sooner(int64_t next_ns, int64_t since_ns, int64_t after_ns, int64_t now_mono_ns)
 {
     bool comes = after_ns < INT64_MAX && since_ns + after_ns > now_mono_ns;

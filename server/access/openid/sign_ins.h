@@ -34,8 +34,8 @@ void sign_ins_destroy(struct sign_ins **table); /* frees the table and sets *tab
    same address, so that no address displaces other addresses' log-ins. Returns the log-in, valid until the next call; NULL: the
    system's random number generator failed. */
 const struct sign_in *sign_ins_begin(struct sign_ins *table, const uint8_t address[16], const char *path, int64_t now_ns);
-/* Removes the log-in with that state from the table and copies it to *out, so that it can be completed only once. Returns false
-   if there is none, it has expired, or another browser began it. */
+/* Removes the log-in that the OpenID value `state` identifies from the table and copies it to *out, so that it can be completed
+   only once. Returns false if there is none, it has expired, or another browser began it. */
 bool sign_ins_take(struct sign_ins *table, const char *state, const char *binding, int64_t now_ns, struct sign_in *out);
 
 /* Adds a session of a signed-in user; takes ownership of the texts of `person`. cookie: receives the new session's secret.

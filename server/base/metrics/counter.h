@@ -12,7 +12,7 @@ static inline void counter_inc(counter *c, int64_t by)
 {
     atomic_fetch_add_explicit(c, by, memory_order_relaxed);
 }
-/* Sets a counter to a value; for counters that serve as gauges. */
+/* Sets a counter to a value; only for counters that are gauges, whose values may also fall. */
 static inline void counter_set(counter *c, int64_t to)
 {
     atomic_store_explicit(c, to, memory_order_relaxed);

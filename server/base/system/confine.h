@@ -47,7 +47,8 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES]);
 struct confine_ruleset {
     uint64_t files, tcp, scoped;
 };
-/* Returns all kinds of access that this Landlock ABI can restrict, because a kernel refuses newer flags. Pure. */
+/* Returns the flags of all kinds of access that a kernel with this Landlock ABI can restrict: it refuses a ruleset with newer
+   flags. Pure. */
 struct confine_ruleset confine_ruleset_of(int abi);
 
 /* Makes this process's memory, descriptors and environment unreadable to other processes of its user, and disables core dumps. */

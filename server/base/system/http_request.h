@@ -28,7 +28,7 @@ const char *http_request_why(const struct http_request *request, CURLcode code);
 /* Lets the transfers of a multi handle proceed until there is activity, for at most wait_ms. Removes each finished transfer
    from the multi handle and calls on_end with its CURLOPT_PRIVATE pointer. */
 void http_requests_wait(CURLM *multi, int wait_ms, void (*on_end)(void *arg, void *request, CURLcode code), void *arg);
-/* Frees handle, headers and answer, and clears the struct. */
+/* Frees the request's libcurl handle, headers and answer, and clears the struct. */
 void http_request_finish(struct http_request *request);
 
 #endif

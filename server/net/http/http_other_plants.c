@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers displays that show other plants: sends each such plant's state and picture. */
+/* Answers wall displays that show pictures of other plants: sends the state and the picture of each such plant. */
 #include <stdlib.h>
 #include <string.h>
 

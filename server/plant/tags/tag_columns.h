@@ -11,7 +11,8 @@ enum tag_column {
     /* Kepware's */
     COL_NAME, COL_ADDRESS, COL_DATA_TYPE, COL_SCAN_RATE, COL_SCALING, COL_RAW_LOW, COL_RAW_HIGH, COL_SCALED_LOW, COL_SCALED_HIGH,
     COL_ENG_UNITS, COL_NEGATE, COL_DESCRIPTION, COL_CLAMP_LOW, COL_CLAMP_HIGH,
-    COL_RESPECT_DATA_TYPE, COL_CLIENT_ACCESS, COL_SCALED_DATA_TYPE, /* columns of the program Kepware, which are accepted and ignored */
+    /* columns of tag lists that the program Kepware exports; they are accepted and ignored */
+    COL_RESPECT_DATA_TYPE, COL_CLIENT_ACCESS, COL_SCALED_DATA_TYPE,
     /* ours */
     COL_SOURCE, COL_GROUP, COL_ASSET, COL_NODE, COL_X, COL_Y, COL_Z, COL_STRENGTH, COL_DECAY, COL_BYTE_ORDER, COL_STALE,
     COL_LL, COL_L, COL_H, COL_HH, COL_NE43, COL_OPEN_CIRCUIT, COL_QUALITY_TAG,

@@ -12,7 +12,7 @@
 
 #define SOFT_KERNEL SIMD_CLONES("avx2")
 #define SOFT_INLINE SIMD_BODY
-#ifndef SOFT_SET /* suffix of functions whose files are compiled once for each instruction set (kernels.h) */
+#ifndef SOFT_SET /* suffix in the names of functions whose files are compiled once for each instruction set (kernels.h) */
 #define SOFT_SET _plain
 #endif
 #define SOFT_JOIN(name, set) name##set

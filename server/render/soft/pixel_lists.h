@@ -57,12 +57,13 @@ float pixel_lists_step(const float *scale);
 /* Makes a list of sensors for each cell and appends it to `lists`. cells: cells of one square of SQUARE_CELLS x SQUARE_CELLS cells, in the
    order of pixel_cells_order(). */
 void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field, float step, const struct pixel_cell *cells, size_t count);
-/* Sets the pointer `sensors` of all lists. Call it after the last pixel_lists_add(), which may move the array. */
+/* Sets the pointer `sensors` of each list to the list's part of the array pixel_lists.sensors. Call it after the last
+   pixel_lists_add(), which may move that array. */
 void pixel_lists_settle(struct pixel_lists *lists);
 /* Frees the lists. *lists may be zeroed, and can be used again afterwards. */
 void pixel_lists_finish(struct pixel_lists *lists);
 
-/* Returns whether a sensor's weight is its strength / distance^2. */
+/* Returns whether this field weights each sensor with its strength / distance^2, which is quick to sum. */
 static inline bool pixel_is_inverse_square(const struct pixel_field *field)
 {
     return !field->paper && field->power == 2.0f && !(field->reach_m < INFINITY);

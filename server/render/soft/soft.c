@@ -66,8 +66,8 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
     soft->environments = environments;
     soft->kept[TIER_PREVIEW].bound_bytes = PREVIEWS_BYTES;
     soft->kept[TIER_REFINED].bound_bytes = REFINED_BYTES;
-    /* keeps the buffer of the newest refined frame even if it exceeds the limit, so that changed readings can always be shown
-       by recolouring */
+    /* keeps the visibility buffer of the newest refined frame even if it exceeds the limit, so that changed readings can always
+       be shown by recolouring */
     soft->kept[TIER_REFINED].keeps_newest = true;
     soft->parts = mem_array(gpu_scene->model_count, sizeof(*soft->parts));
     soft->backdrops = sky->texels[0];

@@ -10,7 +10,7 @@ enum { TEXTURE_LEVELS = 16 };
 
 struct soft_texture {
     const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels of the texture; the finest level points into the asset file */
-    uint8_t (*coarse)[4];                       /* memory of all mipmap levels but the finest; owned by this struct */
+    uint8_t (*coarse)[4];                       /* memory that holds all mipmap levels but the finest; owned by this struct */
     const float *linear; /* table that converts a texel's byte to 0..1: to linear light for sRGB textures, to byte / 255 for others */
     int width_px, height_px, level_count;
     bool repeat;

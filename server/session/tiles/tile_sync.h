@@ -10,7 +10,7 @@
 /* Returns whether a tile takes part now: its page is visible, and it keeps up. */
 bool session_tile_takes_part(const struct session *session, int64_t now_ns);
 
-struct session_tiles { /* members of a wall's picture (tiles that are neither dropped nor hidden), and the leading session */
+struct session_tiles { /* tiles that take part in a wall's picture (neither dropped nor hidden), and the session that leads them */
     struct session *const *members;
     size_t count;
     const struct session *leader;

@@ -30,7 +30,7 @@ struct resumed {
 /* Finds the view that a secret resumes. Returns false if no view has this secret, the view has expired, or the session has
    another token than the view. */
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out);
-/* Returns whether a connected session has that number. */
+/* Returns whether a connected session has that session number, which other sessions use to follow it. */
 bool resumes_has_live(const struct resumes *resumes, uint64_t number);
 /* Drops the views of all lost connections, so that none can be resumed. Secrets of open connections stay valid. */
 void resumes_forget_gone(struct resumes *resumes);

@@ -15,7 +15,8 @@ struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint
 /* Frees the factored systems and sets *heat to NULL. *heat may be NULL. */
 void heat_destroy(struct heat **heat);
 
-/* source of heat: a point on the surface, given as a triangle and the weights of its three points */
+/* source from which distances are computed by heat: a point on the surface, given as a triangle and the weights of its three
+   points */
 struct heat_source {
     uint32_t points[3];
     double weights[3];

@@ -26,7 +26,7 @@ struct mqtt_source {
     bool link_up, link_known;
     bool subscribed;          /* true: all topics are subscribed, so a message without the retained flag has a new value */
     struct log_pace refusals; /* rate limit of the log line about refused messages */
-    char last_refused[300];   /* topic and reason of the last refused message, for the next log line */
+    char last_refused[300];   /* topic of the last refused message and the reason of its refusal, for the next log line */
     /* rate limit of the log line about a tag whose value no message has contained yet */
     struct log_pace absences;
     bool *matched; /* by index in plant->tags: true once a JSON message has contained this tag's value */

@@ -131,7 +131,8 @@ static void link_up(struct opcua_source *opcua, const struct opcua_client *clien
                  opcua_client_publishing_ms(client), config->poll_ms);
 }
 
-/* Reads all nodes if notifications of changes were lost: otherwise a value would stay old until its next change. */
+/* Reads the values of all nodes if notifications of changes were lost: otherwise a tag would keep an old value until its next
+   change. */
 static int make_up(struct opcua_source *opcua, struct opcua_client *client, int64_t *next_ns, char why[200])
 {
     int64_t now_ns = clock_mono_ns();
