@@ -7,7 +7,7 @@
 // Weights in a surface's brightness of the light from sky and ground, and of sunlight (light_scalar() in light.glsl).
 #define LIGHT_AMBIENT 0.52
 #define LIGHT_SUN 0.48
-// Brightness of the light from sky and sun, relative to white.
+// Factors on the light of the sky and on that of the sun in shading (pbr.glsl).
 #define SKY_LIGHT 0.55
 #define SUN_LIGHT 0.78
 // Reflectance of a dielectric at normal incidence.

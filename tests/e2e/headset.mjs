@@ -86,7 +86,7 @@ test('both eyes see the plant from their own places; a turned head sees it in th
     await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat', hidden: ['P-101A'] }));
     await enterVr(page);
     for (const away of [2, 20]) {
-        const eye = [0, -0.5 - away, 0]; // 2 or 20 m in front of the box's side at y = -0.5
+        const eye = [0, -0.5 - away, 0]; // the eye is 2 or 20 m in front of the box's side, which is at y = -0.5
         await lookFrom(page, eye, [0, 1, 0]);
         const { left, right } = await seen(page), row = EYE.height / 2 + (away === 2 ? 30 : 6); // row: a row of pixels beside the markers
         const trueRuns = await Promise.all([-1, 1].map(async (side) => runOf(await truth(page, eye, side), row)));
@@ -216,4 +216,4 @@ test('a lost connection covers the view until the server is back; a lost context
     });
     await hasEnded(page);
     await page.waitForFunction(() => !Object.hasOwn(globalThis.plantcast.viewport, 'invalidate'));
-}, plant, /null \(reading '0'\)/)); // the emulator reads a state of the lost context
+}, plant, /null \(reading '0'\)/)); // expected error: the emulator reads a state of the lost WebGL context

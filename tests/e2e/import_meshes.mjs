@@ -97,7 +97,8 @@ test('FBX: a geometric transform moves its own mesh and no child', { skip }, () 
     const { list } = boxed(folder, 'a.fbx', bytes);
     assert.deepEqual(list.map(({ path }) => path), ['a', 'a/Feed pump', 'a/Feed pump/Child']);
     assert.ok(near(list[2].centre, [1 + 5.08, 0.5 + 2.54, 0.25]), JSON.stringify(list[2]));
-    assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1])); /* x from 2.54 m to 7.08 m */
+    /* the node and its child extend from x = 2.54 m to 7.08 m */
+    assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1]));
 }));
 
 // A triangle as a glTF file, or as a GLB file with these chunks.

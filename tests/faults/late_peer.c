@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* LD_PRELOAD library: sockets of the peer with the IPv4 address LATE_PEER become writable only LATE_MS after poll() was first
    asked about it, as if the peer's network were slow. */
-#undef _FORTIFY_SOURCE /* with it, poll() would be defined already by a header */
+#undef _FORTIFY_SOURCE /* otherwise, glibc's header would define poll() inline, and this file could not replace it */
 #include <arpa/inet.h>
 #include <dlfcn.h>
 #include <netinet/in.h>

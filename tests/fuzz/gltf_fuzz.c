@@ -12,7 +12,8 @@
 #include "tests/support/temp.h"
 #include "tests/fuzz/promise.h"
 
-#define MOST_CUT 100000u /* maximum corners to cut: more would only be slow */
+/* maximum number of triangle corners of a model that is also cut into assets; cutting larger ones would only be slow */
+#define MOST_CUT 100000u
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 

@@ -384,7 +384,8 @@ TEST_WITH(test_operator_sees_limits, set_up, stand_tear_down)
         const uint8_t *within = frame_pixel(frame, 6, SIDE_PX - 7), *beyond = frame_pixel(frame, SIDE_PX - 4, SIDE_PX * 3 / 4);
         const uint8_t *without = frame_pixel(frame, SIDE_PX / 2, 6);
         assert_true(is_grey(within) && within[0] > 180);
-        assert_true(beyond[2] - beyond[0] > 20 && beyond[2] - beyond[0] < 80); /* sand: some more red than blue */
+        /* colour of values beyond H: sand, with some more red than blue */
+        assert_true(beyond[2] - beyond[0] > 20 && beyond[2] - beyond[0] < 80);
         assert_true(is_grey(without) && without[0] <= colormap_no_limits[0][0] && without[0] >= colormap_no_limits[1][0]);
         frame_unref(&frame);
     }

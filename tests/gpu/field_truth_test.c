@@ -143,7 +143,7 @@ TEST_WITH(test_a_part_that_nobody_reaches, set_up, stand_tear_down)
     {
         assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* no path along the surface leads to the second plate */
         assert_true(shown_at(&view, 3.5, 2) >= 0);
-        view.field.distance = DISTANCE_EUCLIDEAN; /* straight lines reach the second plate */
+        view.field.distance = DISTANCE_EUCLIDEAN; /* straight-line distances reach the second plate, too */
         assert_false(is_hatched(&view, 1.5 * side_m, 2, 1.8));
         view.field.reach_m = 1;
         assert_true(is_hatched(&view, 1.5 * side_m + 1, 2, 0.8));

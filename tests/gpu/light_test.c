@@ -214,7 +214,7 @@ TEST_WITH(test_the_nearest_sun_stands_in, keep_openness, forget_openness)
     gpu_scene_finish(&gpu_scene);
 }
 
-/* Among several cached lights, the default one is preferred. */
+/* When all lights but one are dropped, the default light stays if it is cached. */
 TEST_WITH(test_one_light_stays, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;

@@ -338,8 +338,8 @@ TEST(test_holes_let_the_sun_through)
         plate.view.tier = (enum tier)tier;
         plate.view.camera.height_m = 6;
         struct frame *frame = stand_draw(&plate.stand, &plate.view);
-        int lit = frame_pixel(frame, 17, 100)[1], shaded = frame_pixel(frame, 57, 100)[1];       /* pixels at x = -2.5 and -1.3 */
-        int through = frame_pixel(frame, 104, 100)[1], beside = frame_pixel(frame, 120, 100)[1]; /* pixels at x = 0.12 and 0.6 */
+        int lit = frame_pixel(frame, 17, 100)[1], shaded = frame_pixel(frame, 57, 100)[1];       /* pixels at x = -2.5 m and -1.3 m */
+        int through = frame_pixel(frame, 104, 100)[1], beside = frame_pixel(frame, 120, 100)[1]; /* pixels at x = 0.12 m and 0.6 m */
         print_message("# lit %d, shaded %d; through the hole %d, beside its shadow %d\n", lit, shaded, through, beside);
         assert_true(shaded < lit - 30 && abs(through - beside) < 12 && through > shaded + 20);
         frame_unref(&frame);

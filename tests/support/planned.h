@@ -37,7 +37,7 @@ static inline struct split_view *planned_split(struct renderer *renderer, const 
     return split;
 }
 
-/* Returns the frame->content that drawing the view now would give. */
+/* Returns frame->content (hash of all that a frame shows) of the frame that drawing this view now would give. */
 static inline uint64_t planned_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct split_plan *plan = split_view_plan(renderer, view, snapshot, INT64_MAX);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#define XXH_STATIC_LINKING_ONLY /* so that the hash state can be on the stack */
+#define XXH_STATIC_LINKING_ONLY /* declares XXH3's hash state completely, so that it can be on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"

@@ -16,7 +16,7 @@
 #define FEW 4             /* number of points whose error may exceed one colour step */
 #define FEW_AT_RIMS 1000  /* where reaches end, */
 #define MOST_STEPS 4.0    /* largest allowed error at any point, in colour steps */
-#define ROUNDING 1.1      /* allowance in steps, because distances are floats */
+#define ROUNDING 1.1      /* factor on the allowed error, because distances are rounded to floats */
 /* the report's error is measured at sample points; between them the error may be this many times as large */
 #define NAMED 2.0
 #define LEAST_M 1e-5      /* metres; a sensor nearer than this gets all the weight, see server/field */

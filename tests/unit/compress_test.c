@@ -14,7 +14,7 @@
 
 #define MAGIC "TESTPCK2"
 #define OLD_MAGIC "TESTPCK1"
-#define COUNT 200000 /* 32-bit words of the test's array: several chunks */
+#define COUNT 200000 /* number of 32-bit words in the test's array, enough for several chunks */
 
 static void fill(uint32_t *words, size_t count)
 {

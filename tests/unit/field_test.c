@@ -819,7 +819,7 @@ TEST(test_sums_are_made_anew_now_and_then)
     uint64_t random = sweep_seed();
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12, .seed = random));
     int tick = 0, most = 10000;
-    for (size_t i = 0; i < 12; i++) /* near 0, where floats show the smallest error */
+    for (size_t i = 0; i < 12; i++) /* the readings are near 0, where even the smallest rounding error shows in a float */
         set(&rig, i, 0.01 * (double)i, QUALITY_GOOD);
     show(&rig);
     for (int large = 0; large < 2000; large++) {

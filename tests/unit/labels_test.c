@@ -149,7 +149,8 @@ TEST(many_labels_do_not_overlap)
     assert_true(shown > 3);
 }
 
-/* Even with all markers in one place, and with none. */
+/* Of thousands of markers in one place, the nearest visible ones are drawn, and no others. An empty list of markers is
+   accepted. */
 TEST(draws_the_first_of_thousands)
 {
     enum { COUNT = 4096 };

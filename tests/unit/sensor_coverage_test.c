@@ -84,7 +84,8 @@ TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
     assert_true(fabs(gaps.next_m - 4) < 1e-6);
     assert_int_equal(gaps.next_tags[0], 0);
     assert_int_equal(gaps.next_tags[1], 1);
-    assert_true(fabs(gaps.far_m - side_m * sqrt(2) / 5) < 1e-6); /* by default a fifth of the asset's size */
+    /* far_m, the distance from which a point counts as far from sensors, is by default a fifth of the asset's size */
+    assert_true(fabs(gaps.far_m - side_m * sqrt(2) / 5) < 1e-6);
     assert_true(gaps.lost_share == 0);
 }
 

@@ -184,7 +184,7 @@ test('a point is faced from its own side, level, a little from above', () => {
     const north = face(camera, [2, 9, 3], box, 4);
     closeTo(north.eye, [2, 9 + 4 * Math.cos(Math.PI / 9), 3 + 4 * Math.sin(Math.PI / 9)]);
     closeTo(north.target, [2, 9, 3]);
-    const side = face(camera, [8, 8, 5], box, 4); // on the long side of the box, near its end
+    const side = face(camera, [8, 8, 5], box, 4); // the camera looks at the box's long side, at a point near the side's end
     assert.ok(side.eye[1] - 8 > 2 * (side.eye[0] - 8));
     const above = face(camera, [2, 4, 9], box, 4);
     assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0, 'on top: from where one is');

@@ -32,7 +32,7 @@ test('late', { timeout: 50 }, () => new Promise((done) => setTimeout(done, 300))
 test('of node: the error, and the places of helper and test', () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-reasons-')), file = join(folder, 'failing.mjs');
     writeFileSync(file, FAILING);
-    // Without this variable: otherwise the inner run would report to the outer test runner.
+    // the inner test run must not inherit NODE_TEST_CONTEXT: it would report to the outer test runner
     const { NODE_TEST_CONTEXT: _, ...env } = process.env;
     const { stdout } = spawnSync(process.execPath, ['--test', '--test-reporter=tap', file], { encoding: 'utf8', env });
     rmSync(folder, { recursive: true });

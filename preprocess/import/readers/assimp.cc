@@ -541,10 +541,10 @@ void convert(const char *input, const char *output, const char *units, const cha
     /* keep FBX pivots as nodes: otherwise children would inherit a node's GeometricTranslation, which applies only to its own mesh */
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
     text_encoding of_file;                             /* encoding in which text files are decoded before Assimp reads them */
-    importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership of the object */
+    importer.SetIOHandler(new files(&of_file, asked)); /* the importer takes ownership of this object */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-    /* Assimp takes ownership of the log stream */
+    /* the logger takes ownership of the log stream */
     Assimp::DefaultLogger::get()->attachStream(new assimp_log(logged), Assimp::Logger::Err | Assimp::Logger::Warn);
     steps |= from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent);
     const aiScene *scene = importer.ReadFile(input, steps);

@@ -67,8 +67,8 @@ export class Split {
             fillSelect(select, choices[name], right[name]);
             if (!ENGINEERS.includes(name))
                 continue;
-            // A control that the user may not change is visible only if its value differs from the left half's, or from the
-            // default of another group.
+            // A control that the user may not change (only engineers may) is visible only if its value differs from the left
+            // half's, or, if the halves show different sensor groups, from the default of the right half's group.
             const differs = right[name] !== (right.group === params.group ? params : group)[name];
             select.disabled = role !== 'engineer';
             select.parentElement.hidden = select.disabled && !differs;
