@@ -50,8 +50,8 @@ bool influence_view_init(struct influence_view *view, const void *bytes, size_t 
     }
     for (uint32_t i = 0; i < header->entry_count; i++)
         if (!entry_good(view, &view->entries[i], size)) {
-            snprintf(why, 200, "entry %u of %u: the weights of %u sensors are outside the file or not finite", i, header->entry_count,
-                     view->entries[i].sensor_count);
+            snprintf(why, 200, "entry %u of %u: the weights of %u sensors are outside the file, infinite or not numbers", i,
+                     header->entry_count, view->entries[i].sensor_count);
             return false;
         }
     return true;

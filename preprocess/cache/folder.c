@@ -107,7 +107,7 @@ int folder_open(struct folder_file *file, const char *folder, uint64_t key, char
     if (!asset_view_init(&file->view, file->bytes, file->size, why))
         goto done;
     if (file->view.header->key != key) {
-        snprintf(why, 200, "holds key %016" PRIx64, file->view.header->key);
+        snprintf(why, 200, "made from other input (key %016" PRIx64 ", expected %016" PRIx64 ")", file->view.header->key, key);
         goto done;
     }
     result = 1;

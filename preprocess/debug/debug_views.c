@@ -118,7 +118,7 @@ static void write_one(struct views *views, const struct plant_asset *asset, cons
         good = status == 0 || wrong(why, "%s cannot be written: %s", path, strerror(-status));
     }
     if (good && views->params->say)
-        fprintf(views->params->say, "%s: %zu bridges, %zu points added\n", path, surface_report(subject.surface)->bridges,
+        fprintf(views->params->say, "%s: %zu bridges across gaps, %zu points added\n", path, surface_report(subject.surface)->bridges,
                 surface_report(subject.surface)->samples);
     if (!good) {
         diag_error(views->diag, views->plant->files.path, asset->line, 0, "asset %s: %s", asset->id, why);

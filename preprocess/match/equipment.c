@@ -120,7 +120,8 @@ int equipment_choose(const struct model_index *site, const char *const *choices,
     if (found == 0)
         found = choose(site, choices, lists, count, lines);
     if (found == 0) {
-        snprintf(why, MODEL_INDEX_WHY_BYTES, "--equipment selects no node with triangles");
+        snprintf(why, MODEL_INDEX_WHY_BYTES,
+                 "--equipment selects no node with triangles: check the level or the names with `plantcast nodes`");
         found = -1;
     }
     for (int i = 0; i < count; i++)

@@ -115,7 +115,7 @@ float narrow(double value, const std::string &what)
 {
     float out = static_cast<float>(value);
     if (!std::isfinite(out))
-        refuse("%s: %g is too large", what.c_str(), value);
+        refuse("%s: %g is too large for a 32-bit float", what.c_str(), value);
     return out;
 }
 

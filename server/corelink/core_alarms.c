@@ -135,7 +135,7 @@ static const char *take_rows(struct alarm_service *service, const json_t *rows)
     {
         struct journal_entry row;
         if (!read_row(one, &row))
-            return "the core's message has an invalid alarm event";
+            return "the core's message has an invalid alarm event; do both nodes run the same version?";
         alarm_service_mirror_row(service, &row);
     }
     return NULL;
@@ -147,12 +147,12 @@ const char *core_alarms_take(struct alarm_service *service, const json_t *messag
     size_t count = json_array_size(list);
     int64_t utc_ns;
     if (!json_is_array(list) || !get_ns(message, "utc", &utc_ns))
-        return "the core's message is not a list of alarms";
+        return "the core's message is not a list of alarms; do both nodes run the same version?";
     struct alarm *alarms = mem_array(count + 1, sizeof(*alarms));
     const char *why = NULL;
     for (size_t i = 0; i < count && !why; i++)
         if (!read_one(json_array_get(list, i), utc_ns, clock_mono_ns(), &alarms[i]))
-            why = "the core's message has an invalid alarm";
+            why = "the core's message has an invalid alarm; do both nodes run the same version?";
     if (!why)
         why = take_rows(service, json_object_get(message, "rows"));
     if (!why)

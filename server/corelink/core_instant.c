@@ -65,16 +65,16 @@ const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us
 {
     const uint8_t *at = bytes;
     if (count < CORE_INSTANT_HEAD_BYTES || memcmp(at, MAGIC, sizeof(MAGIC)) != 0)
-        return "the core's answer has an unknown format: do both nodes run the same version?";
+        return "the core's answer has an unknown format; do both nodes run the same version?";
     size_t readings = get(at + 4, 4);
     *first_us = (int64_t)get(at + 8, 8);
     if (*first_us < 0 || count != CORE_INSTANT_HEAD_BYTES + readings * CORE_INSTANT_READING_BYTES)
-        return "the length of the core's answer does not match the number of readings in the answer";
+        return "the length of the core's answer does not match the number of readings in the answer; do both nodes run the same version?";
     if (snapshot && readings != snapshot->count)
         return "the core's answer has readings of more or fewer tags than this plant has: copy the core's plant file and tag list to "
                "this machine, then reload";
     for (size_t i = 0; snapshot && i < readings; i++)
         if (!read_one(at + CORE_INSTANT_HEAD_BYTES + i * CORE_INSTANT_READING_BYTES, &snapshot->readings[i]))
-            return "the core's answer has an invalid reading";
+            return "the core's answer has an invalid reading; do both nodes run the same version?";
     return NULL;
 }

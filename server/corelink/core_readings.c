@@ -65,13 +65,13 @@ static const char *read_one(struct mirrored *out, size_t tag_count, const uint8_
     uint64_t value = get64(at + 8);
     int64_t age_ns = (int64_t)get64(at + 16);
     if (tag >= tag_count)
-        return "the core's message has a reading of an unknown tag";
+        return "the core's message has a reading of an unknown tag: copy the core's tag list to this machine, then reload";
     *out = (struct mirrored){ .tag = (int)tag, .quality = get32(at + 4), .received_utc_ns = (int64_t)get64(at + 24) };
     memcpy(&out->value, &value, sizeof(value));
     out->has_value = age_ns != INT64_MAX;
     if (age_ns < 0 || (out->has_value && (age_ns > now_mono_ns + INT64_C(1000000000) * 86400 * 3650 || !isfinite(out->value))) ||
         (!out->has_value && !quality_is_bad(out->quality)))
-        return "the core's message has an invalid reading";
+        return "the core's message has an invalid reading; do both nodes run the same version?";
     out->received_mono_ns = out->has_value ? now_mono_ns - age_ns : 0;
     return NULL;
 }
@@ -80,14 +80,14 @@ const char *core_readings_read(struct core_readings *out, size_t tag_count, cons
 {
     const uint8_t *at = bytes;
     if (count < CORE_READINGS_HEAD_BYTES || memcmp(at, MAGIC, sizeof(MAGIC)) != 0)
-        return "the core's message is not a list of readings";
+        return "the core's message is not a list of readings; do both nodes run the same version?";
     out->count = get32(at + 4);
     out->utc_ns = (int64_t)get64(at + 8);
     if (out->count > tag_count || count != CORE_READINGS_HEAD_BYTES + out->count * CORE_READING_BYTES)
-        return "the length of the core's message does not match the number of readings in the message";
+        return "the length of the core's message does not match the number of readings in the message; do both nodes run the same version?";
     int64_t core_mono_ns = (int64_t)get64(at + 16);
     if (core_mono_ns < 0)
-        return "the core's message has an invalid clock time";
+        return "the core's message has an invalid clock time; do both nodes run the same version?";
     int64_t ahead_ns = now_mono_ns - core_mono_ns;
     if (out->least_ns != INT64_MAX && now_mono_ns > out->at_ns)
         out->least_ns += (now_mono_ns - out->at_ns) / DRIFT;

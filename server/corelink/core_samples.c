@@ -110,15 +110,15 @@ const char *core_samples_read(struct sample_event **out, size_t *out_count, size
     *out = NULL;
     *out_count = 0;
     if (!core_samples_is(bytes, count))
-        return "the core's message is not a list of samples";
+        return "the core's message is not a list of samples; do both nodes run the same version?";
     size_t told = get32(at + 4);
     if (told > CORE_SAMPLES_AT_ONCE || count != CORE_SAMPLES_HEAD_BYTES + told * CORE_SAMPLE_BYTES)
-        return "the length of the core's message does not match the number of samples in the message";
+        return "the length of the core's message does not match the number of samples in the message; do both nodes run the same version?";
     struct sample_event *samples = mem_array(told + 1, sizeof(*samples));
     for (size_t i = 0; i < told; i++)
         if (!read_one(&samples[i], tag_count, at + CORE_SAMPLES_HEAD_BYTES + i * CORE_SAMPLE_BYTES, now_mono_ns)) {
             mem_free(samples);
-            return "the core's message has an invalid sample";
+            return "the core's message has an invalid sample; do both nodes run the same version?";
         }
     *out = samples;
     *out_count = told;

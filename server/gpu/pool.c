@@ -125,7 +125,7 @@ struct pool_slice *pool_take(struct pool *pool, size_t count)
         page = page_create(pool, least);
     pool->expected = 0;
     if (count > pool->max_texels)
-        log_err(pool->log, "%s: %zu vertices exceed the GPU's limit of %zu texels in a buffer texture", pool->name, count,
+        log_err(pool->log, "%s: %zu vertices are too many for this GPU, whose buffer textures hold at most %zu", pool->name, count,
                 pool->max_texels);
     return page ? take_from(page, count) : NULL;
 }

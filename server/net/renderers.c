@@ -678,7 +678,7 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        why = "the peer's message is not JSON";
+        why = "the peer's message is not JSON; do both nodes run the same version?";
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
     else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)

@@ -17,7 +17,8 @@ uint8_t *png_pixels(const uint8_t *png, size_t count, int64_t width_px, int64_t 
     }
     image.format = PNG_FORMAT_RGB;
     if (image.width != width_px || image.height != height_px) {
-        snprintf(why, PNG_WHY_BYTES, "the picture's size differs from the size in the statement");
+        snprintf(why, PNG_WHY_BYTES, "the picture has %ux%u pixels, but its signed statement says %lldx%lld", (unsigned)image.width,
+                 (unsigned)image.height, (long long)width_px, (long long)height_px);
     } else if (!(pixels = mem_try_array(PNG_IMAGE_SIZE(image), 1))) {
         snprintf(why, PNG_WHY_BYTES, "the picture cannot be read: out of memory");
     } else if (!png_image_finish_read(&image, NULL, pixels, 0, NULL)) {

@@ -25,7 +25,7 @@ static bool is_signed(const struct signing_key *key, const char *statement, size
     if (strcmp(by, own) != 0)
         return FAIL("the picture was signed with another key: %s; the given key is %s", by, own);
     return signing_key_verify(key, statement, length, bytes) ||
-           FAIL("the signature is wrong: the statement was changed after it was signed");
+           FAIL("the signature is wrong: the picture's statement was changed after it was signed");
 }
 
 bool signed_statement_has_pixels(const json_t *statement, const uint8_t *rgb, int width_px, int height_px,
@@ -33,9 +33,11 @@ bool signed_statement_has_pixels(const json_t *statement, const uint8_t *rgb, in
 {
     char hash[PICTURE_HASH_BYTES];
     const char *expected = json_string_value(json_object_get(statement, "pixels_sha256"));
-    if (json_integer_value(json_object_get(statement, "width")) != width_px ||
-        json_integer_value(json_object_get(statement, "height")) != height_px)
-        return FAIL("the picture's size differs from the size in the statement");
+    json_int_t stated_width = json_integer_value(json_object_get(statement, "width")),
+               stated_height = json_integer_value(json_object_get(statement, "height"));
+    if (stated_width != width_px || stated_height != height_px)
+        return FAIL("the picture has %dx%d pixels, but its signed statement says %lldx%lld", width_px, height_px, (long long)stated_width,
+                    (long long)stated_height);
     picture_hash(rgb, 3 * (size_t)width_px * (size_t)height_px, hash);
     return (*hash && expected && !strcmp(hash, expected)) || FAIL("the pixels of the picture differ from the signed pixels");
 }
@@ -58,17 +60,18 @@ static bool has_readings(const json_t *statement, char why[SIGNED_PICTURE_WHY_BY
     if (!told)
         return true;
     picture_hash_json(told, hash);
-    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the readings do not match the hash in the statement");
+    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the readings do not match the hash in the picture's signed statement");
 }
 
 static bool is_known(const json_t *statement, char why[SIGNED_PICTURE_WHY_BYTES])
 {
     const json_t *version = json_object_get(statement, "plantcast_statement");
     if (!json_is_integer(version))
-        return FAIL("the statement was not written by Plantcast");
+        return FAIL("the picture's signed statement was not written by Plantcast");
     json_int_t number = json_integer_value(version);
     return (number >= 1 && number <= PICTURE_STATEMENT_VERSION) ||
-           FAIL("the statement has version %d; this program supports versions 1 to %d", (int)number, PICTURE_STATEMENT_VERSION);
+           FAIL("the picture's signed statement has version %d; this program supports versions 1 to %d", (int)number,
+                PICTURE_STATEMENT_VERSION);
 }
 
 json_t *signed_statement_verify(const struct signing_key *key, const char *text, size_t length, const char *signature,
@@ -76,7 +79,7 @@ json_t *signed_statement_verify(const struct signing_key *key, const char *text,
 {
     json_t *statement = NULL;
     if (is_signed(key, text, length, signature, why) && !(statement = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL)))
-        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the statement is not JSON");
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the picture's signed statement is not JSON");
     if (statement && !(is_known(statement, why) && has_readings(statement, why))) {
         json_decref(statement);
         statement = NULL;
@@ -105,7 +108,7 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
     json_t *statement = NULL;
     bool is_plain = png_is_plain(png, count, (const char *const[]){ PICTURE_STATEMENT_KEYWORD, PICTURE_SIGNATURE_KEYWORD }, 2, why);
     if (is_plain && (!text || !signature))
-        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the picture has no %s, or the file is damaged", text ? "signature" : "statement");
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the picture's file has no %s, or is damaged", text ? "signature" : "statement");
     else if (is_plain)
         statement = signed_statement_verify(key, text, length, signature, why);
     if (statement && !has_pixels(statement, png, count, why)) {
@@ -125,7 +128,8 @@ static bool read_readings(const json_t *told, const struct plant *plant, struct 
                           char why[SIGNED_PICTURE_WHY_BYTES])
 {
     if (json_array_size(told) != plant->tag_count)
-        return FAIL("the statement has readings of %zu tags; the plant has %zu tags", json_array_size(told), plant->tag_count);
+        return FAIL("the picture's signed statement has readings of %zu tags; the plant has %zu tags", json_array_size(told),
+                    plant->tag_count);
     bool *seen = mem_array(plant->tag_count, sizeof(*seen)), good = true;
     for (size_t i = 0; i < plant->tag_count && good; i++) {
         const json_t *one = json_array_get(told, i), *age = json_array_get(one, 4);
@@ -157,14 +161,15 @@ static bool read_baseline(const json_t *told, const struct plant *plant, struct 
     const char *name = json_string_value(json_object_get(told, "name"));
     int i = record->baseline_count;
     if (i == FRAME_RECORD_BASELINES || !name)
-        return FAIL("the baselines in the statement cannot be read");
+        return FAIL("the baselines (saved readings) in the picture's signed statement cannot be read");
     record->baselines[i].readings = snapshot_create(plant->tag_count);
     record->baselines[i].readings->taken_utc_ns = json_integer_value(json_object_get(told, "taken_ns"));
     record->baseline_count++;
     if (!read_readings(json_object_get(told, "readings"), plant, record->baselines[i].readings, NULL, why))
         return false;
     uint32_t id = baselines_set(baselines, name, record->baselines[i].readings);
-    return baselines_describe(baselines, id, &record->baselines[i].what) || FAIL("the baselines in the statement cannot be used");
+    return baselines_describe(baselines, id, &record->baselines[i].what) ||
+           FAIL("the baselines (saved readings) in the picture's signed statement do not fit the plant");
 }
 
 struct frame_record *signed_picture_record(const json_t *statement, const struct plant *plant, struct baselines *baselines,

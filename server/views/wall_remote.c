@@ -78,7 +78,7 @@ const char *wall_place_wrong(const struct plant *plant, const struct wall_place 
     const struct wall_display *display = &wall->displays[place->display - 1];
     for (size_t i = 0; i < display->pane_count; i++)
         if (!strcmp(display->panes[i].area, place->area))
-            return display->panes[i].kind == PANE_VIEWS ? NULL : "area: only a pane with views accepts a view, hold or pointer";
+            return display->panes[i].kind == PANE_VIEWS ? NULL : "area: only a pane with the key `views` accepts views, holds and pointers";
     return place->area[0] ? "area: the display has no such pane" : NULL;
 }
 

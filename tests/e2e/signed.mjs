@@ -127,9 +127,9 @@ function resigned(png, change) {
 test('a statement of another version is signed well, and not understood', { skip }, () => {
     for (const version of [0, 3, 1e9])
         refused(resigned(picture, (text) => text.replace('"plantcast_statement":2', `"plantcast_statement":${version}`)),
-            new RegExp(`the statement has version ${version}; this program supports versions 1 to 2`));
+            new RegExp(`the picture's signed statement has version ${version}; this program supports versions 1 to 2`));
     for (const [from, to] of [['"plantcast_statement":2', '"plantcast_statement":"2"'], ['"plantcast_statement":2,', '']])
-        refused(resigned(picture, (text) => text.replace(from, to)), /the statement was not written by Plantcast/);
+        refused(resigned(picture, (text) => text.replace(from, to)), /the picture's signed statement was not written by Plantcast/);
 });
 
 // Before session pictures were signed, statements contained neither overlay nor tier: all were complete pictures of
@@ -184,7 +184,7 @@ test('no file that would show something else is good: the chunk is named', { ski
         ['texts swapped', spliced(1, 2, chunks[2], chunks[1]), 'chunk zTXt .* in another order'],
         ['no texts', pngOf(picture, chunks.filter(({ type }) => type !== 'zTXt')), 'the PNG file has no text chunk Plantcast statement'],
         ['bytes behind a text', spliced(1, 1, { type: 'zTXt', data: Buffer.concat([chunks[1].data, hex('00')]) }),
-            'the picture has no statement'],
+            'file has no statement'],
         ['16 bits', header(8, 16), 'chunk IHDR has another format'],
         ['a palette', header(9, 3), 'chunk IHDR has another format'],
         ['transparency', header(9, 6), 'chunk IHDR has another format'],
@@ -352,7 +352,7 @@ test('a plant that was changed since is said to be another', { skip }, () => {
     const { code, err } = redraw(picture);
     writeFileSync(path('tags.csv'), tags);
     assert.notEqual(code, 0);
-    assert.match(err, /the statement has readings of 3 tags; the plant has 4|prepared/);
+    assert.match(err, /signed statement has readings of 3 tags; the plant has 4|prepared/);
     writeFileSync(path('tags.csv'), tags.replace('left', 'LEFT'));
     const renamed = redraw(picture);
     writeFileSync(path('tags.csv'), tags);

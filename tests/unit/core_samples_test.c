@@ -64,16 +64,17 @@ TEST(nonsense_is_refused)
         assert_null(got);
     }
     text.at[8] = TAGS; /* changes the first sample's tag */
-    assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample");
+    assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample; do both nodes run the same version?");
     text.at[8] = 1;
     text.at[8 + 4 + 3] = (char)0x80; /* marks the sample Bad although it has a value */
-    assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample");
+    assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample; do both nodes run the same version?");
     text.at[8 + 4 + 3] = 0;
     assert_null(read_text(&text, &got, &count));
     mem_free(got);
     memset(text.at + 4, 0xff, 4); /* states four thousand million samples */
     assert_string_equal(read_text(&text, &got, &count),
-                        "the length of the core's message does not match the number of samples in the message");
+                        "the length of the core's message does not match the number of samples in the message; "
+                        "do both nodes run the same version?");
     text_finish(&text);
 }
 

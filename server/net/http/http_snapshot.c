@@ -194,7 +194,8 @@ static void answer_picture(struct server_context *server, struct http_exchange *
     }
     request_forget(server, request);
     int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, packet->count, "plantcast-frame:", values.at)
-                      : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be drawn\n");
+                      : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR,
+                                            "the picture could not be drawn: the server's log says why\n");
     request_answered(request, status);
     text_finish(&values);
 }

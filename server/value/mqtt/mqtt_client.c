@@ -175,7 +175,7 @@ static bool log_in(struct mqtt_client *client, char why[200])
         return false;
     bool good = mosquitto_username_pw_set(client->library, login.user, login.password) == MOSQ_ERR_SUCCESS;
     if (!good)
-        snprintf(why, 200, "%.100s: cannot be used", file);
+        snprintf(why, 200, "%.100s: the user name or password is not valid UTF-8, or memory ran out", file);
     login_file_forget(&login);
     return good;
 }

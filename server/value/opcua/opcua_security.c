@@ -361,6 +361,8 @@ bool opcua_security_apply(const struct opcua_security *security, const char *log
                              has_user ? security->user_certificate : security->certificate, has_user ? security->user_key : security->key,
                              false, config->logging);
     if (!good)
-        snprintf(why, 200, "this client's certificate or key cannot be used");
+        snprintf(why, 200,
+                 "no security policy accepts this client's certificate and key: check `certificate`, `key`, `user_certificate` "
+                 "and `user_key`");
     return good && log_in(security, login, config, why);
 }

@@ -40,7 +40,7 @@ static bool read_number(const UA_Variant *variant, int element, struct stamped_v
 {
     bool is_scalar = UA_Variant_isScalar(variant);
     if (!variant->type)
-        snprintf(why, 200, "the value is null");
+        snprintf(why, 200, "the node has no value (null)");
     else if (is_scalar != (element < 0))
         snprintf(why, 200,
                  is_scalar ? "the value is not an array; remove the element in brackets from the address"
