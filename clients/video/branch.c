@@ -51,7 +51,7 @@ bool branch_begin(struct video_branch *branch)
     branch->prepare(branch, branch->pipeline);
     if (gst_element_set_state(branch->pipeline, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE) {
         if (!has_failed(branch))
-            fprintf(stderr, "plantcast-video: %s cannot start\n", branch->name);
+            fprintf(stderr, "plantcast-video: the output %s cannot start: GStreamer names no reason\n", branch->name);
         gst_element_set_state(branch->pipeline, GST_STATE_NULL);
         gst_clear_object(&branch->pipeline);
         return false;

@@ -329,8 +329,10 @@ int folder_finish(struct log *log, const char *folder, const struct folder_entry
     char *path = mem_printf("%s/" MANIFEST, folder);
     size_t size = 0;
     char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
-    json_t *old_root =
-        old ? parse(log, path, old, size, "the file will be written again, without the names of model parts that are not drawn") : NULL;
+    json_t *old_root = old ? parse(log, path, old, size,
+                                   "the file will be written again, but lacks the earlier list of textures and glTF extensions "
+                                   "that are not drawn")
+                           : NULL;
     char *text = manifest_text(log, folder, entries, count, old_root);
     json_decref(old_root);
     int status = text ? 0 : -ENOMEM;

@@ -122,7 +122,8 @@ bool node_primitives_find(struct node_primitives *parts, struct geometry *geomet
     if (triangles > MAX_TRIANGLES)
         return wrong(why, "the asset has %llu triangles, more than the limit of %llu", (unsigned long long)triangles, MAX_TRIANGLES);
     if (geometry->node_count == 0)
-        return wrong(why, model->node_count ? "none of the asset's nodes can be shown" : "the model's scene has no nodes");
+        return wrong(why, model->node_count ? "the asset's patterns (`nodes`) exclude every node of the model"
+                                            : "the model's scene has no nodes");
     if (triangles == 0)
         return no_triangles(geometry, params->nodes, why);
     qsort(parts->at, parts->count, sizeof(*parts->at), by_material);

@@ -303,7 +303,9 @@ static bool ask_encoding(const struct model_reading *reading, char encoding[CHAR
     if (good && length > 0 && length < CHARSET_NAME_BYTES) {
         memcpy(encoding, shared, length + 1);
         if (encoding[strspn(encoding, letters)])
-            good = fail(why, "the %s reader could not determine the character encoding of names", reading->format->name);
+            good = fail(why,
+                        "the %s reader could not determine the character encoding of names: set --encoding NAME",
+                        reading->format->name);
     }
     munmap(shared, CHARSET_NAME_BYTES);
     return good;

@@ -335,7 +335,9 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
     if (!good)
         snprintf(why, 300, "the fit of the Gaussian process (gp) to the readings failed: see the messages above");
     else if (!(fit.best.deviation > 0)) {
-        snprintf(why, 300, "the Gaussian process (gp) cannot be fitted: the readings of sensors on one body are always equal");
+        snprintf(why, 300,
+                 "the Gaussian process (gp) cannot be fitted, because the sensors on each connected part always have equal "
+                 "readings: set `range_m`, `noise` and `deviation` instead");
         good = false;
     } else
         *params = fit.best;

@@ -66,7 +66,8 @@ bool model_file_parse(struct model_file *file)
     int64_t start_ns = clock_mono_ns();
     if (!model_source_open(&source, file->path, file->why))
         return false;
-    bool good = source.hash == file->hash || wrong(file->why, "the model was changed while plantcast-prep was reading the file");
+    bool good = source.hash == file->hash || wrong(file->why, "the model was changed while plantcast-prep was reading the file: run "
+                                                              "plantcast-prep again");
     good = good && gltf_load(&file->parsed, &source, file->why);
     model_source_finish(&source);
     if (!good)

@@ -159,7 +159,7 @@ static bool parse_light(const json_t *o, struct params_change *out, struct messa
         return true;
     double length = sqrt(l[0] * l[0] + l[1] * l[1] + l[2] * l[2]);
     if (length < 1e-6) {
-        message_fail(error, "bad_field", "light: expected a direction, not the zero vector");
+        message_fail(error, "bad_field", "light: expected a direction, but all three numbers are 0");
         return false;
     }
     for (int i = 0; i < 3; i++)

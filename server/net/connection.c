@@ -28,8 +28,8 @@ static const struct http_refusal IN_QUERY = { 400,
 static const struct http_refusal BAD_TOKEN = { 401, .code = REFUSAL_TOKEN_UNKNOWN };
 static const struct http_refusal HELD = { 429, .code = REFUSAL_TOKEN_GUESSES };
 static const struct http_refusal TOO_LONG = { 431,
-                                              "a header with credentials (Authorization or Sec-WebSocket-Protocol) has more than "
-                                              "511 bytes\n",
+                                              "the header Authorization, Sec-WebSocket-Protocol or X-Forwarded-For has more "
+                                              "than 511 bytes\n",
                                               REFUSAL_NONE };
 static const struct http_refusal TOO_MANY = { 503, .code = REFUSAL_CONNECTIONS };
 

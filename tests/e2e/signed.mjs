@@ -230,7 +230,7 @@ test('refined frames of a session come signed where it asks for that, and are dr
     frame = readFileSync(join(path('refined'), names[0]));
     const again = redraw(frame);
     assert.equal(again.code, 0, again.out + again.err);
-    assert.match(again.out, /frame of a live session, tier refined, without legend, markers and clock/);
+    assert.match(again.out, /frame of a live session, quality refined, without legend, markers and clock/);
     assert.match(again.out, / {2}64000 of 64000 pixels agree with the redrawn picture within 1\/255/);
 });
 
@@ -240,7 +240,7 @@ test('every frame of a moving session does, if it asks for all', { skip }, () =>
     assert.ok(frames > 1 && frames === count && frames === names.length, `${count} of ${frames}, ${names.length} files`);
     const again = redraw(readFileSync(join(path('all'), names[names.length >> 1])));
     assert.equal(again.code, 0, again.out + again.err);
-    assert.match(again.out, /frame of a live session, tier (preview|refined)/);
+    assert.match(again.out, /frame of a live session, quality (preview|refined)/);
 });
 
 test('a changed pixel, reading, time or camera of a frame is found', { skip }, () => {
@@ -323,7 +323,7 @@ test('the page saves what is on its screen, signed, and a picture with legend an
         };
         const shown = await save('shown'), again = redraw(shown), statement = JSON.parse(textOf(shown, STATEMENT));
         assert.equal(again.code, 0, again.out + again.err);
-        assert.match(again.out, /frame of a live session, tier refined, without legend, markers and clock/);
+        assert.match(again.out, /frame of a live session, quality refined, without legend, markers and clock/);
         assert.match(again.out, new RegExp(`  ${statement.width * statement.height} of ${statement.width * statement.height} pixels`));
         assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256, 'the pixels that were on the screen');
         await plant.tell('set TI-1 70');

@@ -27,7 +27,7 @@ static void print_statement(const char *path, const json_t *statement)
     const char *tier = json_string_value(json_object_get(statement, "tier"));
     const char *overlay = json_string_value(json_object_get(statement, "overlay"));
     if (overlay && tier && !strcmp(overlay, "none"))
-        printf("  frame of a live session, tier %s, without legend, markers and clock\n", tier);
+        printf("  frame of a live session, quality %s, without legend, markers and clock\n", tier);
     const json_t *args = json_object_get(statement, "query");
     printf("  view:");
     for (size_t i = 0; i < json_array_size(args); i++)

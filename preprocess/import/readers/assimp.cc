@@ -574,7 +574,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     if (!r.lines.empty())
         printf("not shown: %zu nodes that consist only of lines or points: %s\n", r.lines.size(), listed(r.lines).c_str());
     if (r.triangles == 0)
-        refuse("the file contains no surface");
+        refuse("the file contains no surface: export meshes or surfaces, not only lines and points");
     write_scene(&r.out, output, "");
     say_textures(scene);
     if (r.lost > 0)

@@ -406,7 +406,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
         add(&r, free.Value(i), root, XCAFPrs_Style(), 0);
     say_lines(r);
     if (r.places == 0)
-        refuse("the file contains no surface");
+        refuse("the file contains no surface: export solids or surfaces, not only curves and points");
     write_scene(&r.scene, output, ": set a larger --chord to make the output file smaller");
     size_t made = 0;
     for (const auto &entry : r.parts)

@@ -55,7 +55,7 @@ static int ask_recorded(struct server_context *server, struct http_exchange *req
                : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
         return request_answer_error(request, &error);
     if (!gaps && !may_read(server, request, &query))
-        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "this display's token permits no trend of these tags\n");
+        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "this display's token does not permit trends of these tags\n");
     return await_history(server, request, &query);
 }
 

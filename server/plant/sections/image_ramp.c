@@ -41,6 +41,6 @@ bool image_ramp(const char *path, uint8_t rgb[256][3], char why[IMAGE_WHY_BYTES]
     mem_free(image.rgba);
     if (length >= 2)
         return true;
-    snprintf(why, IMAGE_WHY_BYTES, "the picture has only one pixel");
+    snprintf(why, IMAGE_WHY_BYTES, "the picture has only one pixel, but a colour map needs at least two");
     return false;
 }
