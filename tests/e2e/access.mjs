@@ -58,7 +58,7 @@ function ask(url, { bearer = null, host = 'plant.example', from = '203.0.113.7',
 }
 const open = (options = {}) => PlainClient.open(plant.port, { host: 'plant.example', ...options });
 
-test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip }, () => {
+test('plantcast token adds, lists and revokes tokens, and its file stores only their hashes', { skip }, () => {
     const file = path('more');
     const first = token('add', file, '--role', 'viewer', '--name', 'wall');
     assert.match(first.out, /^pc_[0-9a-f]{64}\n$/);
@@ -76,7 +76,7 @@ test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip 
         assert.equal(token(...wrong).code, 2, wrong.join(' '));
 });
 
-test('a token for one plant is none for another', { skip }, async () => {
+test('a token of one plant is refused by another plant', { skip }, async () => {
     const file = path('scoped');
     const ours = token('add', file, '--role', 'viewer', '--name', 'ours', '--plant', 'Two boxes', '--until', '2199-12-31').out.trim();
     const theirs = token('add', file, '--role', 'viewer', '--name', 'plant', '--plant', 'Other plant').out.trim();
@@ -88,7 +88,7 @@ test('a token for one plant is none for another', { skip }, async () => {
     assert.equal(token('add', file, '--role', 'viewer', '--name', 'x', '--plant', 'a#b').code, 2);
 });
 
-test('a token for some views gets pictures of these, at any size, and nothing else', { skip }, async () => {
+test('a token restricted to some views gets pictures of these views, at any size, and nothing else', { skip }, async () => {
     const file = path('limited'), before_ = readFileSync(plant.file, 'utf8');
     const views = {
         left: 'group=temperature&hide=P-101A&camera=0,-4,2,0,0,0,0,0,1,40', flat: 'group=pressure&camera=0,-9,2,0,0,0,0,0,1,40,4',
@@ -201,7 +201,7 @@ async function streamsOnlyItsViews(lobby, whole) {
     anyone.close();
 }
 
-test('a session that is left alone is locked, but not that of a wall; and what is said before anybody is in', { skip }, async () => {
+test('an idle session is locked, a wall display\'s is not; the sign-in notice is served before sign-in', { skip }, async () => {
     const file = path('attended'), notice = path('notice');
     const desk = token('add', file, '--role', 'operator', '--name', 'desk').out.trim();
     const busy = token('add', file, '--role', 'operator', '--name', 'busy').out.trim();
@@ -236,7 +236,7 @@ test('a session that is left alone is locked, but not that of a wall; and what i
     assert.match(start('--notice', notice).err, /the file must contain UTF-8 text/);
 });
 
-test('a daemon does not start for others without TLS and tokens, nor with what is not safe', { skip }, () => {
+test('the daemon refuses to start for other hosts without TLS and tokens, or with unsafe or missing files', { skip }, () => {
     const start = (...args) => runProgram('plantcastd', [plant.file, '--port', '0', ...args]);
     const bad = path('readable');
     copyFileSync(tokensFile, bad);
@@ -260,7 +260,7 @@ test('a daemon does not start for others without TLS and tokens, nor with what i
     unlinkSync(bad);
 });
 
-test('each URL asks for its role', { skip }, async () => {
+test('each URL requires its role', { skip }, async () => {
     await behindProxy('--tokens', tokensFile);
     let guesses = 0;
     const statuses = async (url) => {
@@ -288,7 +288,7 @@ test('each URL asks for its role', { skip }, async () => {
     }
 });
 
-test('a saved view has the rights of its author, for viewers too', { skip }, async () => {
+test('a saved view keeps its author\'s rights, also when a viewer opens it', { skip }, async () => {
     await behindProxy('--tokens', tokensFile, '--history', path('views-history'));
     const [viewer, operator, engineer] = await Promise.all(['viewer', 'operator', 'engineer'].map(async (role) => {
         const client = await open();
@@ -319,7 +319,7 @@ test('a saved view has the rights of its author, for viewers too', { skip }, asy
     [viewer, operator, engineer].forEach((client) => client.close());
 });
 
-test('names, pages and proxies', { skip }, async () => {
+test('foreign host names, cross-site requests and foreign origins are refused, also behind a proxy', { skip }, async () => {
     for (const [host, status] of [['plant.example', 200], ['plant.example:8443', 200], ['PLANT.example', 200], ['localhost', 200],
         ['evil.example', 403], ['plant.example.evil.example', 403], ['203.0.113.1', 403], ['a b', 403]])
         assert.equal((await ask('/healthz', { host })).status, status, host);
@@ -331,7 +331,7 @@ test('names, pages and proxies', { skip }, async () => {
     (await open({ origin: 'https://portal.example' })).close();
 });
 
-test('a token by each of its three ways, and what roles may say', { skip }, async () => {
+test('a token is accepted in each of three places, and each role may send only its own messages', { skip }, async () => {
     const ways = [
         async (text) => [await open({ protocol: `plantcast.v1, Authorization-Bearer.${text}` }), {}],
         async (text) => [await open({ headers: [`Authorization: Bearer ${text}`] }), {}],
@@ -367,7 +367,7 @@ test('a token by each of its three ways, and what roles may say', { skip }, asyn
     await assert.rejects(open({ path: `/stream?token=${tokens.viewer}` }), /400/);
 });
 
-test('what is revoked ends, and only that', { skip }, async () => {
+test('revoking a token ends its sessions and no others', { skip }, async () => {
     const spare = token('add', tokensFile, '--role', 'viewer', '--name', 'spare').out.trim();
     await plant.daemon.line(/tokens .*: 4 tokens read$/m);
     const leaving = await open(), staying = await open();
@@ -385,7 +385,7 @@ test('what is revoked ends, and only that', { skip }, async () => {
     staying.close();
 });
 
-test('anyone may look, where the server says so, and at nothing else', { skip }, async () => {
+test('with open viewing, clients without a token may look and do nothing else', { skip }, async () => {
     await behindProxy('--open-viewers', '--tokens', tokensFile);
     assert.equal((await ask('/snapshot.png?width=64&height=64')).status, 200);
     for (const url of ['/api/v1/tags', '/api/v1/plant', '/metrics', '/api/v1/pick?x=1&y=1', '/snapshot.png?power=3'])
@@ -399,7 +399,7 @@ test('anyone may look, where the server says so, and at nothing else', { skip },
     client.close();
 });
 
-test('each address has as many sessions as one may, by what the proxy says', { skip }, async () => {
+test('the limit of sessions applies to each client address that the proxy names', { skip }, async () => {
     await behindProxy('--open-viewers', '--limit', 'address-sessions=2', '--limit', 'sessions=3');
     const of = (address) => open({ headers: [`X-Forwarded-For: ${address}`] });
     const clients = [await of('203.0.113.7'), await of('203.0.113.7')];
@@ -422,7 +422,7 @@ test('each address has as many sessions as one may, by what the proxy says', { s
         client.close();
 });
 
-test('TLS: pictures over wss, no old versions, and a new certificate while it runs', { skip }, async () => {
+test('TLS: pictures come over wss, old TLS versions are refused, and a new certificate is loaded at run time', { skip }, async () => {
     await plant.daemon.stop();
     for (const end of ['pem', 'key'])
         copyFileSync(path(`first.${end}`), path(`served.${end}`));
@@ -489,7 +489,8 @@ function throughNginx(port, url, bearer = null, more = {}) {
     });
 }
 
-test('through nginx, as deploy/proxy has it', { skip: skip || (existsSync(NGINX) ? false : 'nginx is not installed') }, async () => {
+test('the daemon works behind nginx with the configuration from deploy/proxy',
+    { skip: skip || (existsSync(NGINX) ? false : 'nginx is not installed') }, async () => {
     await behindProxy('--tokens', tokensFile);
     const port = await freePort(), nginx = await startNginx(port);
     try {
@@ -512,7 +513,7 @@ test('through nginx, as deploy/proxy has it', { skip: skip || (existsSync(NGINX)
     }
 });
 
-test('a person is asked for a token, and sees the plant', {
+test('the page asks a user for a token, then shows the plant', {
     skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'),
 }, async () => {
     const { openPage, shoot, waitForPicture } = await import('./support/browser.mjs');

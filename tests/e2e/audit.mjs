@@ -109,7 +109,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-test('what is done stands in it: who, from where, what, with what result', { skip }, async () => {
+test('the audit trail records each action with user, address, object and result', { skip }, async () => {
     await start('--log-level', 'debug');
     await found('the start', (line) => line.event === 'start');
     const engineer = await PlainClient.open(plant.port, { localAddress: '127.0.0.5' });
@@ -146,7 +146,7 @@ test('what is done stands in it: who, from where, what, with what result', { ski
     assert.ok(!Object.values(tokens).some((token) => readFileSync(trail, 'utf8').includes(token)));
 });
 
-test('a note is changed by its author, and ended by the author or an engineer; the trail names both', { skip }, async () => {
+test('a note can be changed by its author, and ended by the author or an engineer; the trail names both', { skip }, async () => {
     const [kim, lee] = ['kim', 'lee'].map((name) =>
         runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'operator', '--name', name]).out.trim());
     await start();
@@ -177,7 +177,7 @@ test('a note is changed by its author, and ended by the author or an engineer; t
         client.close();
 });
 
-test('an import: each file and each command is recorded, with its user and its outcome', { skip, timeout: 120000 }, async () => {
+test('each file and each command of an import is recorded, with its user and its outcome', { skip, timeout: 120000 }, async () => {
     await start('--import');
     // opens a connection per request, because the server may close one whose upload it refuses while the next request is being
     // sent on it
@@ -226,7 +226,7 @@ test('an import: each file and each command is recorded, with its user and its o
 });
 
 const EACH_TRIES = sweep(500, 100), TRYING = 20;
-test('thousands of wrong tokens: few lines, and others come in meanwhile', { skip }, async (t) => {
+test('thousands of wrong tokens make few lines in the trail, and other clients get in meanwhile', { skip }, async (t) => {
     const before_ = lines().length, since = performance.now();
     let slowest = 0, refused = 0;
     const wrong = async () => {
@@ -258,7 +258,7 @@ test('thousands of wrong tokens: few lines, and others come in meanwhile', { ski
     assert.ok(count <= most, `${count} lines in ${seconds} s`);
 });
 
-test('a changed byte and removed lines are found, also by the next start', { skip }, async () => {
+test('a changed byte and removed lines of the trail are detected, also at the next start', { skip }, async () => {
     await plant.daemon.stop();
     const good = readFileSync(trail);
     assert.match(verify().out, /: good: lines 1 to \d+ in 1 file/);
@@ -286,7 +286,7 @@ test('a changed byte and removed lines are found, also by the next start', { ski
     assert.equal(runProgram('plantcast', ['audit', 'verify']).code, 2);
 });
 
-test('a disk that is full is said, in the log and the metrics, and nothing is lost', { skip }, async (t) => {
+test('a full disk is reported in the log and the metrics, and no audit entry is lost', { skip }, async (t) => {
     if (!existsSync('/usr/bin/prlimit'))
         return t.skip('no prlimit');
     await start();
@@ -306,7 +306,7 @@ test('a disk that is full is said, in the log and the metrics, and nothing is lo
     await whole();
 });
 
-test('a small disk that is full is alarmed, no line on it is torn, and a read-only one is refused', { skip, timeout: 2e5 }, async (t) => {
+test('a small full disk raises an alarm, no line on it is torn, and a read-only disk is refused', { skip, timeout: 2e5 }, async (t) => {
     const small = path('small'), full = join(small, 'full'), usual = trail;
     mkdirSync(small);
     if (spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=64k', 'tmpfs', small]).status !== 0)
@@ -340,7 +340,7 @@ test('a small disk that is full is alarmed, no line on it is torn, and a read-on
     assert.match(refused.err, /audit: .*audit\.log: Read-only file system/);
 });
 
-test('a full file is renamed, and a new one begins', { skip }, async () => {
+test('a full trail file is renamed, and a new one begins', { skip }, async () => {
     const usual = trail;
     trail = path('full.log');
     writeFileSync(trail, `${'x'.repeat(1 << 20)}\n`);
@@ -351,7 +351,7 @@ test('a full file is renamed, and a new one begins', { skip }, async () => {
     trail = usual;
 });
 
-test('syslog by TLS: each line as RFC 5424, after an outage too, and only to whom a certificate vouches for', { skip }, async () => {
+test('syslog over TLS: each line is valid RFC 5424, lines survive an outage, and an untrusted server gets none', { skip }, async () => {
     const key = readFileSync(path('log.key')), cert = readFileSync(path('log.pem'));
     const port = await freePort(); // a port that no other program gets while no syslog server listens
     syslog = new SyslogServer(key, cert);

@@ -36,7 +36,7 @@ const exported = (file, tag) => {
     return result.out.trim().split('\n');
 };
 
-test('a restore in another folder returns the recorded history, point by point', { skip }, async () => {
+test('a restore into another folder returns the recorded history, point by point', { skip }, async () => {
     const imported = exported(plant.file, 'TI-1').length;
     await until('present values in the history', () => exported(plant.file, 'TI-1').length > imported + 1, 60);
     const engineer = await PlainClient.open(plant.port);
@@ -85,13 +85,13 @@ test('a restore in another folder returns the recorded history, point by point',
     assert.deepEqual([again.code, /exists already, so nothing was restored/.test(again.err)], [1, true], again.err);
 });
 
-test('the daemon never notices', { skip }, async () => {
+test('a backup does not disturb the running daemon', { skip }, async () => {
     const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
     assert.match(text, /^plantcast_history_good 1$/m);
     assert.match(text, /^plantcast_history_lost_total 0$/m);
 });
 
-test('damaged, missing and conflicting files are refused by name', { skip }, () => {
+test('damaged, missing and conflicting backup files are refused by name', { skip }, () => {
     const damaged = readdirSync(folder('one')).find((name) => name.startsWith('history-'));
     appendFileSync(join(folder('one'), damaged), 'x');
     const target = join(folder('elsewhere'), 'third.yaml');

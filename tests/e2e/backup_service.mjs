@@ -89,7 +89,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-test('backup needs a word about keys, and an instance', options, () => {
+test('backup refuses to run without a choice for the keys, or without an instance', options, () => {
     const none = first.run('plantcast backup p1');
     assert.deepEqual([none.code, /--recipient KEY or --passphrase.*--without-secrets/.test(none.err)], [1, true], none.err);
     assert.match(first.run('plantcast backup p2 --without-secrets').err, /p2\/plant\.yaml does not exist/);
@@ -98,7 +98,7 @@ test('backup needs a word about keys, and an instance', options, () => {
     assert.deepEqual(readdirSync(first.path('var/backups/plantcast/p1')), [], 'a failed backup leaves nothing');
 });
 
-test('a backup while the daemon runs has everything, its keys only encrypted', options, () => {
+test('a backup of a running daemon contains everything, and its keys only encrypted', options, () => {
     // runs the backup with only the capabilities that the nightly systemd unit leaves it
     const [, unit] = readFileSync('deploy/systemd/plantcast-backup@.service', 'utf8').match(/^CapabilityBoundingSet=(.*)$/m);
     const set = unit.split(' ').map((name) => name.replace('CAP_', '+').toLowerCase());
@@ -116,7 +116,7 @@ test('a backup while the daemon runs has everything, its keys only encrypted', o
     assert.equal(spawnSync('find', [made, '-perm', '/077'], { encoding: 'utf8' }).stdout, '');
 });
 
-test('commands find the history of a service by the path of its plant file', options, () => {
+test('commands find a service\'s history from the path of its plant file', options, () => {
     ok(first.run(`cd ${ETC} && plantcast backup plant.yaml -o /root/plain`)); // the plant file is named by a relative path
     assert.ok(readdirSync(first.path('root/plain')).some((name) => /^history-.*sqlite$/.test(name)));
     for (const path of [`${ETC}/plant.yaml`, 'plant.yaml', '../p1/plant.yaml']) {
@@ -127,7 +127,7 @@ test('commands find the history of a service by the path of its plant file', opt
     }
 });
 
-test('one command on a bare host gives the same server', options, async () => {
+test('one restore command on a bare host gives the same server', options, async () => {
     const was = listing(first);
     await stop();
     rmSync(first.path('etc/plantcast'), { recursive: true });
@@ -148,7 +148,7 @@ test('one command on a bare host gives the same server', options, async () => {
     assert.deepEqual([again.code, /p1 exists already, so nothing was restored/.test(again.err)], [1, true], again.err);
 });
 
-test('a wrong key, a damaged file and a newer version are refused by name, and nothing stays', options, () => {
+test('a wrong key, a damaged file and a newer version are refused by name, and the restore leaves nothing behind', options, () => {
     const third = new BareRoot(folder), copy = (name) => cpSync(join(folder, 'backup'), third.path(`root/${name}`), { recursive: true });
     const refused = (name, why, more = '') => {
         const { code, err } = third.run(`plantcast restore /root/${name} ${more}`);
@@ -188,7 +188,8 @@ test('a wrong key, a damaged file and a newer version are refused by name, and n
     assert.match(third.run('plantcast init p1').err, /exists already/);
 });
 
-test('a passphrase, as age asks for it', { ...options, skip: options.skip || (has('script') ? false : 'no script') }, () => {
+test('backup and restore work with a passphrase typed at age\'s prompt, and a wrong one restores nothing',
+    { ...options, skip: options.skip || (has('script') ? false : 'no script') }, () => {
     const host = new BareRoot(folder);
     cpSync(plant.folder, host.path('root/plant'), { recursive: true });
     ok(host.run('plantcast init p1 --plant /root/plant --host localhost'));
@@ -202,7 +203,7 @@ test('a passphrase, as age asks for it', { ...options, skip: options.skip || (ha
     assert.match(readFileSync(host.path(`${ETC}/tls/privkey.pem`), 'utf8'), /PRIVATE KEY/);
 });
 
-test('a backup goes to another host by SFTP, and comes back from there',
+test('a backup is sent to another host by SFTP, and restored from there',
     { ...options, skip: options.skip || (existsSync(SSHD) ? false : 'no sshd') }, async (t) => {
         const host = new BareRoot(folder), sshPort = await freePort(), dropPort = await freePort(), kept = join(folder, 'kept');
         const mine = `p1@${hostname()}-`;

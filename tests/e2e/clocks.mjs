@@ -48,7 +48,8 @@ const alarmOf = async (node) => (await (await node.fetch('/api/v1/alarms')).json
     .find(({ tag, state }) => tag === 'TI-1' && state === 'unacknowledged');
 
 for (const off_s of [HOUR_S, -HOUR_S])
-    test(`a core an hour ${off_s > 0 ? 'ahead of' : 'behind'} its renderer, and a page an hour beyond that`, options, async () => {
+    test(`ages stay true with a core an hour ${off_s > 0 ? 'ahead of' : 'behind'} its renderer, and a page an hour beyond that`,
+        options, async () => {
         await nodes.plant.tell('set TI-1 20');
         const core = await startCore(`off${off_s}`, off_s), renderer = await nodes.renderer('far', core);
         const coreUs = () => (Date.now() + off_s * 1000) * 1000;

@@ -57,7 +57,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-test(`${SESSIONS * PROBES} connections over https, ${SESSIONS * TOGETHER} at once: none fails`, { skip, timeout: 300000 }, async () => {
+test(`${SESSIONS * PROBES} connections over https, ${SESSIONS * TOGETHER} at once, all succeed`, { skip, timeout: 300000 }, async () => {
     await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'));
     const probe = () => run('probe', `https://localhost:${plant.port}/`, '--ca', cert, '--sessions', String(SESSIONS), '--seconds', '0.2',
         '--motion', 'still', '--size', '64x36');
@@ -66,7 +66,7 @@ test(`${SESSIONS * PROBES} connections over https, ${SESSIONS * TOGETHER} at onc
             assert.deepEqual([code, err], [0, '']);
 });
 
-test('a path in front of the daemon\'s own is kept: tags, snapshot and stream', { skip, timeout: 100000 }, async () => {
+test('under a proxy\'s path prefix, tags, snapshot and stream work', { skip, timeout: 100000 }, async () => {
     await plant.startDaemon();
     proxy = serveBelow('/b', plant.port).listen(0, '127.0.0.1');
     await new Promise((done) => proxy.once('listening', done));
@@ -86,7 +86,7 @@ test('a path in front of the daemon\'s own is kept: tags, snapshot and stream', 
     assert.equal((await run('tags', `${at}/b?x=1`)).code, 2, 'a query is no path');
 });
 
-test('snapshot --view: views of the plant file and of the page, by id or title, with a daemon and without', { skip, timeout: 100000 },
+test('snapshot --view accepts views of the plant file and of the page, by id or title, with or without a daemon', { skip, timeout: 100000 },
     async () => {
         const tokens = join(plant.folder, 'view_tokens'), token = (name) => join(plant.folder, `${name}.token`);
         for (const [name, ...more] of [['all', '--role', 'operator'], ['some', '--role', 'viewer', '--views', 'boxes']])
@@ -138,7 +138,7 @@ test('snapshot --view: views of the plant file and of the page, by id or title, 
 const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',
     '--fps', '1', '--size', '64x64', ...more];
 
-test('a command that is a program of its own is given the certificates and the token too', { skip: noFilms, timeout: 100000 }, async () => {
+test('a subcommand that is its own program also gets the certificates and the token', { skip: noFilms, timeout: 100000 }, async () => {
     const tokens = join(plant.folder, 'tokens'), mine = join(plant.folder, 'mine');
     writeFileSync(mine, (await run('token', 'add', tokens, '--role', 'viewer', '--name', 'films')).out);
     await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'), '--tokens', tokens);
@@ -153,7 +153,7 @@ test('a command that is a program of its own is given the certificates and the t
     assert.match(out, /film\.mp4: \d+ frames/);
 });
 
-test('what is loaded when it is needed, and is missing or damaged, is named', { skip: noFilms, timeout: 100000 }, async () => {
+test('an error names a missing or damaged library or program that a command needs', { skip: noFilms, timeout: 100000 }, async () => {
     const bin = join(plant.folder, 'bin'), modules = join(plant.folder, 'lib/plantcast');
     mkdirSync(bin);
     mkdirSync(modules, { recursive: true });

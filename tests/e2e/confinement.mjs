@@ -37,7 +37,7 @@ function programs(folder, reader, ...more) {
 const attempts = (said) => Object.fromEntries([...said.matchAll(/^(?:.*: )?([\w-]+) (succeeded|refused) ?(\w*)$/gm)]
     .map(([, name, how, why]) => [name, how === 'succeeded' ? how : why]));
 
-test('a reader that is taken over reaches nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(async (folder) => {
+test('a compromised model reader can access nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(async (folder) => {
     const plant = await TinyPlant.create();
     try {
         assert.equal(plant.prepare().code, 0);
@@ -74,7 +74,7 @@ const heldBack = (where, said) => {
     assert.deepEqual(Object.entries(held).filter(([, how]) => how === 'succeeded'), [], where);
 };
 
-test('a matcher that is taken over reaches nothing of the daemon or the machine', { skip: unguarded }, async () => {
+test('a compromised matcher can access nothing of the daemon or the machine', { skip: unguarded }, async () => {
     const plant = await TinyPlant.create();
     try {
         assert.equal(plant.prepare().code, 0);
@@ -93,7 +93,7 @@ test('a matcher that is taken over reaches nothing of the daemon or the machine'
 });
 
 // The models have changed, so the daemon prepares the plant at start.
-test('a plantcast-prep of the daemon that is taken over reaches nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(
+test('a compromised plantcast-prep of the daemon can access nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(
     async (folder) => {
         const plant = await TinyPlant.create(), port = await freePort(), bin = programs(folder, ESCAPE, 'plantcastd');
         const secret = join(plant.folder, 'signing-key.pem'), own = join(plant.folder, 'plant.prepared');
@@ -118,7 +118,7 @@ exec '${bin}/real-prep' "$@"
         }
     }));
 
-test('plantcast-prep of the daemon ends at its limits of time and memory', { skip }, () => inFolder(async (folder) => {
+test('a plantcast-prep that the daemon started is ended at its limits of time and memory', { skip }, () => inFolder(async (folder) => {
     for (const [limit, hold, line] of [
         ['prepare-seconds=1', 'exec sleep 1000', /plantcast-prep was ended after 1 s \(--limit prepare-seconds\)/],
         ['prepare-megabytes=64', 'exec /usr/bin/python3 -c "print(len(bytes(1 << 28)))" 2>/dev/null', /plantcast-prep ended with status 1/],
@@ -141,7 +141,7 @@ test('plantcast-prep of the daemon ends at its limits of time and memory', { ski
     }
 }));
 
-test('a reader of the daemon ends at --limit import-seconds', { skip }, () => inFolder(async (folder) => {
+test('a model reader that the daemon started is ended at --limit import-seconds', { skip }, () => inFolder(async (folder) => {
     const plant = await TinyPlant.create(), exports = join(plant.folder, 'exports');
     try {
         assert.equal(plant.prepare().code, 0);
@@ -164,7 +164,7 @@ calls.load()
 os.execv(sys.argv[1], sys.argv[1:])`;
 const hasSeccomp = spawnSync('/usr/bin/python3', ['-c', 'import seccomp']).status === 0;
 
-test('without Landlock, models are read under the list of system calls, and what is missing is said', {
+test('without Landlock, models are read under the system call filter, and a warning names the missing protection', {
     skip: skip || (hasSeccomp ? false : 'python3-seccomp is not installed'),
 }, () => inFolder(async (folder) => {
     const plant = await TinyPlant.create(), missingLine = /this kernel has no Landlock: .*needs Linux 6\.12/;
@@ -261,7 +261,8 @@ const SLOW = ['nodes.gltf', 'list.stp', 'string.stp', 'cycle.ifc']; // files tha
 const readsIfc = existsSync(join(BIN, 'plantcast-import-ifc/ifc.mjs'));
 const kindOf = (status, line) => (status === 0 ? 'read' : /needs more|was ended|crashed/.exec(line)?.[0] ?? 'refused');
 
-test('a model that crashes, hangs or swells is one line, and the other models are imported', { skip }, () => inFolder((folder) => {
+test('a model whose reader crashes, hangs or exceeds memory gets one error line, and the other models are imported',
+    { skip }, () => inFolder((folder) => {
     const good = join(folder, 'good.gltf'), table = {};
     writeFileSync(good, accessor({ count: 3, bufferView: 0 }));
     for (const [name, bytes] of Object.entries(MODELS).filter(([name]) => sweep(true, !SLOW.includes(name)))) {
@@ -326,7 +327,7 @@ const LISTS = {
     'same.json': () => `{"tags":[${'{"name":"a","tagType":"Folder","tags":[]},'.repeat(500000)}{}]}`,
 };
 
-test('a tag list that expands hugely is read or refused in one line, and changes nothing else', { skip }, async () => {
+test('a tag list that expands enormously is read, or refused in one line, and nothing else changes', { skip }, async () => {
     const plant = await TinyPlant.create(), table = {};
     try {
         for (const [name, make] of Object.entries(LISTS).filter((_, i) => takes(0, i, 2))) {

@@ -25,7 +25,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-test('versions: ours among others is spoken, another is refused by name', { skip }, async () => {
+test('the server picks its protocol version from several, and refuses unknown versions by name', { skip }, async () => {
     (await PlainClient.open(plant.port, { protocol: 'plantcast.v2, plantcast.v1' })).close();
     const lines = ['GET /stream HTTP/1.1', `Host: 127.0.0.1:${plant.port}`, 'Upgrade: websocket', 'Connection: Upgrade',
         'Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==', 'Sec-WebSocket-Version: 13', 'Sec-WebSocket-Protocol: plantcast.v2', '', ''];
@@ -34,7 +34,7 @@ test('versions: ours among others is spoken, another is refused by name', { skip
     assert.match(refused.body.toString(), /plantcast\.v2.*plantcast\.v1/s);
 });
 
-test('welcome has what the page says', { skip }, async () => {
+test('the welcome message has all fields that PROTOCOL.md lists', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({ pixel_ratio: 1.5, a_field_of_tomorrow: { x: 1 } });
     assert.equal(welcome.protocol, 'plantcast.v1');
@@ -66,7 +66,7 @@ test('welcome has what the page says', { skip }, async () => {
     client.close();
 });
 
-test('pictures are whole, in order, of the size asked for, and say when and whence they were seen', { skip }, async () => {
+test('pictures are complete, in order and of the requested size, and state their time and camera', { skip }, async () => {
     const client = await PlainClient.open(plant.port), asked_us = Date.now() * 1000;
     const welcome = await client.hello();
     client.say({ type: 'ping', t: 1, field: 'of tomorrow' });
@@ -96,7 +96,7 @@ test('pictures are whole, in order, of the size asked for, and say when and when
     client.close();
 });
 
-test('parameters, sizes and projections are echoed by the pictures that show them', { skip }, async () => {
+test('pictures echo the parameters, sizes and projections that they show', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     await client.hello({ codecs: ['av2', 'png'], camera: { seq: 3, ...CAMERA }, params: { seq: 4, group: 'pressure' } });
     const first = await client.frameWhere('the first');
@@ -131,7 +131,7 @@ test('a key frame is sent on request', { skip }, async () => {
     client.close();
 });
 
-test('who comes back has the view that it left', { skip }, async () => {
+test('a client that reconnects gets the view that it left', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     const { resume } = await client.hello({ width: 256, height: 144, camera: { seq: 9, ...CAMERA } });
     client.say({ type: 'params', seq: 1, group: 'pressure', sensors: { 'PI-1': { strength: 2 } } });
@@ -147,7 +147,7 @@ test('who comes back has the view that it left', { skip }, async () => {
     again.close();
 });
 
-test('any number follow one; who leads gives the lead away, and what is shown stays', { skip }, async () => {
+test('several clients follow one leader; the leader hands over the lead, and the shown view stays', { skip }, async () => {
     const [presenter, heir, viewer] = await Promise.all([0, 1, 2].map(() => PlainClient.open(plant.port)));
     const camera = { seq: 1, ...CAMERA };
     const { session } = await presenter.hello({ width: 400, height: 240, camera, params: { seq: 1, group: 'pressure' } });

@@ -38,7 +38,8 @@ tags: tags.csv
 
 const COPY = 'cp "$1" "$2"';
 
-test('a model is made when it must be, and only then', { skip }, () => withPlant(({ folder, write, prep }) => {
+test('plantcast-prep converts a model again only when its input, its command or the model has changed',
+    { skip }, () => withPlant(({ folder, write, prep }) => {
     const makes = (why, made, row) => {
         const said = prep();
         assert.equal(said.status, 0, said.stderr);
@@ -60,7 +61,7 @@ test('a model is made when it must be, and only then', { skip }, () => withPlant
     makes('the model is gone', true, /1 unchanged/);
 }));
 
-test('what fails is one line, and leaves the model as it was', { skip }, () => withPlant(({ folder, write, prep }) => {
+test('a failed conversion prints one line and leaves the old model unchanged', { skip }, () => withPlant(({ folder, write, prep }) => {
     for (const [command, why, more] of [['echo first >&2; echo no licence >&2; exit 3', /could not be created: no licence/],
         ['kill -SEGV $$', /the command crashed \(SIGSEGV\)/],
         ['sleep 1000', /the command was ended after 1 s \(timeout_s\)/, ', timeout_s: 1'],
@@ -83,7 +84,7 @@ test('what fails is one line, and leaves the model as it was', { skip }, () => w
     assert.match(prep().stderr, /plant\.yaml:3: error: convert: '.*plate\.cad' cannot be read: No such file/);
 }));
 
-test('the plant file is checked', { skip }, () => withPlant(({ folder, write }) => {
+test('mistakes in the plant file\'s key convert are reported', { skip }, () => withPlant(({ folder, write }) => {
     const check = () => spawnSync(join(BIN, 'plantcastd'), ['--check', join(folder, 'plant.yaml')], { encoding: 'utf8' }).stderr;
     write('true', '}\n  - { model: plate.glb, from: plate.glb, command: ""');
     const said = check();

@@ -32,7 +32,7 @@ const alarm = async (node, state, name = 'TI-1') => {
 const all = (question) => until('all nodes', async () => (await Promise.all([core, a, b].map(question))).every(Boolean));
 const ack = (seq, tag = 'TI-1') => ({ type: 'alarm', seq, action: 'acknowledge', alarms: [[tag, 'H']] });
 
-test('values, qualities and source times are the core\'s; the device sees one poller', options, async () => {
+test('renderers show the core\'s values, qualities and source times; the device sees one poller', options, async () => {
     await all(async (node) => (await node.tags())['TI-1'].value === 80.25);
     await nodes.plant.tell('fail PI-1');
     const bad = await until('Bad', async () => {
@@ -48,7 +48,7 @@ test('values, qualities and source times are the core\'s; the device sees one po
     await until('two renderers', async () => await core.metric('plantcast_renderers') === 2);
 });
 
-test('pictures of one view are equal to the byte', options, async () => {
+test('two renderers draw byte-identical pictures of one view', options, async () => {
     const picture = async (node) => Buffer.from(await (await node.fetch('/snapshot.png?width=240&height=160&fit=E-101')).arrayBuffer());
     // a reading may be older at one node for a moment
     await until('equal pictures', async () => {
@@ -58,7 +58,7 @@ test('pictures of one view are equal to the byte', options, async () => {
     });
 });
 
-test('an acknowledgement at one renderer is done by the core, with the name, and comes back to all', options, async () => {
+test('an acknowledgement at one renderer is done by the core with the user\'s name, and reaches all nodes', options, async () => {
     await nodes.plant.tell('set TI-1 95.5');
     await all((node) => alarm(node, 'unacknowledged'));
     const viewer = await a.client({}, { token: nodes.tokens.viewer });
@@ -83,7 +83,7 @@ test('an acknowledgement at one renderer is done by the core, with the name, and
     anna.close();
 });
 
-test('notes, views and short links of one node are there at the others', options, async () => {
+test('notes, views and short links of one renderer appear at the others', options, async () => {
     const anna = await a.client({}, { token: nodes.tokens.operator });
     anna.say({ type: 'note', seq: 1, text: 'leaks a little', asset: 'E-101' });
     await anna.text('noted');
@@ -98,7 +98,7 @@ test('notes, views and short links of one node are there at the others', options
     anna.close();
 });
 
-test('a core that is killed: within 3 s everything is Bad, and said; acts are refused; it comes back whole', options, async (t) => {
+test('when a core is killed, all readings are Bad within 3 s, actions are refused, and both recover with it', options, async (t) => {
     const client = await a.client({}, { token: nodes.tokens.operator });
     const { port } = core;
     await core.stop('SIGKILL');
@@ -130,7 +130,7 @@ test('a core that is killed: within 3 s everything is Bad, and said; acts are re
     client.close();
 });
 
-test('a core that hangs is lost, too, after 2 s; and a renderer that takes nothing holds up nobody', options, async (t) => {
+test('a frozen core counts as lost after 2 s; a frozen renderer delays no other', options, async (t) => {
     let began = performance.now();
     core.program.child.kill('SIGSTOP');
     await until('Bad', async () => (await a.tags())['TI-1'].quality_name.startsWith('Bad'));
@@ -146,7 +146,7 @@ test('a core that hangs is lost, too, after 2 s; and a renderer that takes nothi
     await all(async (node) => (await node.tags())['TI-2'].value === 33);
 });
 
-test('another plant, another configuration, a wrong token and a daemon that is no core are named', options, async () => {
+test('errors name a core of another plant or configuration, a wrong token, and a daemon that is no core', options, async () => {
     const other = join(nodes.plant.folder, 'other.yaml');
     writeFileSync(other, readFileSync(nodes.plant.file, 'utf8').replace('max: 10', 'max: 11'));
     const prepared = join(nodes.plant.folder, 'plant.prepared');
@@ -177,7 +177,7 @@ test('another plant, another configuration, a wrong token and a daemon that is n
         assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
 });
 
-test('another version, and another plant of the same tags, are named by both; their readings are none', options, async () => {
+test('a core of another version or plant with the same tags is named by both nodes; its readings are not used', options, async () => {
     const { program, version, other } = otherVersion(nodes.plant.folder), path = (name) => join(nodes.plant.folder, name);
     const said = spawnSync(program, ['--version'], { encoding: 'utf8' }).stdout;
     assert.match(said, new RegExp(`^plantcastd ${other.replaceAll('.', '\\.')}`));
@@ -202,7 +202,7 @@ test('another version, and another plant of the same tags, are named by both; th
     await until('the others, which go on', async () => (await a.tags())['TI-1'].quality_name === 'Good');
 });
 
-test('a renderer\'s token opens no stream; strangers at /core are ended', options, async () => {
+test('a renderer\'s token opens no user\'s stream; malformed messages at /core end the connection', options, async () => {
     const core_ = { path: '/core', protocol: 'plantcast.core.v1', headers: [`Authorization: Bearer ${nodes.tokens.renderer}`] };
     await assert.rejects(PlainClient.open(core.port, { headers: core_.headers }), /403/);
     await assert.rejects(PlainClient.open(core.port, { ...core_, headers: [`Authorization: Bearer ${nodes.tokens.operator}`] }), /403/);
@@ -218,7 +218,7 @@ test('a renderer\'s token opens no stream; strangers at /core are ended', option
     await until('good readings', async () => (await core.tags())['TI-1'].quality_name === 'Good');
 });
 
-test('an act that the core could not read ends no link; nor does a revoked token keep one', options, async () => {
+test('an action that the core cannot parse does not end the link; revoking the renderer\'s token does', options, async () => {
     const connects = await a.metric('plantcast_core_connects_total');
     const client = await a.client({}, { token: nodes.tokens.operator });
     const point = (more) => `{"type":"point","wall":"w","display":1,"x":${more}}`;
@@ -236,7 +236,7 @@ test('an act that the core could not read ends no link; nor does a revoked token
     await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
 });
 
-test('`plantcast drain` sends the sessions of a daemon elsewhere; no other program gets its signal', options, async (t) => {
+test('`plantcast drain` sends a daemon\'s sessions to another node, and signals no other program', options, async (t) => {
     const c = await nodes.renderer('c', core), client = await c.client({}, { token: nodes.tokens.operator });
     const stranger = runProgram('plantcast', ['drain', String(process.pid)]);
     assert.deepEqual([stranger.code, stranger.err], [1, `plantcast: no plantcastd has the process ID ${process.pid}\n`]);
@@ -253,7 +253,7 @@ test('`plantcast drain` sends the sessions of a daemon elsewhere; no other progr
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
 const alone = { ...options, skip: options.skip || (canMount ? false : 'nothing can be mounted here') };
 
-test('each address of a core\'s name is tried, and each that fails is named once', alone, async () => {
+test('each address of a core\'s host name is tried, and each failure is logged once', alone, async () => {
     const hosts = join(nodes.plant.folder, 'hosts'), said = /no readings/g;
     writeFileSync(hosts, '127.0.0.9 core.test\n127.0.0.1 core.test\n');
     const dead = 'ws://127.0.0.1:9', start = (...urls) => {
@@ -276,7 +276,7 @@ test('each address of a core\'s name is tried, and each that fails is named once
     await bad.stop();
 });
 
-test('over TLS: a core whose certificate is not trusted is refused by name; one that is trusted brings readings', options, async () => {
+test('over TLS, a core with an untrusted certificate is refused by name; a trusted core delivers readings', options, async () => {
     const path = (name) => join(nodes.plant.folder, name);
     for (const name of ['core', 'stranger'])
         assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout',

@@ -56,7 +56,7 @@ async function bothAt(path) {
 }
 const range = `from=${iso(-60)}&to=${iso(4000)}`;
 
-test('series, gaps and the journal are the core\'s, to the byte', options, async () => {
+test('a renderer serves the core\'s series, gaps and journal, byte for byte', options, async () => {
     await until('an alarm in the journal', async () => (await body(core, '/api/v1/alarms/journal'))[2].includes('TI-1'));
     for (const path of [`/api/v1/history?tags=TI-1&${range}&points=100`, `/api/v1/history?tags=TI-1,TI-2,PI-1&${range}`,
         `/api/v1/history?tags=TI-2,TI-1&${range}&points=20000`, `/api/v1/history?tags=PI-1,TI-1,TI-2&${range}&points=400&format=csv`,
@@ -73,7 +73,7 @@ test('series, gaps and the journal are the core\'s, to the byte', options, async
     assert.equal((await body(renderer, '/api/v1/history?tags=NO-1'))[0], 400);
 });
 
-test('pictures of the past are equal to the byte; readings of then have the quality of then', options, async () => {
+test('core and renderer draw byte-identical pictures of the past; past readings have their past quality', options, async () => {
     for (const s of [5, 900, 5000]) {
         const path = `/snapshot.png?width=240&height=160&fit=E-101&at=${iso(s)}`;
         const [one, other] = await Promise.all([core, renderer].map(
@@ -102,7 +102,7 @@ test('pictures of the past are equal to the byte; readings of then have the qual
     assert.deepEqual(here.baseline, { name: 'then', time_us: at(900) });
 });
 
-test('the page of a renderer has trends and the past', options, async () => {
+test('the page of a renderer shows trends and the past', options, async () => {
     const { page, errors, close } = await openPage(`http://127.0.0.1:${renderer.port}/`, { viewport: { width: 1440, height: 900 } });
     await waitForPicture(page);
     await waitForHealth(page, 'live');
@@ -123,7 +123,7 @@ test('the page of a renderer has trends and the past', options, async () => {
     await close();
 });
 
-test('by tokens: people at the renderer ask by their own, the renderer by its own, and for nothing else', options, async () => {
+test('users at the renderer need their own token for history, the renderer its own, valid for nothing else', options, async () => {
     const path = `/api/v1/history?tags=TI-1&${range}`, proxy = ['--behind-proxy', '--host', '127.0.0.1'];
     const args = ['--role', 'core', '--port', '0', '--tokens', nodes.tokenFile, ...proxy];
     const strict = new Node(nodes.plant, [...args, '--history', join(nodes.plant.folder, 'strict')]);
@@ -143,7 +143,7 @@ test('by tokens: people at the renderer ask by their own, the renderer by its ow
     await strict.stop();
 });
 
-test('"an hour ago" is the core\'s, also where the renderer\'s clock is an hour off', options, async () => {
+test('"an hour ago" follows the core\'s clock, even if the renderer\'s clock is an hour wrong', options, async () => {
     const args = ['--role', 'render', '--port', '0', '--trust-local', '--core', core.url, '--core-token-file', nodes.rendererFile];
     const off = new Node(nodes.plant, args, nodes.plant.file, withClockOff(-3600));
     nodes.all.push(off);
@@ -163,7 +163,7 @@ const recorded = async (path) => {
     return series.map(({ points }) => points.filter(([us]) => us <= end));
 };
 
-test('without its core a renderer says that it has no history, once in its log; it has it again afterwards', options, async () => {
+test('without its core a renderer logs once that it has no history; history returns with the core', options, async () => {
     const path = `/api/v1/history?tags=TI-1&${range}&points=20000`, before_ = await recorded(path), { port } = core;
     const picture = `/snapshot.png?width=240&height=160&at=${iso(77)}`;
     await core.stop('SIGKILL');

@@ -45,7 +45,7 @@ const act = async (message) => {
     return answer;
 };
 
-test('the digits are the core\'s, and an engineer at a renderer lets the display in', options, async () => {
+test('a display at a renderer shows the core\'s digits, and an engineer at a renderer approves it', options, async () => {
     const digits = await digitsOf(renderer);
     assert.match(digits, /^\d{6}$/);
     assert.equal((await ask(core)).digits, digits);
@@ -60,7 +60,7 @@ test('the digits are the core\'s, and an engineer at a renderer lets the display
     }
 });
 
-test('it is that display, at the renderer and at the core', options, async () => {
+test('both core and renderer accept the approved display\'s secret for its own display only', options, async () => {
     for (const node of [renderer, core]) {
         const client = await asDevice(node);
         assert.equal(client.welcome.role, 'viewer');
@@ -70,7 +70,7 @@ test('it is that display, at the renderer and at the core', options, async () =>
     }
 });
 
-test('who was let in is so while the core is away, and is told that there are no values; nobody new is', options, async (t) => {
+test('while the core is away, a paired display gets in and learns that values are missing; no new display pairs', options, async (t) => {
     const client = await asDevice(renderer), { port } = core;
     await core.stop('SIGKILL');
     const began = performance.now();

@@ -28,7 +28,7 @@ const configuration = async (node) => (await (await node.fetch('/metrics')).text
 const isThere = async () => await configuration(renderer) === await configuration(core) &&
     (await renderer.tags())['TI-1'].quality_name === 'Good';
 
-test('renderers load what the core loads, at the same time', options, async (t) => {
+test('when the core reloads its files, its renderers load the same files at the same time', options, async (t) => {
     const before_ = await configuration(core), began = performance.now();
     change('max: 100 }', 'max: 101 }');
     core.program.child.kill('SIGHUP');
@@ -47,7 +47,7 @@ test('files that the core refuses change nothing at the renderer', options, asyn
     await until('readings', isThere);
 });
 
-test('a core that was restarted with other files is followed, too', options, async () => {
+test('renderers follow a core that was restarted with other files', options, async () => {
     change('max: -1 }', 'max: 102 }');
     await core.stop();
     core = await nodes.core(core.port);

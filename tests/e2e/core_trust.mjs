@@ -83,7 +83,7 @@ const ACK = { type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H
 const OUT = { type: 'alarm', seq: 2, action: 'out_of_service', alarms: [['TI-1', 'H']], reason: 'gone' };
 const NOTE = { type: 'note', seq: 3, text: 'evil was here', asset: 'E-101' };
 
-test('a renderer\'s token alone does nothing, whomever it names; the refusal names node and token', options, async () => {
+test('a renderer\'s token alone authorises no action, whatever user it names; the refusal names node and token', options, async () => {
     for (const who of [{ who: 'eve', role: 'engineer', from: '10.0.0.1', signed_in: false },
         { who: 'kim', role: 'engineer', from: '', signed_in: true }, {}, { token: nodes.tokens.renderer }, { token: 'pc_0' },
         { id_token: 'x.y.z' }, { token: nodes.tokens.viewer }, { token: 5 }])
@@ -97,7 +97,7 @@ test('a renderer\'s token alone does nothing, whomever it names; the refusal nam
     assert.ok(!trail().some(({ who, result }) => who === 'eve' && result === 'done'), 'nothing was done in her name');
 });
 
-test('what a person\'s token grants, and no more: an operator acknowledges, and takes nothing out of service', options, async () => {
+test('a user\'s token grants its role only: an operator may acknowledge, but not take an alarm out of service', options, async () => {
     const [over] = await asEvil(OUT, { token: nodes.tokens.operator, role: 'engineer', who: 'eve' });
     assert.deepEqual([over.code, await state()], ['not_allowed', 'unacknowledged']);
     const anna = await renderer.client({}, { token: nodes.tokens.operator });
@@ -114,7 +114,7 @@ test('what a person\'s token grants, and no more: an operator acknowledges, and 
     eve.close();
 });
 
-test('a token that only the renderer\'s file has is not enough', options, async () => {
+test('a token known only to the renderer\'s token file authorises nothing at the core', options, async () => {
     const own = path('own'), lines = readFileSync(nodes.tokenFile, 'utf8');
     writeFileSync(own, lines, { mode: 0o600 });
     const token = runProgram('plantcast', ['token', 'add', own, '--role', 'engineer', '--name', 'mallory']).out.trim();
@@ -141,7 +141,7 @@ async function signIn() {
     return back.headers.getSetCookie().map((line) => line.split(';')[0]).find((line) => /^plantcast-\w+=.{43}$/.test(line));
 }
 
-test('somebody who is signed in at the renderer acts with the rights that the provider gives, at the core too', options, async () => {
+test('a user signed in at the renderer acts at the core, too, with the rights from the identity provider', options, async () => {
     provider.claims = { preferred_username: 'kim', groups: ['operators'] };
     const client = await renderer.client({ headers: [`Cookie: ${await signIn()}`] });
     assert.equal(client.welcome.role, 'operator');
@@ -176,7 +176,7 @@ test('somebody who is signed in at the renderer acts with the rights that the pr
     assert.equal(over.code, 'not_allowed');
 });
 
-test('a renderer\'s token takes no standby\'s seat, and a standby\'s is no renderer\'s', options, async () => {
+test('a renderer\'s token cannot join as a standby, and a standby\'s token cannot join as a renderer', options, async () => {
     for (const [token, more, why] of [[nodes.tokens.renderer, { standby: true, id: '12345678', journal: 0 },
         /the token r has the role renderer, but a standby needs a token of the role standby \(plantcast token add FILE --role standby/],
     [nodes.tokens.standby, {}, /the token s has the role standby, but a renderer needs a token of the role renderer/]]) {

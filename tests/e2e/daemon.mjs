@@ -37,7 +37,7 @@ const tagUntil = (client, index, what, question, timeoutMs) => client.until(`tag
     return row && question(row) ? row : null;
 }, timeoutMs);
 
-test('the command line: exit codes and reasons', { skip }, async () => {
+test('each wrong command line gives its exit code and reason', { skip }, async () => {
     const busy = createServer().listen(0, '127.0.0.1');
     await new Promise((done) => busy.once('listening', done));
     const cases = [
@@ -64,7 +64,7 @@ test('the command line: exit codes and reasons', { skip }, async () => {
     busy.close();
 });
 
-test('--check names every fault with its place', { skip }, () => {
+test('--check reports every fault of a plant file with its position', { skip }, () => {
     const file = join(plant.folder, 'bad.yaml');
     const good = readFileSync(plant.file, 'utf8');
     writeFileSync(file, good.replace('max: 100', 'max: -1').replace('distance: euclidean', 'distance: straight'));
@@ -74,7 +74,7 @@ test('--check names every fault with its place', { skip }, () => {
     assert.match(result.err, /bad\.yaml:8:\d+: error: /);
 });
 
-test('--check reads the files of options, and names the one that cannot be used', { skip }, () => {
+test('--check reads the files that options name, and names one that cannot be used', { skip }, () => {
     const wrong = join(plant.folder, 'wrong');
     writeFileSync(wrong, 'what is this?\n', { mode: 0o600 });
     for (const option of ['--tokens', '--openid', '--signing-key']) {
@@ -91,7 +91,7 @@ test('--check reads the files of options, and names the one that cannot be used'
     assert.match(runProgram('plantcastd', ['--check', plant.file, '--tls-cert', wrong]).err, /give both --tls-cert and --tls-key/);
 });
 
-test('HTTP: valid and invalid paths, and the form of the answers', { skip }, async () => {
+test('HTTP: valid and invalid paths get well-formed answers', { skip }, async () => {
     const { port } = plant;
     const there = {
         '/': 'text/html', '/app/main.js': 'text/javascript', '/healthz': 'text/plain', '/readyz': 'text/plain', '/metrics': 'text/plain',
@@ -131,7 +131,7 @@ test('HTTP: valid and invalid paths, and the form of the answers', { skip }, asy
     assert.equal((await get(port, '/stream')).status, 426);
 });
 
-test('a client is told why its own handshake was refused, not that of another address', { skip }, async () => {
+test('a client is told why its own handshake was refused, not why another address\'s was', { skip }, async () => {
     const ask = (from, path, ...headers) => new Promise((done, fail) => {
         const socket = connect({ host: '127.0.0.1', port: plant.port, localAddress: from });
         let answer = '';
@@ -145,7 +145,7 @@ test('a client is told why its own handshake was refused, not that of another ad
     assert.doesNotMatch(await ask('127.0.0.3', '/stream?why', 'Connection: close'), /refused:/);
 });
 
-test('the API tells tags and plant, and no addresses', { skip }, async () => {
+test('the API returns tags and plant, and no device addresses', { skip }, async () => {
     const tags = JSON.parse((await get(plant.port, '/api/v1/tags')).body);
     const whole = JSON.parse((await get(plant.port, '/api/v1/plant')).body);
     assert.deepEqual(tags.tags.map((tag) => tag.name), ['TI-1', 'TI-2', 'PI-1']);
@@ -156,7 +156,7 @@ test('the API tells tags and plant, and no addresses', { skip }, async () => {
     assert.ok(!/40000|127\.0\.0\.1|\.gltf/.test(JSON.stringify([tags, whole])));
 });
 
-test('snapshots: a picture, or what is wrong with the question', { skip }, async () => {
+test('/snapshot returns a picture, or names the fault of the query', { skip }, async () => {
     const good = await get(plant.port, '/snapshot.png?width=320&height=200&group=temperature&camera=4,-4,3,1,0,0,50&look=flat');
     assert.deepEqual([good.status, good.headers['content-type']], [200, 'image/png']);
     assert.deepEqual([good.body.readUInt32BE(16), good.body.readUInt32BE(20)], [320, 200]);
@@ -170,7 +170,7 @@ test('snapshots: a picture, or what is wrong with the question', { skip }, async
         assert.equal((await get(plant.port, `/snapshot.png?${query}`)).status, 400, query);
 });
 
-test('no argument of a query is ignored: not the 64th, nor one after an empty one, and 65 are refused', { skip }, async () => {
+test('every query argument counts: the 64th, one after an empty one, and 65 are refused', { skip }, async () => {
     const ask = (count, last) => get(plant.port, `/snapshot.png?width=64&height=64${'&power=2'.repeat(count - 3)}&${last}`);
     for (const count of [33, 64])
         for (const [last, status] of [['look=flat', 200], ['look=none', 400]])
@@ -182,7 +182,7 @@ test('no argument of a query is ignored: not the 64th, nor one after an empty on
         assert.equal((await get(plant.port, `/snapshot.png?${query}`)).status, status, query);
 });
 
-test('orthographic cameras, fits, picks, and what is hidden', { skip }, async () => {
+test('orthographic cameras, fits, picks and hidden assets are answered correctly', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     await client.hello();
     client.say({ type: 'fit', seq: 1, id: 'E-101', side: 'right', projection: 'orthographic' });
@@ -210,7 +210,7 @@ test('orthographic cameras, fits, picks, and what is hidden', { skip }, async ()
     assert.equal((await get(plant.port, '/snapshot.png?x=1&y=1')).status, 400);
 });
 
-test('depth grids come before their pictures, to clients that ask for them', { skip }, async () => {
+test('clients that request depth get each depth grid before its picture', { skip }, async () => {
     const DEPTH = 128, client = await PlainClient.open(plant.port), other = await PlainClient.open(plant.port);
     assert.equal((await client.hello({ depth: true })).reprojection, true);
     assert.equal((await other.hello()).reprojection, undefined);
@@ -250,7 +250,7 @@ test('depth grids come before their pictures, to clients that ask for them', { s
     other.close();
 });
 
-test('equal views share a render', { skip }, async () => {
+test('sessions with equal views share one render', { skip }, async () => {
     const counts = async () => {
         const text = (await get(plant.port, '/metrics')).body.toString();
         const count = (name) => Number(text.match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
@@ -272,7 +272,7 @@ test('equal views share a render', { skip }, async () => {
         client.close();
 });
 
-test('any number follow one: its view, its size, its picture', { skip }, async () => {
+test('several clients follow one leader: its view, its size, its picture', { skip }, async () => {
     const leader = await PlainClient.open(plant.port), { session } = await leader.hello({ width: 400, height: 240 });
     const followers = await Promise.all(Array.from({ length: 5 }, () => PlainClient.open(plant.port)));
     const welcomes = await Promise.all(followers.map((client) => client.hello()));
@@ -305,7 +305,7 @@ test('any number follow one: its view, its size, its picture', { skip }, async (
         client.close();
 });
 
-test('who may connect', { skip }, async () => {
+test('handshakes with a foreign origin, host, path or protocol are refused', { skip }, async () => {
     const { port } = plant, open = (options) => PlainClient.open(port, options);
     await assert.rejects(open({ protocol: 'plantcast.v9' }), /400/);
     await assert.rejects(open({ origin: 'http://evil.example' }), /403/);
@@ -325,7 +325,7 @@ test('who may connect', { skip }, async () => {
     assert.equal((await none.until('a close', (c) => c.closed)).code, 1002);
 });
 
-test('every bad message is answered by its name, and the session lives', { skip }, async () => {
+test('every invalid message is answered with its error code, and the session continues', { skip }, async () => {
     const client = await PlainClient.open(plant.port), other = await PlainClient.open(plant.port);
     await other.hello();
     client.say({ type: 'camera', seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
@@ -360,7 +360,7 @@ test('every bad message is answered by its name, and the session lives', { skip 
     other.close();
 });
 
-test('messages in pieces, one byte at a time, half a message, and beyond all measure', { skip }, async () => {
+test('fragmented, byte-wise, incomplete and oversized messages do no harm', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     const text = '{"type":"ping","t":5}';
     client.write(encodeFrame(1, text.slice(0, 7), { fin: false }));
@@ -382,7 +382,7 @@ test('messages in pieces, one byte at a time, half a message, and beyond all mea
     half.close();
 });
 
-test('requests that are no requests', { skip }, async () => {
+test('malformed HTTP requests are refused', { skip }, async () => {
     const { port } = plant;
     for (const head of ['\r\n\r\n', 'GET\r\n\r\n', 'GET / HTTP/9.9\r\n\r\n', `GET /${'a'.repeat(20000)} HTTP/1.1\r\n\r\n`,
         `GET / HTTP/1.1\r\nHost: x\r\nX: ${'y'.repeat(100000)}\r\n\r\n`, '\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03',
@@ -391,7 +391,7 @@ test('requests that are no requests', { skip }, async () => {
     assert.equal((await get(port, '/healthz')).status, 200);
 });
 
-test('a reading that changes is told and drawn; a PLC that dies is seen, and comes back', { skip }, async (t) => {
+test('a changed reading is sent and drawn; a lost PLC is reported, and so is its return', { skip }, async (t) => {
     const client = await PlainClient.open(plant.port);
     await client.hello();
     assert.match(await plant.tell('set TI-1 20'), /^ok/);
@@ -421,7 +421,7 @@ test('a reading that changes is told and drawn; a PLC that dies is seen, and com
     client.close();
 });
 
-test('plantcast tags and plantcast probe', { skip }, async (t) => {
+test('plantcast tags and plantcast probe print the PLC\'s tags and values', { skip }, async (t) => {
     const url = `http://127.0.0.1:${plant.port}/`;
     await until('a line of a good reading', () => { // the device's answers may be late for a moment
         const { code, out, err } = runProgram('plantcast', ['tags', url]);
@@ -453,7 +453,7 @@ test('plantcast tags and plantcast probe', { skip }, async (t) => {
     assert.equal(runProgram('plantcast', ['tags']).code, 2);
 });
 
-test('SIGTERM: clients are told, everything ends cleanly', { skip }, async (t) => {
+test('SIGTERM: clients are notified, and the daemon exits cleanly', { skip }, async (t) => {
     const client = await PlainClient.open(plant.port);
     await client.hello();
     client.say({ type: 'camera', seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
@@ -465,7 +465,7 @@ test('SIGTERM: clients are told, everything ends cleanly', { skip }, async (t) =
     assert.ok(!/ERROR: |WARNING: ThreadSanitizer/.test(plant.daemon.said), plant.daemon.said);
 });
 
-test('an encoder that is not there is said by its name, and clients get JPEG', { skip }, async () => {
+test('a missing encoder is reported by name, and clients get JPEG', { skip }, async () => {
     const other = await TinyPlant.create();
     try {
         assert.equal(other.prepare().code, 0);
@@ -481,7 +481,7 @@ test('an encoder that is not there is said by its name, and clients get JPEG', {
     }
 });
 
-test('a daemon that falls over is no test\'s secret', { skip }, async () => {
+test('a test whose daemon crashes fails, and names the signal', { skip }, async () => {
     const other = await TinyPlant.create();
     assert.equal(other.prepare().code, 0);
     await other.startDaemon();
@@ -490,7 +490,7 @@ test('a daemon that falls over is no test\'s secret', { skip }, async () => {
     await assert.rejects(other.destroy(), /plantcastd ended by itself: SIGKILL.*/);
 });
 
-test('without any GL the program says so and exits with 1', { skip }, () => {
+test('without any GL driver the program says so and exits with 1', { skip }, () => {
     const { status, stderr } = spawnSync(join(BIN, 'plantcastd'), [plant.file, '--port', '0', '--gl', 'egl-device'], {
         encoding: 'utf8', timeout: 120000, env: { ...process.env, __EGL_VENDOR_LIBRARY_DIRS: '/nonexistent' },
     });

@@ -119,7 +119,8 @@ const FORMATS = {
 };
 
 for (const [format, { needs, ending = format, make }] of Object.entries(FORMATS))
-    test(`names of ${format}`, { skip: skip || (needs && !there(needs) ? `not built: ${needs}` : needs?.endsWith('occt') &&
+    test(`names in ${format} files are decoded in each encoding`,
+        { skip: skip || (needs && !there(needs) ? `not built: ${needs}` : needs?.endsWith('occt') &&
         !existsSync(SAMPLES) ? 'not built: step_samples' : false) }, (t) => inFolder((folder) => {
         let right = 0;
         const wrong = [];
@@ -139,7 +140,7 @@ for (const [format, { needs, ending = format, make }] of Object.entries(FORMATS)
         assert.deepEqual(wrong, []);
     }));
 
-test('--encoding says what the names cannot', { skip }, () => inFolder((folder) => {
+test('--encoding sets the encoding of names that do not reveal it', { skip }, () => inFolder((folder) => {
     const file = join(folder, 'm.rvm');
     writeFileSync(file, rvm('Насос', 'Ёмкость', 'KOI8-R'));
     for (const [asked, name] of [['koi8-r', 'Насос'], ['Windows-1251', 'оБУПУ']]) {
@@ -153,7 +154,8 @@ test('--encoding says what the names cannot', { skip }, () => inFolder((folder) 
     assert.match(unknown.stderr, /--encoding klingon: unknown encoding: iconv --list/);
 }));
 
-test('tag lists: names, units and groups', { skip: skip || (there('plantcast-import-assimp') ? false : 'built without Assimp') },
+test('a tag list\'s names, units and groups are decoded in each encoding',
+    { skip: skip || (there('plantcast-import-assimp') ? false : 'built without Assimp') },
     (t) => inFolder((folder) => {
         let right = 0;
         for (const [name, [iconv, a, b, unit]] of Object.entries(ENCODINGS)) {
@@ -176,7 +178,7 @@ test('tag lists: names, units and groups', { skip: skip || (there('plantcast-imp
         assert.match(forced.stdout, /a list with a header, Windows-1252/);
     }));
 
-test('series that are imported into history: the columns are named by tags', { skip }, async (t) => {
+test('history import finds the tags of column names in each encoding', { skip }, async (t) => {
     const plant = await TinyPlant.create(), list = join(plant.folder, 'tags.csv'), tags = readFileSync(list, 'utf8');
     t.after(() => plant.destroy());
     for (const [name, [iconv, a]] of Object.entries({ ...ENCODINGS, 'UTF-16LE': ['UTF-16', '급수펌프'] })) {
@@ -193,7 +195,8 @@ test('series that are imported into history: the columns are named by tags', { s
     assert.equal(plantcast('history', 'import', plant.file, list, '--encoding', 'klingon').status, 2);
 });
 
-test('files that went wrong', { skip: skip || (existsSync(FOUND) ? false : 'no ../shared/data/found') }, () => inFolder((folder) => {
+test('names in real GB18030, Shift JIS and Windows-1251 files are decoded',
+    { skip: skip || (existsSync(FOUND) ? false : 'no ../shared/data/found') }, () => inFolder((folder) => {
     for (const [file, ...names] of [['step_names/gb18030.stp', '泵组', '泵', '电机', '储罐V-201'],
         ['step_names/coded.stp', 'Petit étui'],
         ['step_names/sjis.stp', '装置', 'ポンプP-101', '表示器', 'モータ'],

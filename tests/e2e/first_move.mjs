@@ -50,7 +50,7 @@ const isSettled = (p) => p.evaluate(() => {
     return picture.still && picture.cameraSeq === cameraSeq && !cameraNews;
 });
 
-test('it looks as the refined picture does, within a second', options, async (t) => {
+test('the picture of the first camera move is as good as a refined one within a second', options, async (t) => {
     await waitForPicture(page);
     await settle(page, QUIET_MS);
     const box = await page.locator('#viewport').boundingBox(), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];

@@ -60,7 +60,7 @@ for (const [name, screen] of Object.entries(SCREENS))
     });
 
 // A box at the origin of a plant that lies at survey coordinates; some models contain one.
-test('a notice says what lies far outside, and shows everything', options, async () => {
+test('a notice names assets far outside the first view, and its button shows everything', options, async () => {
     const far = await TinyPlant.create(), at = [260978, 7007098, 12];
     const text = readFileSync(far.file, 'utf8').replace('model: box.gltf,', `model: box.gltf, placement: { translate: [${at}] },`)
         .replace('translate: [3, 0, 0]', `translate: [${at[0] + 3}, ${at[1]}, ${at[2]}]`);

@@ -51,7 +51,7 @@ async function pretend(metrics = '', status = 200, headers = {}) {
         close: () => { server.closeAllConnections(); server.close(); } };
 }
 
-test('a fleet file is checked, and each mistake has its line', options, () => {
+test('each mistake in a fleet file is reported with its line', options, () => {
     const check = (text) => runProgram('plantcast', ['fleet', write(text)]);
     const good = check('name: Works\nplants:\n- { id: a, url: "https://a.example" }\n'
         + '- { id: b, url: "https://b.example:8443/", poll_s: 60 }\n');
@@ -73,7 +73,7 @@ test('a fleet file is checked, and each mistake has its line', options, () => {
     assert.equal(runProgram('plantcast', ['fleet', join(folder, 'fleet.yaml'), '--serve', '--address', '0.0.0.0']).code, 2);
 });
 
-test('a page instead of metrics is silence, an old picture is none, a foreign name is refused', options, async () => {
+test('a page instead of metrics counts as no answer, an outdated picture is dropped, a foreign host name is refused', options, async () => {
     const plant = await pretend('plantcast_alarms_shown{priority="1"} 3\n');
     const fleet = await serve(write(`poll_s: 1\npicture_s: 1\nplants:\n- { id: a, url: "${plant.url}" }\n`));
     const first = async () => (await fleet.state()).plants[0];
@@ -97,7 +97,7 @@ test('a page instead of metrics is silence, an old picture is none, a foreign na
     }
 });
 
-test('a real plant, one that is in trouble, one that is silent: on the page and in the metrics', options, async () => {
+test('page and metrics show a healthy plant, one with alarms and one that does not respond', options, async () => {
     const plant = await TinyPlant.running(), now = Math.floor(Date.now() / 1000), gone = await freePort();
     writeFileSync(join(folder, 'token'), 'tok-1\n');
     const bad = await pretend(`plantcast_alarms_shown{priority="1"} 2\nplantcast_alarms_shown{priority="3"} 14
@@ -164,7 +164,7 @@ plantcast_history_free_bytes 900000000\nplantcast_history_good 0\nplantcast_buil
     }
 });
 
-test('nothing is asked faster than it allows, and who asks for patience gets it', options, async () => {
+test('no server is polled faster than configured, and Retry-After is obeyed', options, async () => {
     const [quick, slow, busy] = [await pretend(), await pretend(), await pretend('', 503, { 'Retry-After': '5' })];
     const began = performance.now();
     const fleet = await serve(write(`poll_s: 1\npicture_s: 0\nplants:\n- { id: quick, url: "${quick.url}" }
@@ -186,7 +186,7 @@ test('nothing is asked faster than it allows, and who asks for patience gets it'
     }
 });
 
-test('two hundred plants take two hundredths of a core', { ...options, skip: options.skip || long }, async () => {
+test('two hundred plants take two hundredths of a processor core', { ...options, skip: options.skip || long }, async () => {
     const COUNT = 200, SECONDS = 30, all = [];
     const lines = Array.from({ length: 400 }, (_, i) => `plantcast_stage_seconds_bucket{le="${i}"} ${i}`);
     for (let i = 0; i < COUNT; i++)

@@ -24,7 +24,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-test('a hundred viewers of one view: one render, one encode, a hundred sends', { skip }, async (t) => {
+test('a hundred viewers of one view cost one render, one encode and a hundred sends', { skip }, async (t) => {
     const names = ['plantcast_renders_total', 'plantcast_encodes_total', 'plantcast_frames_sent_total'];
     const leader = await PlainClient.open(plant.port), { session } = await leader.hello({ width: 640, height: 360 });
     const viewers = await openMany(plant.port, VIEWERS - 1, {}, { width: 640, height: 360 });
@@ -61,7 +61,7 @@ async function standsStillKb() {
     return kb;
 }
 
-test('fifty clients that take nothing cost next to nothing', { skip }, async () => {
+test('fifty clients that read nothing cost next to nothing', { skip }, async () => {
     const first = await PlainClient.open(plant.port);
     await first.hello({ width: 1280, height: 720 });
     await first.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0);
@@ -84,7 +84,7 @@ test('fifty clients that take nothing cost next to nothing', { skip }, async () 
     assert.ok(sanitized || moreKb <= 5 * 1024 + picturesKb, `${moreKb} kB more`);
 });
 
-test('1 Mbit/s and 200 ms: never more than a second old, and not felt by another', { skip }, async (t) => {
+test('over 1 Mbit/s and 200 ms, a picture is never more than a second old, and another client is not slowed', { skip }, async (t) => {
     const relay = await Relay.open(plant.port, { bytesPerS: 125000, delayMs: 100 });
     const fast = await PlainClient.open(plant.port);
     await fast.hello({ width: 1280, height: 720 });
@@ -114,7 +114,7 @@ test('1 Mbit/s and 200 ms: never more than a second old, and not felt by another
     assert.ok(best > 0.7, `beside a slow client: ${said}`);
 });
 
-test('who took nothing for 15 s is gone, and his connection with him', { skip }, async () => {
+test('a client that reads nothing for 15 s is disconnected, and its connection closed', { skip }, async () => {
     await sleep(Math.max(0, 19000 - (performance.now() - stalledAt)));
     const [open] = await metrics(plant.port, 'plantcast_sessions');
     assert.equal(open, 0);
@@ -158,7 +158,8 @@ function openForClients() {
     return others;
 }
 
-test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, { skip, timeout: (SOAK_S + 240) * 1000 }, async () => {
+test(`after ${SOAK_S} s of random connects, drags, stalls and cuts, no resource has grown`,
+    { skip, timeout: (SOAK_S + 240) * 1000 }, async () => {
     console.log(`# PLANTCAST_SEED=${seed}`);
     let state = seed;
     const random = () => ((state = (state * 1103515245 + 12345) % 2147483648) / 2147483648);

@@ -46,7 +46,7 @@ after(async () => {
 const rights = (path) => (lstatSync(path).mode & 0o7777).toString(8);
 const backUp = (name) => runProgram('plantcast', ['backup', plant.file, '-o', join(root, name)]);
 
-test('only its maker can read a backup, which includes a tag list stored elsewhere', { skip }, () => {
+test('only the user who made a backup can read it, including a tag list stored elsewhere', { skip }, () => {
     const made = backUp('one');
     assert.equal(made.code, 0, made.err);
     assert.equal(rights(join(root, 'one')), '700');
@@ -56,7 +56,7 @@ test('only its maker can read a backup, which includes a tag list stored elsewhe
         assert.equal(rights(join(root, 'one', name)), '600', name);
 });
 
-test('what leads out of the folder is not copied, by whatever name', { skip }, () => {
+test('backup refuses symlinks, hard links, folders and files of other owners in place of its files', { skip }, () => {
     const names = ['proofs.csv', readdirSync(history).find((name) => /^history-.*sqlite$/.test(name)), '../tags.csv'];
     const ways = [[(path) => symlinkSync(secret, path), /symbolic link/],
         [(path) => linkSync(secret, path), /another hard link/],
@@ -79,7 +79,7 @@ test('what leads out of the folder is not copied, by whatever name', { skip }, (
     assert.equal(backUp('two').code, 0);
 });
 
-test('restored files belong to the owner of their folder, and nothing is written through a link', { skip }, () => {
+test('restored files belong to the owner of their folder, and nothing is written through a symlink', { skip }, () => {
     renameSync(state, `${state}.was`);
     renameSync(plant.file, `${plant.file}.was`);
     mkdirSync(state);
@@ -103,7 +103,7 @@ test('restored files belong to the owner of their folder, and nothing is written
     assert.ok(!existsSync(join(root, 'made-by-root')));
 });
 
-test('token: neither through links, nor in a folder of somebody else', { skip }, () => {
+test('plantcast token refuses symlinks and folders of other users', { skip }, () => {
     const token = (...args) => runProgram('plantcast', ['token', ...args]), who = ['--role', 'viewer', '--name', 'wall'];
     const folder = join(root, 'config'), file = join(folder, 'tokens');
     mkdirSync(folder);

@@ -92,7 +92,7 @@ const strange = (seen, known) =>
 // The variant "as on a GPU" takes most of a minute, so only make test-long runs it.
 for (const hardware of [true, false]) {
     const where = hardware ? 'as on a GPU' : 'without a GPU', options = { skip: skip || (hardware && long) };
-    test(`a context that is lost ${LOSSES} times under load is made again each time, ${where}`, options, async () => {
+    test(`a GL context that is lost ${LOSSES} times under load is recreated each time, ${where}`, options, async () => {
         const { plant, faults } = await start(hardware);
         const clients = await Promise.all(SIZES.map((size, i) => look(plant, size, i === 1 ? { group: 'pressure' } : {})));
         const movers = MOVERS.map((i) => clients[i]), expected = {}, known = {};
@@ -165,7 +165,7 @@ async function shown(client) {
     return digest(picture);
 }
 
-test('who finds no room on the GPU is refused and told why; all others keep their pictures', { skip }, async () => {
+test('a client that finds no GPU memory is refused with the reason; all others keep their pictures', { skip }, async () => {
     const { plant, faults } = await start(true);
     const clients = await Promise.all(SIZES.map((size, i) => look(plant, size, i === 1 ? { group: 'pressure' } : {})));
     const since = await setWarm(plant, WARM[0]), expected = await rest(clients, since);
@@ -194,7 +194,7 @@ test('who finds no room on the GPU is refused and told why; all others keep thei
     assert.ok(clients.every((client) => !client.closed && !client.texts.some((message) => message.type === 'error')));
 });
 
-test('what there was no room for comes once there is room, whole, and without being asked for again', { skip }, async () => {
+test('a view refused for lack of GPU memory is drawn completely, unasked, once there is memory', { skip }, async () => {
     const { plant, faults } = places.at(-1), client = await look(plant, SIZES[3]), refused = [], came = [];
     wish(client, {});
     await shown(client);
@@ -219,7 +219,7 @@ test('what there was no room for comes once there is room, whole, and without be
     assert.ok(client.texts.some((message) => message.code === 'no_picture'));
 });
 
-test('a driver that restarts is waited for, and room: nothing else draws meanwhile', { skip }, async () => {
+test('while the driver restarts or GPU memory is full, the daemon is not ready; then it draws the same picture', { skip }, async () => {
     const { plant, faults } = places.at(-1), client = await look(plant, SIZES[0]), expected = await rest([client], 0);
     const status = async () => (await get(plant.port, '/readyz')).status;
     const made = faults.get('made');

@@ -53,7 +53,7 @@ async function findings(on, rules = RULES, within = null) {
 
 for (const [theme, rules, other] of WALKS) {
     const themes = `${theme}${other ? `, nor in colours, ${other}` : ''}`;
-    test(`no word is cut off on any panel or dialog, and axe-core finds nothing, ${themes}`, options, async () => {
+    test(`axe-core finds no fault and no word is cut off on any panel or dialog, ${themes}`, options, async () => {
         await page.goto(`${url}?theme=${theme}&lang=de`); // German has the longest words
         await waitForPicture(page);
         await lookAtEverything(theme, rules, other);
@@ -161,7 +161,7 @@ const WALL = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, hei
 const OTHERS = [['wall', '&wall', WALL], ['tablet', '', UPRIGHT], ['phone', '', PHONE]];
 for (const [row, theme] of Object.keys(THEMES).entries()) {
     const tried = OTHERS.filter((_, i) => takes(row, i, 2));
-    test(`axe-core finds nothing on another screen, ${theme}: ${tried.map(([name]) => name).join(', ')}`, options, async () => {
+    test(`axe-core finds no fault on other screens, ${theme}: ${tried.map(([name]) => name).join(', ')}`, options, async () => {
         for (const [name, query, screen] of tried) {
             const other = await openPage(`${url}?theme=${theme}${query}`, screen);
             await waitForPicture(other.page);
@@ -177,7 +177,7 @@ for (const [row, theme] of Object.keys(THEMES).entries()) {
 // Parts of the page that a key opens: [key, part, further button to press in it].
 const OPENED = [['e', '#alarms'], ['e', '#alarms', '#journal-tab'], ['v', '#views'], ['p', '#picture-panel'], ['y', '#timeline'],
     ['b', '#assets'], ['k', '#share'], ['?', '#help']];
-test('on a phone every control, table and dialog is announced by its name; alarms are in a live region', options, async () => {
+test('on a phone a screen reader announces every control, table and dialog by name; alarms are in a live region', options, async () => {
     const other = await openPage(`${url}?lang=ko`, PHONE), { page: on } = other;
     try {
         await waitForPicture(on);
@@ -217,7 +217,7 @@ const focused = () => page.evaluate(() => {
     return { name: element.id, seen, inToolbar, left: box.left, inside, body: element === document.body };
 });
 
-test('the keyboard reaches everything in the order in which it stands, and one sees where it is', options, async () => {
+test('Tab reaches every control in visual order, and the focus is visible', options, async () => {
     await page.evaluate(() => document.getElementById('assets-toggle').focus());
     const first = await focused(), reached = [];
     for (let n = 0; n < 80; n++) {
@@ -237,7 +237,7 @@ test('the keyboard reaches everything in the order in which it stands, and one s
     assert.ok(reached.length > 15, `${reached.length}`);
 });
 
-test('a dialog keeps the focus within, lets go of it by Escape, and gives it back', options, async () => {
+test('a dialog keeps the focus inside, closes on Escape, and returns the focus', options, async () => {
     await page.locator('#help-open').focus();
     await page.keyboard.press('Enter');
     await page.locator('#help[open]').waitFor();
@@ -252,7 +252,7 @@ test('a dialog keeps the focus within, lets go of it by Escape, and gives it bac
     await becomes(async () => (await focused()).name, 'help-open');
 });
 
-test('panels open and close by keys, and the focus goes along', options, async () => {
+test('panels open and close by keys, and the focus follows', options, async () => {
     await page.locator('#viewport').focus();
     await page.keyboard.press('/');
     await page.keyboard.type('TI');

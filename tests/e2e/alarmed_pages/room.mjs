@@ -72,7 +72,7 @@ const inSight = (page, name) => page.evaluate((tag) => {
 
 for (const name of WALKED) {
     const screen = SCREENS[name];
-    test(`${name}: an alarm, its place, its trend and the past, and the engineer's panel`, options, async () => {
+    test(`${name}: an alarm, its place, its trend, the past and the engineer's panel are all complete and usable`, options, async () => {
         const browser = await openPage(url, screen), { page } = browser, file = name.replace(' ', '-');
         const press = (selector) => (screen.hasTouch ? page.locator(selector).first().tap() : page.locator(selector).first().click());
         try {
@@ -145,7 +145,7 @@ const panelsAmiss = (page) => page.evaluate(() => {
     return open.length === 1 ? found : [...found, `${open.length} are open`];
 });
 
-test('panels and the help are whole, on every screen', options, async (t) => {
+test('panels and the help page are complete on every screen', options, async (t) => {
     const narrow = ['tablet upright', 'phone'];
     const ways = Object.entries(SCREENS).filter(([name]) => sweep(true, narrow.includes(name))).flatMap((one, row) =>
         ['en', 'de', 'ko'].filter((_, i) => takes(row, i, 3)).map((language) => [...one, language]));
@@ -177,7 +177,7 @@ test('panels and the help are whole, on every screen', options, async (t) => {
         });
 });
 
-test('what says that the picture is old lies over no legend', options, async () => {
+test('the banner about an old picture covers no legend', options, async () => {
     const most = sweep(SCREENS, { phone: PHONE });
     const wall = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }) };
     const more = { ...sweep({ 'large desk': { viewport: { width: 1440, height: 900 } } }, {}), wall };
@@ -205,7 +205,7 @@ test('what says that the picture is old lies over no legend', options, async () 
     }
 });
 
-test('until a picture of the new shape comes, the last one is not distorted, and marks stay where it has them', options, async () => {
+test('after a resize, the old picture stays undistorted and its marks stay in place until the new picture arrives', options, async () => {
     const { page, close, errors } = await openPage(`${url}?lang=en`, SCREENS.desk);
     try {
         await waitForPicture(page);
@@ -243,7 +243,7 @@ test('until a picture of the new shape comes, the last one is not distorted, and
 });
 
 // The row of quantities scrolls when dragged; keys and server messages bring the selected one into view.
-test('of seven quantities each is named in full', options, async () => {
+test('with seven quantities, the name of each is complete', options, async () => {
     const names = ['Differential pressure', 'Volume flow', 'Level', 'Vibration velocity', 'Electrical power'];
     const [many, address] = await startAlarmed((file) => writeFileSync(file, readFileSync(file, 'utf8').replace(/^sources:/m,
         `${names.map((name, i) => `  - { id: more${i}, quantity: ${name}, unit: bar, min: 0, max: 1 }\n`).join('')}sources:`)));
@@ -294,7 +294,7 @@ const inkOf = (page, name = '--ink') => page.evaluate((of) => getComputedStyle(d
 // A desk of 1280 x 800 or 1280 x 1024 in CSS pixels.
 const ZOOMED = { '200 %': { width: 640, height: 400 }, '400 %': { width: 320, height: 256 } };
 for (const [zoom, viewport] of Object.entries(ZOOMED))
-    test(`at ${zoom} zoom no part covers another, and the page scrolls in one direction`, options, async () => {
+    test(`at ${zoom} zoom no part of the page covers another, and the page scrolls in one direction`, options, async () => {
         const { page, errors, close } = await openPage(`${url}?lang=de`, { viewport });
         const press = async (key) => {
             await page.locator('#viewport').focus();
@@ -359,7 +359,7 @@ const readable = (page, selector) => page.evaluate((one) => {
     return inside && isTop(left + 3) && isTop(right - 3) ? element.value || element.textContent : '';
 }, selector);
 
-test('what a filter leaves out is named by a button that ends the filter, on every screen', options, async () => {
+test('on every screen a button tells what the alarm filter hides, and clears the filter', options, async () => {
     for (const kind of [{ viewport: SCREENS.desk.viewport }, sweep(PHONE, null)].filter(Boolean)) {
         const { page, errors, close } = await openPage(`${url}?lang=de`, kind), button = page.locator('#alarms-applied');
         const press = async (key) => {

@@ -58,7 +58,7 @@ const amiss = (page) => page.evaluate(() => {
     return [...found, ...said.map((name) => `no ${name}`), ...legends.length === 0 ? ['no legend'] : []];
 });
 
-test('legends, clock, age and what is simulated are whole and beside the picture', options, async () => {
+test('on walls, legends, clock, data age and the mark of simulated values are complete and beside the picture', options, async () => {
     for (const [wall, viewport, language = 'en'] of WALLS) {
         const { page, close, errors } = await openPage(`${url}?lang=${language}&wall=${wall}`, { viewport, screen: viewport });
         try {

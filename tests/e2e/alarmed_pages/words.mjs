@@ -43,7 +43,7 @@ const unsaid = (page) => page.evaluate(() => {
     return found;
 });
 
-test('no word is said that is not in the files of words, and no key is shown', options, async () => {
+test('every text on the page comes from the word files, and no text key is shown', options, async () => {
     const browser = await openPage(`${url}?lang=de`, { viewport: { width: 1440, height: 900 } }, null, async (page) => {
         await page.route(/\/words\/(lazy\.|alarms\.)?de\.js/, async (route) => {
             const text = await (await route.fetch()).text();
@@ -63,7 +63,7 @@ test('no word is said that is not in the files of words, and no key is shown', o
 
 const READERS = [['en', '.', /^\w{3} \d+, \d{4} /], ['ko', '.', /^\d{4}\. \d+\. \d+\. /], ['de', ',', /^\d\d\.\d\d\.\d{4} /]];
 for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
-    test(`in ${lang}: words, numbers and dates; ${sweep('every panel', 'the page')} fits on every screen`, options, async () => {
+    test(`in ${lang}: words, numbers, dates are right, and ${sweep('every panel', 'the page')} fits on every screen`, options, async () => {
         const browser = await openPage(`${url}?lang=${lang}`, DESKTOP), { page } = browser;
         const look = async (name) => {
             await becomes(() => cutOff(page), [], name);
@@ -95,7 +95,7 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
     });
 }
 
-test('titles and present values of the alarm list and the journal are whole, also when titles say the order', options, async () => {
+test('titles and current values of the alarm list and the journal are complete, also with sort marks', options, async () => {
     for (const lang of ['en', 'ko', 'de']) {
         const { page, close } = await openPage(`${url}?lang=${lang}`, { viewport: { width: 1920, height: 900 } });
         try {

@@ -80,7 +80,7 @@ async function growth(page, count) {
     return [sharedMb(family(process.pid)) - before, (count * 4 * width * height) / 2 ** 20];
 }
 
-test('H.264 through WebCodecs shows what the snapshot shows', options, (t) => withPage('h264', null, async (page) => {
+test('H.264 decoded by WebCodecs shows the same picture as the snapshot', options, (t) => withPage('h264', null, async (page) => {
     await compare(t, page, 'h264');
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.decoding.codecs), ['auto', 'h264', 'jpeg', 'png']);
     const [grownMb, picturesMb] = await growth(page, MANY); // Chromium without a GPU keeps the pixels of drawn VideoFrames
@@ -88,11 +88,11 @@ test('H.264 through WebCodecs shows what the snapshot shows', options, (t) => wi
     assert.ok(grownMb < picturesMb / 2);
 }));
 
-test('without WebCodecs it is JPEG, and shows the same', options, (t) => withPage('auto', () => {
+test('without WebCodecs the page uses JPEG, and shows the same picture', options, (t) => withPage('auto', () => {
     delete globalThis.VideoDecoder;
 }, (page) => compare(t, page, 'jpeg')));
 
-test('a decoder that passes the trial and then breaks is left for JPEG, for good', options, () => withPage('h264', () => {
+test('a decoder that passes the trial and fails later is replaced by JPEG for good', options, () => withPage('h264', () => {
     const { decode } = VideoDecoder.prototype;
     let count = 0;
     VideoDecoder.prototype.decode = function decodeSome(chunk) {

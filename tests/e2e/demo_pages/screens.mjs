@@ -71,7 +71,7 @@ const sticksOut = (page) => page.evaluate(() => [
     ...[...document.querySelectorAll('.segments span')].filter((e) => e.scrollWidth > e.clientWidth + 1),
 ].map((e) => e.id || e.className || e.textContent));
 
-test('tablet: one finger turns, two pan and zoom', options, () => withPage(TABLET, async (page) => {
+test('tablet: one finger orbits, two fingers pan and zoom', options, () => withPage(TABLET, async (page) => {
     const box = await page.locator('#viewport').boundingBox();
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const hand = await touches(page);
@@ -113,7 +113,7 @@ test('tablet: one finger turns, two pan and zoom', options, () => withPage(TABLE
     }
 }));
 
-test('desktop: two sets of parameters side by side, each with legend and markers', options, () => withPage(LARGE, async (page) => {
+test('desktop: two parameter sets side by side, each with legend and markers', options, () => withPage(LARGE, async (page) => {
     const choose = (id, value) => page.locator(`#${id}`).selectOption(value);
     const whole = await page.evaluate(() => ['plant-name', 'health'].filter((id) => {
         const { scrollWidth, clientWidth } = document.getElementById(id);
@@ -195,7 +195,8 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     assert.doesNotMatch(notes, /error up to/, 'this view has no unit');
 }));
 
-test('a method of the right half that is not the left one\'s is shown on every screen', options, () => withPage(LARGE, async (page) => {
+test('the right half\'s interpolation method is shown on every screen if it differs from the left half\'s',
+    options, () => withPage(LARGE, async (page) => {
     const method = page.locator('#right-interpolation'), paper = { group: 'temperature', interpolation: 'paper' };
     for (const [width, height] of [[1280, 800], [1024, 768], [844, 390], [390, 844]]) {
         const name = `${width}x${height}`;
@@ -215,7 +216,7 @@ test('a method of the right half that is not the left one\'s is shown on every s
     }
 }));
 
-test('legends are read beside an open panel, which ends above the status bar', options, () => withPage(
+test('legends stay readable beside an open panel, which ends above the status bar', options, () => withPage(
     { viewport: { width: 1280, height: 800 } }, async (page) => {
         const parts = ['#legend', '#legend-right', '.panel.open, .display.open', '#status'];
         const visibleBoxes = () => page.evaluate((all) => all.map((selector) => {
@@ -259,14 +260,16 @@ test('legends are read beside an open panel, which ends above the status bar', o
         await becomes(async () => Math.max(...await ground()) < 90, true, 'no bright strips at the sides of a picture');
     }));
 
-test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
+test('tablet in portrait: the equipment list is folded, and nothing sticks out',
+    options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
     assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded away');
     await becomes(() => sticksOut(page), []);
     await shoot(page, 'tablet-upright');
 }));
 
 const SHARP_PHONE = { ...PHONE, ...SHARP };
-test('phone: device pixels; choose equipment from the list, fly there, tap a sensor', options, () => withPage(SHARP_PHONE, async (page) => {
+test('phone: sharp pixels, and a user chooses equipment from the list, flies there and taps a sensor',
+    options, () => withPage(SHARP_PHONE, async (page) => {
     const box = await page.locator('#viewport').boundingBox();
     await page.waitForFunction(([width, height]) => { // a preview has fewer pixels
         const canvas = document.getElementById('picture');
@@ -297,7 +300,7 @@ const SHEETS = { 'alarm-strip': '#alarms', 'views-toggle': '#views', 'picture-to
     'assets-toggle': '#assets' };
 const boxOf = (page, selector) => page.locator(selector).boundingBox();
 
-test('phones: sheets of at most 40 % beside the picture, the legend a strip', options, () => withPage(PHONE, async (page) => {
+test('phones: panels are sheets of at most 40 % beside the picture, the legend is a strip', options, () => withPage(PHONE, async (page) => {
     for (const [width, height] of PHONES) {
         const upright = height > width, name = `${width}x${height}`;
         await page.setViewportSize({ width, height });
@@ -352,7 +355,7 @@ const ask = (page, name) => page.evaluate((f) => {
     plantcast[f](model.tags.find(({ group, position }) => group && position));
 }, name);
 
-test('phones: the button of a list that something covers shows the list', options, () => withPage(PHONE, async (page) => {
+test('phones: the button of a list that a card or a trend covers shows the list again', options, () => withPage(PHONE, async (page) => {
     for (const [width, height] of PHONES) {
         await page.setViewportSize({ width, height });
         for (const [button, list] of [['#alarm-strip', '#alarms'], ['#assets-toggle', '#assets']])
@@ -371,7 +374,8 @@ test('phones: the button of a list that something covers shows the list', option
     }
 }));
 
-test('phones: sheets, time bar and trends leave a picture; a grip has two heights', options, () => withPage(PHONE, async (page) => {
+test('phones: sheets, time bar and trends leave room for the picture; the sheet\'s grip has two heights',
+    options, () => withPage(PHONE, async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.session.recorded);
     for (const [width, height] of PHONES.filter(([w, h]) => h > w)) {
         const name = `${width}x${height}`, low = height < 700;
@@ -421,7 +425,7 @@ test('phones: sheets, time bar and trends leave a picture; a grip has two height
     }
 }));
 
-test('phones: the chart of a trend is read, its table fits, and a picture remains', options, () => withPage(PHONE, async (page) => {
+test('phones: a trend\'s chart is readable, its table fits, and the picture stays visible', options, () => withPage(PHONE, async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.session.recorded);
     await page.evaluate(() => {
         const { addTrend, session: { model }, showTrend } = globalThis.plantcast;
@@ -446,7 +450,7 @@ test('phones: the chart of a trend is read, its table fits, and a picture remain
     }
 }));
 
-test('phone: pinch, twist and two fingers that pan', options, () => withPage(PHONE, async (page) => {
+test('phone: two fingers pinch, twist and pan', options, () => withPage(PHONE, async (page) => {
     const box = await boxOf(page, '#viewport'), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const hand = await touches(page), azimuth = ({ camera: { eye, target } }) => Math.atan2(eye[1] - target[1], eye[0] - target[0]);
     const start = await view(page);
@@ -466,7 +470,7 @@ test('phone: pinch, twist and two fingers that pan', options, () => withPage(PHO
 // [width, height] of a phone held upright, one held sideways, a small one, and a folded one.
 const HELD = [[390, 844], [844, 390], [360, 740], [280, 653]];
 
-test('phones: name and state are read, nothing is cut off, all is as large as a finger', options, () => withPage(PHONE, async (page) => {
+test('phones: names and states are readable and complete, and controls are finger-sized', options, () => withPage(PHONE, async (page) => {
     const rgb = (text) => text.match(/[\d.]+/g).slice(0, 3).map(Number);
     for (const [width, height] of HELD) {
         const name = `${width}x${height}`;
@@ -522,7 +526,7 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
     await becomes(() => tooSmall(page), [], 'trend');
 }));
 
-test('at 200 % zoom, the engineering panel is as high as the picture, and both fill the stage', options, () => withPage(
+test('at 200 % zoom the engineering panel is as high as the picture, and both fill the stage', options, () => withPage(
     { viewport: { width: 640, height: 400 } }, async (page) => {
         await page.locator('#engineer-toggle').click();
         await page.locator('#engineer').waitFor();
@@ -531,7 +535,7 @@ test('at 200 % zoom, the engineering panel is as high as the picture, and both f
         assert.deepEqual(heights, Array(3).fill(heights[0]));
     }));
 
-test('legends half a phone wide: the names of limits do not overlap, and the colour bar and its numbers are whole', options, () => withPage(
+test('on half-width legends of a phone, limit names do not overlap, and colour bar and numbers are complete', options, () => withPage(
     { ...PHONE, viewport: { width: 360, height: 640 } }, async (page) => {
         await page.locator('#viewport').focus();
         await page.keyboard.press('j');

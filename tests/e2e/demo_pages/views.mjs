@@ -52,7 +52,7 @@ async function comeIn(change) {
     await settle(page);
 }
 
-test('a click tells what is there, and goes on telling it', options, async () => {
+test('a click opens a card of the place clicked, and the card stays open while values come in', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'TK-101' }));
     await page.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
     const before = (await view(page)).camera.eye;
@@ -73,7 +73,7 @@ test('a click tells what is there, and goes on telling it', options, async () =>
     assert.equal(await page.locator('#place').isVisible(), false, 'and does not come back');
 });
 
-test('standard views and the parallel projection', options, async () => {
+test('keys set the standard views and the parallel projection', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: null }));
     await page.keyboard.press('o');
     await page.keyboard.press('t');
@@ -92,7 +92,7 @@ test('standard views and the parallel projection', options, async () => {
     assert.equal((await view(page)).camera.height_m, undefined);
 });
 
-test('a cut, ghosts and hidden equipment', options, async () => {
+test('sections, ghosts and hidden equipment are drawn', options, async () => {
     await page.keyboard.press('v');
     await page.locator('#cut label', { hasText: 'Y' }).click();
     await waitFor(() => globalThis.plantcast.session.confirmed.clip?.planes?.length === 1);
@@ -138,7 +138,7 @@ test('a cut, ghosts and hidden equipment', options, async () => {
 
 // For every sixth tag: whether it is visible at 5 m from its own side and from where the camera arrives, and what share of the
 // picture its equipment then fills.
-test('a flight to a tag ends where the tag is seen and its equipment fills 35 % of the picture', options, async (t) => {
+test('a flight to a tag ends where the tag is visible and its equipment fills 35 % of the picture', options, async (t) => {
     const arrived = await page.evaluate(async () => {
         const { session, cameraController: { approach }, viewport } = globalThis.plantcast, from = session.camera, found = [];
         const { face } = await import('/core/camera_moves.js'), { fillOf } = await import('/core/approach.js');
@@ -160,7 +160,7 @@ test('a flight to a tag ends where the tag is seen and its equipment fills 35 % 
     assert.deepEqual(arrived.filter(({ seen, fill }) => !seen || fill < 0.35), []);
 });
 
-test('the eye goes into a room; an asset close around a tag becomes a ghost, and Backspace undoes all', options, async () => {
+test('the camera enters the tag\'s room; an asset close around the tag becomes a ghost, and Backspace undoes both', options, async () => {
     const tiny = await TinyPlant.create();
     tiny.keepFresh();
     const text = readFileSync(tiny.file, 'utf8');
@@ -202,7 +202,7 @@ test('the eye goes into a room; an asset close around a tag becomes a ghost, and
     }
 });
 
-test('the panel of views goes to the highest and to the lowest reading, in two clicks', options, async () => {
+test('the views panel leads to the highest and to the lowest reading in two clicks', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: null, hidden: [], ghost: [], isolate: [] }));
     for (const [name, sign] of [['highest', 1], ['lowest', -1]]) {
         await page.evaluate(() => globalThis.plantcast.selectTag(null));
