@@ -64,7 +64,7 @@ async function withPage(url, f) {
     }
 }
 
-test('a wall whose main thread hangs says so, and shows the plant again by itself', options, () =>
+test('a wall whose main thread hangs reports the hang, and shows the plant again by itself', options, () =>
     withPage(`${plant.url}?wall=room&lang=en`, async (page) => {
         await page.waitForURL(/wall\.html/);
         await page.waitForFunction(() => globalThis.wall?.session.model && document.querySelector('canvas.watches'));
@@ -81,7 +81,7 @@ test('a wall whose main thread hangs says so, and shows the plant again by itsel
         assert.match(page.url(), /wall\.html\?wall=room&lang=en$/);
     }));
 
-test('a desk that hangs says so until it answers again; the daemon logs that it acknowledges nothing', options, () =>
+test('a desk page that hangs reports the hang until it responds; the daemon logs that the page acknowledges nothing', options, () =>
     withPage(`${plant.url}?lang=de`, async (page) => {
         await waitForPicture(page);
         await page.waitForFunction(() => document.querySelector('canvas.watches'));
@@ -116,7 +116,7 @@ const drawCallouts = (page, selector) => page.evaluate(async (which) => {
     }
 }, selector);
 
-test('a display with a trend and alarms, and a desk of hardly any height, do not hang', options, async () => {
+test('a display with a trend and alarms, and a desk page with almost no height, do not hang', options, async () => {
     for (const [tag, value] of [['TI-1', 95], ['TI-2', 96], ['PI-1', 95]])
         await plant.ask(`set ${tag} ${value}`);
     const wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: WIDTH, height: HEIGHT } });

@@ -110,7 +110,7 @@ const line = (port) => new Promise((done, fail) => {
 });
 const standing = async (node) => (await (await node.fetch('/api/v1/alarms', nodes.tokens.viewer)).json()).alarms;
 
-test('each node says how much it can still draw; a cookie keeps to one node', options, async () => {
+test('each node reports its spare drawing capacity; a cookie keeps a client at one node', options, async () => {
     assert.match(await line(renderers[0].agentPort), /^up \d{1,3}%\n$/);
     viewers = [];
     // on a busy machine one node may for a while be able to draw less than the other, so it gets fewer viewers
@@ -126,7 +126,7 @@ test('each node says how much it can still draw; a cookie keeps to one node', op
     assert.equal(status, 200, 'history is the core\'s');
 });
 
-test('who follows goes to the node of the leader, whatever node he was at', options, async () => {
+test('a follower is routed to its leader\'s node, wherever the follower was', options, async () => {
     const leader = viewers.find(({ node }) => node === 'r1');
     assert.equal(leader.welcome.plant.node, 'r1');
     const { headers } = await get(proxy.port, `/healthz?node=${leader.welcome.plant.node}`, 'GET', 'Cookie: PLANTCAST=r2\r\n');
@@ -141,7 +141,7 @@ test('who follows goes to the node of the leader, whatever node he was at', opti
     follower.close();
 });
 
-test('kill -9 of one of two: all are back within 10 s, with their views; no acknowledgement is lost', options, async (t) => {
+test('kill -9 of one of two nodes: all sessions are back within 10 s with their views; no acknowledgement is lost', options, async (t) => {
     for (const tag of ['TI-1', 'TI-2', 'PI-1'])
         await nodes.plant.tell(`set ${tag} 95`);
     await until('three alarms', async () => (await standing(core)).filter(({ state }) => state === 'unacknowledged').length === 3);
@@ -180,7 +180,7 @@ test('kill -9 of one of two: all are back within 10 s, with their views; no ackn
     await nodes.onePoller();
 });
 
-test('a drained node sends its sessions elsewhere, one after the other, and is asked for nothing new', options, async (t) => {
+test('a drained node sends its sessions to the other node one by one, and gets no new ones', options, async (t) => {
     renderers[0] = await start('r1', 0);
     await until('the node being back', async () => /^UP/.test((await proxy.servers()).r1.status));
     const before_ = viewers.map(({ returns }) => returns), began = performance.now();
@@ -196,7 +196,7 @@ test('a drained node sends its sessions elsewhere, one after the other, and is a
     await until('the drained node not to be in use', async () => /^DOWN/.test((await proxy.servers()).r2.status));
 });
 
-test('a token that was changed, or is another person\'s, restores nothing; as it was made it does', options, async () => {
+test('a forged resume token or another user\'s restores no view; the user\'s own, unchanged, does', options, async () => {
     await renderers[1].stop(); // restarts this renderer, so that it keeps no views of earlier sessions
     renderers[1] = await start('r2', 1);
     const { resume } = viewers[0], [secret, body, mac] = resume.split('.');
@@ -242,7 +242,7 @@ for (const [what, act, undo] of [
     ['cut off the core', (i) => links[i].cut(), (i) => links[i].mend()],
     ['cut off the core without a word', (i) => links[i].freeze(), (i) => links[i].mend()],
 ])
-    test(`a node that is ${what}: its operators see the plant again at the other node, and nobody else notices`, options, async (t) => {
+    test(`a node is ${what}: its operators see the plant again at the other node, and nobody else notices`, options, async (t) => {
         const operators = await watching(t), hit = operators.filter((one) => nodeOf(one) === 'r1'), began = performance.now();
         act(0);
         try {
@@ -255,7 +255,7 @@ for (const [what, act, undo] of [
         await until('the node in use', () => isUp('r1'));
     });
 
-test('without a core at any node all sessions stay, and new users get a page; they go on when the core is back', options, async (t) => {
+test('without a core at any node all sessions stay, and new users get a page; sessions go on when the core is back', options, async (t) => {
     const operators = await watching(t);
     const areDown = async (seconds) => Object.values(await proxy.servers())
         .every(({ status, since_s: since }) => /^DOWN/.test(status) && since >= seconds);

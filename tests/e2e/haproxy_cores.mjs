@@ -55,7 +55,7 @@ async function operator() {
     return client;
 }
 
-test('of two cores the proxy asks the one that leads', options, async () => {
+test('HAProxy sends requests for a core to the leading one of two', options, async () => {
     const core = await two.leader();
     await until('the proxy\'s choice', async () => await chosen() === core.name);
     assert.equal((await ask('/api/v1/history?tags=TI-1')).status, 200);
@@ -66,7 +66,7 @@ test('of two cores the proxy asks the one that leads', options, async () => {
 });
 
 for (const [signal, how] of [['SIGKILL', 'kill -9'], ['SIGTERM', 'an end in good order']])
-    test(`${how}: the other answers in its place, and who is at the renderer stays`, options, async (t) => {
+    test(`${how} of the leading core: the other core answers in its place, and the renderer's sessions stay`, options, async (t) => {
         const core = await two.leader(), other = two.other(core), anna = await operator();
         await two.followed(core);
         await two.plant.tell('set TI-1 95');

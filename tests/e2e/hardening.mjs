@@ -14,7 +14,7 @@ const skip = notBuilt();
 const UNIT = 'deploy/systemd/plantcastd@.service', has = (program) => spawnSync('which', [program]).status === 0;
 const read = (program, ...what) => spawnSync('readelf', ['-W', ...what, join(BIN, program)], { encoding: 'utf8' }).stdout;
 
-test('programs have PIE, full RELRO, stack protectors and checked library calls', { skip }, () => {
+test('programs are built with PIE, full RELRO, stack protectors and checked library calls', { skip }, () => {
     for (const program of PROGRAMS) {
         assert.match(read(program, '-h'), /Type: +DYN/, `${program}: position-independent`);
         assert.match(read(program, '-l'), /GNU_RELRO/, `${program}: RELRO`);
@@ -27,7 +27,7 @@ test('programs have PIE, full RELRO, stack protectors and checked library calls'
     }
 });
 
-test('the unit is as closed as it can be: systemd-analyze says at most 2 of 10', {
+test('systemd-analyze rates the exposure of the systemd unit at 2 of 10 or less', {
     skip: has('systemd-analyze') ? false : 'systemd-analyze is not installed',
 }, () => {
     const said = spawnSync('systemd-analyze', ['security', '--offline=true', '--threshold=20', UNIT], { encoding: 'utf8' });
@@ -40,7 +40,7 @@ test('the unit is as closed as it can be: systemd-analyze says at most 2 of 10',
         ['-/sys/fs/cgroup/system.slice/system-plantcastd.slice/%n'], 'nothing but its own state and its own cgroup');
 });
 
-test('each clause of IEC 62443-4-2 that is met names tests, which are there', () => {
+test('each clause of IEC 62443-4-2 that is marked as met names tests that exist', () => {
     const rows = readFileSync('deploy/IEC62443.md', 'utf8').split('\n').filter((line) => /^\| (CR|SAR) /.test(line));
     assert.ok(rows.length >= 40, `${rows.length} clauses`);
     for (const row of rows) {
@@ -57,7 +57,7 @@ const unfiltered = has('systemd-analyze') && spawnSync('/usr/bin/python3', ['-c'
     : 'python3-seccomp or systemd-analyze is not installed';
 const noIfc = existsSync(join(BIN, 'plantcast-import-ifc/ifc.mjs')) ? false : 'built without web-ifc';
 
-test('with the system calls that the unit leaves it, an import reads IFC, for which Node.js compiles code', {
+test('under the systemd unit\'s system call filter, an import reads IFC, for which Node.js compiles code', {
     skip: skip || unfiltered || noIfc,
 }, () => inFolder((folder) => {
     const file = join(folder, 'house.ifc');
@@ -68,7 +68,7 @@ test('with the system calls that the unit leaves it, an import reads IFC, for wh
     assert.match(stdout, /3 elements with a shape, 0 lost/);
 }));
 
-test('with the system calls that the unit leaves it, the daemon draws on llvmpipe, streams and records', {
+test('under the systemd unit\'s system call filter, the daemon draws with llvmpipe, streams and records', {
     skip: skip || unfiltered,
 }, async () => {
     const plant = await TinyPlant.create();

@@ -39,7 +39,7 @@ const state = (page, name) => page.evaluate((key) => globalThis.plantcast.module
 const hasEnded = (page) => page.waitForFunction(() => !globalThis.plantcast.modules.there('enterVr').headset);
 const keep = async (page, name) => SHOOTS && writeFileSync(`${SCREENSHOTS}/${name}.png`, await eyesPng(page));
 
-test('the button: only with a headset, and only if the server sends depth', options, async () => {
+test('the VR button is shown only if there is a headset and the server sends depth', options, async () => {
     const { page, close } = await openPage(`http://127.0.0.1:${plant.port}/`);
     try {
         await waitForPicture(page);
@@ -81,7 +81,8 @@ function runOf({ width, rgba }, row) {
     return [coloured[0], coloured.at(-1)];
 }
 
-test('both eyes see the plant from their own places; a turned head sees it in the next frame', options, (t) => withHeadset(async (page) => {
+test('each eye sees the plant from its own position; a turned head shows the change in the next frame',
+    options, (t) => withHeadset(async (page) => {
     const home = await page.evaluate(() => ({ camera: globalThis.plantcast.session.camera, size: globalThis.plantcast.session.size }));
     await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat', hidden: ['P-101A'] }));
     await enterVr(page);
@@ -117,7 +118,8 @@ test('both eyes see the plant from their own places; a turned head sees it in th
     assert.equal(await page.locator('#enter-vr').isEnabled(), true);
 }));
 
-test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, () => withHeadset(async (page) => {
+test('hands can teleport on the floor, select equipment, read a sensor, use the wrist panel and grip',
+    options, () => withHeadset(async (page) => {
     await enterVr(page);
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0]);
     await aimAt(page, [-0.8, -1.2, -0.8]); // the floor is where the user stands, 1.6 m below the eyes
@@ -166,7 +168,8 @@ test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, ()
     await until('the user is pulled along', async () => (await state(page, 'rig')).at[1] - before[1] > 0.3);
 }));
 
-test('pictures without depth are not shown, and the view says so; a locked session ends it', options, () => withHeadset(async (page) => {
+test('pictures without depth are not shown, and a message says so; a locked session ends the headset view',
+    options, () => withHeadset(async (page) => {
     await enterVr(page);
     await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
     await page.evaluate(() => {
@@ -194,7 +197,8 @@ test('pictures without depth are not shown, and the view says so; a locked sessi
     assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp), null, 'nothing draws by a lost context');
 }));
 
-test('a lost connection covers the view until the server is back; a lost context ends it', options, () => withHeadset(async (page) => {
+test('a lost connection covers the headset view until the server is back; a lost GL context ends it',
+    options, () => withHeadset(async (page) => {
     await enterVr(page);
     await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
     await plant.daemon.stop('SIGKILL');

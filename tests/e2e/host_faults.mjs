@@ -44,7 +44,7 @@ async function take(plant, value) {
     });
 }
 
-test('a volume that becomes read-only: it runs on and says so; what it held comes in when the volume is mended', {
+test('on a volume that becomes read-only the daemon runs on and reports it; unsaved points are stored once it is repaired', {
     skip: skip || (process.getuid() === 0 ? false : 'needs root'), timeout: 180000,
 }, async (t) => {
     const trigger = makeVolume();

@@ -75,7 +75,7 @@ function othersRate(port, seconds) {
     });
 }
 
-test('values beyond all sense are refused by name, and the next good ones hold', { skip }, async () => {
+test('absurd numbers in messages are refused by field, and the next valid message is accepted', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     for (const [width, height] of [[0, 0], [1e9, 1e9], [-5, 100], [16.5, 100], [8193, 16]]) {
         client.say({ ...HELLO, width, height });
@@ -96,7 +96,7 @@ test('values beyond all sense are refused by name, and the next good ones hold',
     client.close();
 });
 
-test('ten thousand messages a second are read at the pace allowed, and all of them in the end', { skip }, async (t) => {
+test('ten thousand messages a second are read at the permitted rate, and all of them in the end', { skip }, async (t) => {
     const client = await PlainClient.open(plant.port);
     t.after(() => client.close());
     const pings = Buffer.concat(Array.from({ length: PINGS }, (_, t) => encodeFrame(1, `{"type":"ping","t":${t}}`)));
@@ -118,7 +118,7 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
     assert.equal(client.texts.some((m) => m.code === 'too_fast'), told > 0, said);
 });
 
-test('all at once: nobody else is slowed, and each has its answer', { skip }, async (t) => {
+test('all kinds of bad clients at once: each gets its answer, and no other client is slowed', { skip }, async (t) => {
     const { port } = plant;
     await until('earlier clients to be gone', async () => await metric('plantcast_connections') <= 1);
     const filesBefore = descriptors();
@@ -179,7 +179,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
     await until('no connections but the one that asks', async () => await metric('plantcast_connections') <= 1);
 });
 
-test('connections beyond the limit are closed, and others leaving makes room again', { skip }, async () => {
+test('connections beyond the limit are closed, and a closed connection makes room for another', { skip }, async () => {
     const all = Array.from({ length: SILENT + 300 }, () => raw(plant.port));
     const first = await Promise.race(all.map((socket) => socket.ended.then(() => performance.now())));
     assert.ok(first > 0);
@@ -191,7 +191,8 @@ test('connections beyond the limit are closed, and others leaving makes room aga
 
 // Uses many views that are slow to draw. With few views, or a plant that is quick to draw, all clients sometimes wait for their
 // encoders while the render thread idles.
-test('where drawing is too busy, one more is refused, told why and when to come again', { skip: skip || noDemo || false }, async () => {
+test('while drawing is overloaded, a new session is refused with the reason and a time to retry',
+    { skip: skip || noDemo || false }, async () => {
     const busy = await startPlant('', () => {}, ['--limit', 'least-fps=1000']);
     try {
         const load = ['--seconds', '600', '--sessions', '12', '--size', '960x540', '--blind', '--json'];
@@ -217,7 +218,7 @@ test('where drawing is too busy, one more is refused, told why and when to come 
     }
 });
 
-test('the daemon lives, and ends cleanly', { skip }, async () => {
+test('after all attacks the daemon still runs, and exits cleanly', { skip }, async () => {
     assert.deepEqual(await plant.daemon.stop('SIGTERM'), { code: 0, signal: null }, plant.daemon.said);
     assert.ok(!/ERROR: |WARNING: ThreadSanitizer|runtime error/.test(plant.daemon.said), plant.daemon.said);
 });

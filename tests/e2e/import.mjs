@@ -82,7 +82,7 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
     { file: 'plm-sample', as: 'plm_plant_hierarchy', chordMm: 2, nodes: 315, counted: '316', assets: 19 },
     { file: 'huldra_WD1-PSUP', as: 'huldra_wd1_psup', chordMm: 5, nodes: 4084, counted: '4,085', assets: 321 },
 ])
-    test(`${file}.rvm: names, boxes, areas and attributes`, { skip }, () => inFolder((folder) => {
+    test(`${file}.rvm: names, boxes, surface areas and attributes equal the reference`, { skip }, () => inFolder((folder) => {
         const out = join(folder, 'plant'), model = join(DATA, `cad/${file}.rvm`);
         const said = run('plantcast', 'import', model, '-o', out, '--chord', String(chordMm));
         assert.equal(said.status, 0, said.stderr);
@@ -122,7 +122,7 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         assert.match(again.stdout, /plant\.yaml: unchanged/);
     }));
 
-test('a real export with broken attributes or numbers is one line, and leaves nothing behind', { skip }, () => inFolder((folder) => {
+test('a real export with broken attributes or numbers gets one error line, and leaves no files', { skip }, () => inFolder((folder) => {
     const good = readFileSync(join(DATA, 'cad/plm-sample.rvm')), text = readFileSync(join(DATA, 'cad/plm-sample.att'));
     const head = text.subarray(0, text.indexOf('NEW')).toString('latin1'), id = Buffer.from('\0\0\0P\0\0\0R\0\0\0I\0\0\0M', 'latin1');
     const notFinite = Buffer.from(good), model = join(folder, 'a.rvm');
@@ -191,7 +191,7 @@ test('compressed models are unpacked, or refused in one line', unpackable, () =>
     console.log(`# ${PACKED.length} kinds of compressed models`);
 }));
 
-test('what cannot be read is one line, and leaves nothing behind', { skip: notBuilt }, () => inFolder((folder) => {
+test('an unreadable model gets one error line, and leaves no files', { skip: notBuilt }, () => inFolder((folder) => {
     const out = join(folder, 'plant');
     const cases = [['empty.rvm', '', 'byte 0: not an RVM file'], ['text.rvm', 'ISO-10303-21;', 'byte 0: not an RVM file'],
         ['short.rvm', Buffer.from('\0\0\0H\0\0\0E\0\0\0A\0\0\0D\0\0\x01\0\0\0\0\x01', 'latin1'), 'the file ends within RVM chunk HEAD']];
@@ -225,7 +225,7 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
 }));
 
 // A line yields triangles without area; plantcast-prep refuses an asset without area.
-test('nodes without area do not become assets', { skip: notBuilt }, () => inFolder((folder) => {
+test('nodes without surface area do not become assets', { skip: notBuilt }, () => inFolder((folder) => {
     const out = join(folder, 'plant'), line = [0, 0, 0, 1, 0, 0, 3, 0, 0], triangle = [0, 0, 0, 1, 0, 0, 0, 1, 0];
     const bytes = Buffer.from(new Float32Array([...line, ...triangle]).buffer);
     const mesh = (view) => ({ primitives: [{ attributes: { POSITION: view } }] });

@@ -24,7 +24,7 @@ const plantcast = (args, env = {}) =>
 const near = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < 0.002);
 
 for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
-    test(`${schema}: tree, sizes, properties, a shared shape, an opening`, { skip }, () => inFolder((folder) => {
+    test(`${schema}: tree, sizes, properties, a shared shape and an opening are imported`, { skip }, () => inFolder((folder) => {
         writeFileSync(join(folder, 'house.ifc'), ifc(schema));
         const said = plantcast(['import', join(folder, 'house.ifc'), '-o', join(folder, 'plant')]);
         assert.equal(said.status, 0, said.stderr);
@@ -76,7 +76,7 @@ function importAll(folder, schema, elements, found) {
 }
 
 // Round shapes are tessellated with at least 24 corners per circle, so the volume is up to 2.4 % below the exact one.
-test('every kind of shape has the volume and size that geometry gives, area and size of a second reader', { skip }, () => inFolder(
+test('every kind of IFC shape has its geometric volume and size, and the area and size of a second reader', { skip }, () => inFolder(
     async (folder) => {
     const wrong = [], { log, warn } = console, second = await secondReader();
     let right = 0, compared = 0;
@@ -107,7 +107,7 @@ test('every kind of shape has the volume and size that geometry gives, area and 
     assert.ok(!hasOcct || wrong.length === 0, wrong.join('\n'));
 }));
 
-test('every kind of opening is cut by web-ifc or Open CASCADE, or named', { skip }, () => inFolder((folder) => {
+test('every kind of IFC opening is cut by web-ifc or Open CASCADE, or reported by name', { skip }, () => inFolder((folder) => {
     const wrong = [];
     importAll(folder, 'IFC4', OPENINGS.map(([, lines, , type]) => ({ lines, type })), (i, { volume }, said, element) => {
         const [name, , mm3] = OPENINGS[i], text = `${name}: ${(volume * 1e11 / mm3).toFixed(1)} % of the volume`;
@@ -129,7 +129,8 @@ test('every kind of opening is cut by web-ifc or Open CASCADE, or named', { skip
 
 const found = join(DATA, 'found');
 const notThere = skip || (existsSync(join(found, 'ifc_swept')) ? false : 'no ../shared/data/found');
-test('a pipe along a curve with parameters, and a basin with round edges', { skip: notThere }, () => inFolder((folder) => {
+test('a swept pipe with curve parameters and a basin with round edges have the right volume and size',
+    { skip: notThere }, () => inFolder((folder) => {
     for (const name of ['comp_noparams_ifc4', 'comp_params_ifc4', 'comp_params_ifc2x3', 'poly_params_ifc2x3']) {
         const { status, stdout, stderr } = plantcast(['import', join(found, `ifc_swept/${name}.ifc`), '-o', join(folder, name)]);
         assert.equal(status, 0, stderr);
@@ -144,7 +145,7 @@ test('a pipe along a curve with parameters, and a basin with round edges', { ski
     assert.ok(near(size, [0.61, 0.4223, 0.094]) && volume > 0.00203 && volume < 0.00206, `${volume} m3, ${size}`);
 }));
 
-test('an element whose shape is not built is named, with its class and the reason', { skip }, () => inFolder((folder) => {
+test('an element whose shape cannot be built is reported with its class and the reason', { skip }, () => inFolder((folder) => {
     const [, , lines, , type] = KINDS.find(([name]) => name === 'extrusion');
     const good = ifcOf('IFC4', lines, type), [, shape] = /(#\d+)=IFCPRODUCTDEFINITIONSHAPE/.exec(good);
     const missing = good.replace('ENDSEC;\nEND-ISO', () => "#900=IFCSECTIONEDSOLIDHORIZONTAL($,$,$);\n" +
@@ -166,7 +167,8 @@ test('an element whose shape is not built is named, with its class and the reaso
 
 // Grid axis A is a straight line, used in reverse; axis 1 is an arc around the origin, or the curve `second`. The grid is
 // placed 10 m from the origin.
-test('an element is placed where axes of a grid meet, or named', { skip: skip || (hasOcct ? false : 'no Open CASCADE') }, () => inFolder(
+test('an element placed at an intersection of grid axes is imported in place, or reported',
+    { skip: skip || (hasOcct ? false : 'no Open CASCADE') }, () => inFolder(
     (folder) => {
     const imported = (schema, placement, second = '#{arc}') => {
         const lines = [['profile', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,200.,100.)'],
@@ -197,7 +199,7 @@ test('an element is placed where axes of a grid meet, or named', { skip: skip ||
         + '\\(IfcBuildingElementProxy, 0\\$PlantcastKinds0000004\\)'));
 }));
 
-test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => inFolder((folder) => {
+test('broken IFC files are read or refused in one line, and leave no files', { skip }, () => inFolder((folder) => {
     const good = ifc(), wall = /#(\d+)=IFCWALL/.exec(good)[1], building = /#(\d+)=IFCBUILDING\(/.exec(good)[1];
     const storey = /#(\d+)=IFCBUILDINGSTOREY/.exec(good)[1], depth = 50000;
     const broken = {
@@ -214,7 +216,7 @@ test('broken files are read or refused in one line, and leave nothing behind', {
         ({ name, status }) => assert.ok(status !== 0 || !name.startsWith('half'), 'half a plant'));
 }));
 
-test('without Node.js it is refused by name', { skip }, () => inFolder((folder) => {
+test('without Node.js, IFC is refused with a message that names Node.js', { skip }, () => inFolder((folder) => {
     writeFileSync(join(folder, 'a.ifc'), ifc());
     const { status, stderr } = plantcast(['import', join(folder, 'a.ifc'), '-o', join(folder, 'plant')], { PATH: folder });
     assert.equal(status, 1);

@@ -40,7 +40,7 @@ for (const { name, bytes, named } of [
     { name: 'inch.fbx', bytes: fbx(2.54), named: 'inch/Feed pump' }, { name: 'metres.fbx', bytes: fbx(100) },
     { name: 'a.3ds', bytes: threeDs(), named: 'a/#1/Wedge' },
 ])
-    test(`${name}: its size, its height, its names`, { skip }, () => withMaterials((folder) => {
+    test(`${name}: size, height and names are imported`, { skip }, () => withMaterials((folder) => {
         const { triangles, size, centre, list } = boxed(folder, name, bytes);
         assert.equal(triangles, 8);
         assert.ok(near(size, [2, 1, 0.5]) && near(centre, [1, 0.5, 0.25]), JSON.stringify([size, centre]));
@@ -48,7 +48,7 @@ for (const { name, bytes, named } of [
             assert.equal(list.at(-1).path, named);
     }));
 
-test('units and axis are guessed and said, or given', { skip }, () => withMaterials((folder) => {
+test('units and up axis are guessed and reported, or taken from the options', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.stl'), stl(1000));
     const said = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'));
     assert.match(said.stdout,
@@ -60,12 +60,12 @@ test('units and axis are guessed and said, or given', { skip }, () => withMateri
     assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA files state their own units/);
 }));
 
-test('STL in capitals is read', { skip }, () => withMaterials((folder) => {
+test('an STL file in capitals is read', { skip }, () => withMaterials((folder) => {
     const { size, list } = boxed(folder, 'a.stl', stl().replace(/.*/g, (line) => line.toUpperCase()));
     assert.ok(near(size, [2, 1, 0.5]) && list.length > 0, JSON.stringify(size));
 }));
 
-test('STL: the whole line is the name of a solid; the report says which unit was guessed', { skip }, () => withMaterials((folder) => {
+test('STL: a solid\'s name is its whole line; the report says which unit was guessed', { skip }, () => withMaterials((folder) => {
     const bytes = stl().replaceAll('Wedge', 'P-101 A  (spare)'), report = join(folder, 'report.json');
     assert.equal(boxed(folder, 'a.stl', bytes).list.at(-1).name, 'P-101 A  (spare)');
     const models = (...args) => {
@@ -78,7 +78,7 @@ test('STL: the whole line is the name of a solid; the report says which unit was
     assert.equal(models('--mesh-units', 'mm')[0].unit, null);
 }));
 
-test('OBJ: a material file in a folder with backslashes', { skip }, () => withMaterials((folder) => {
+test('OBJ: a material file in a folder written with backslashes is found', { skip }, () => withMaterials((folder) => {
     mkdirSync(join(folder, 'looks'));
     writeFileSync(join(folder, 'looks/wedge.mtl'), mtl);
     const { triangles } = boxed(folder, 'a.obj', obj().replace(/mtllib .*/, 'mtllib .\\looks\\wedge.mtl'));
@@ -121,7 +121,8 @@ function glbOf(...chunks) {
     return Buffer.concat([head, ...parts]);
 }
 
-test('glTF: names of files with percent signs and accents, required looks, missing pictures', { skip }, () => withMaterials((folder) => {
+test('glTF: percent signs and accents in file names are decoded; unknown required extensions and missing images are handled',
+    { skip }, () => withMaterials((folder) => {
     const file = (name) => writeFileSync(join(folder, name), triangle);
     for (const [name, uri] of [['tank 10%.bin', 'tank 10%.bin'], ['a+b#1.bin', 'a+b%231.bin'], ['50%25.bin', '50%25.bin'],
         ['Behälter.bin'.normalize('NFD'), 'Behälter.bin'.normalize('NFC')],
@@ -163,7 +164,8 @@ const read = (folder, name, bytes) => {
         json: JSON.parse(bytesOfGlb.subarray(20, 20 + bytesOfGlb.readUInt32LE(12))) };
 };
 
-test('FBX: surfaces without place, with two places or without finite corners are named', { skip }, () => withMaterials((folder) => {
+test('FBX: surfaces without placement, with two placements or without finite corners are reported',
+    { skip }, () => withMaterials((folder) => {
     const model = (id, name, x = 0) => `    Model: ${id}, "Model::${name}", "Mesh" {\n        Version: 232\n        Properties70:  {\n` +
         `            P: "Lcl Translation", "Lcl Translation", "", "A",${x},0,0\n        }\n    }\n`;
     const withModels = (models, links) => fbx().replace('    Model: 200', `${models}    Model: 200`)
@@ -184,7 +186,7 @@ test('FBX: surfaces without place, with two places or without finite corners are
             /left out: \d+ triangles whose coordinates are infinite or not numbers, in Feed pump\n/);
 }));
 
-test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () => withMaterials((folder) => {
+test('FBX, COLLADA and OBJ: shapes that are not read are reported', { skip }, () => withMaterials((folder) => {
     const nurbs = fbx().replace('    Model: 200', '    Geometry: 101, "Geometry::Shell", "NurbsSurface" {\n        Form: "Open"\n    }\n' +
         '    Model: 201, "Model::Tank shell", "NurbsSurface" {\n        Version: 232\n    }\n    Model: 200')
         .replace('    C: "OO",200,0', '    C: "OO",200,0\n    C: "OO",201,0\n    C: "OO",101,201');
@@ -216,7 +218,7 @@ const SECOND = [['a.obj', obj()], ['polygons.obj', polygons], ['mm.dae', dae(0.0
         '            P: "Lcl Scaling", "Lcl Scaling", "", "A",-1,2,1'), { metres: 0.0254 }]];
 // Indented with tabs, without which the second reader cannot read FBX.
 const indented = (text) => Buffer.from(text.replace(/^( {4})+/gm, (blanks) => '\t'.repeat(blanks.length / 4)));
-test('FBX, COLLADA and OBJ: area and size are those of a second reader', { skip }, (t) => withMaterials(async (folder) => {
+test('FBX, COLLADA and OBJ: area and size equal those of a second reader', { skip }, (t) => withMaterials(async (folder) => {
     const second = await secondMeshReader();
     if (!second)
         return t.skip('no second reader: npm ci in tests/e2e brings three and @xmldom/xmldom');
@@ -232,7 +234,7 @@ test('FBX, COLLADA and OBJ: area and size are those of a second reader', { skip 
     }
 }));
 
-test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }, () => withMaterials((folder) => {
+test('glTF: nodes without triangles, and nodes in no scene, are reported', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.bin'), triangle);
     const mesh = (mode, indices = 1) => ({ primitives: [{ attributes: { POSITION: 0 }, indices, mode }] });
     const { lost, left_out, out } = read(folder, 'a.gltf', gltf('a.bin', { scenes: [{ nodes: [0, 1, 2, 3] }, { nodes: [4] }],
@@ -245,7 +247,8 @@ test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }
         "not in the file's default scene: 1 node with a mesh, node 4 'S-5'"]);
 }));
 
-test('glTF: the diffuse colour of older materials, odd kinds of images, other chunks', { skip }, () => withMaterials((folder) => {
+test('glTF: the diffuse colour of old materials, unusual image types and unknown chunks are read',
+    { skip }, () => withMaterials((folder) => {
     const png = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4z8DwHwAFAAH/iZk9HQAAAABJRU5ErkJggg==';
     writeFileSync(join(folder, 'a.bin'), triangle);
     const old = (more) => ({ name: 'paint', extensions: { KHR_materials_pbrSpecularGlossiness: more } });
@@ -264,7 +267,7 @@ test('glTF: the diffuse colour of older materials, odd kinds of images, other ch
 
 // gltfpack writes two buffers: the compressed one, and an empty one for programs that cannot decompress.
 const noPacker = spawnSync('gltfpack', ['-v']).error ? 'no gltfpack' : false;
-test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || noPacker }, () => withMaterials((folder) => {
+test('glTF: meshopt data with a fallback buffer without a uri is read', { skip: skip || noPacker }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.bin'), triangle);
     writeFileSync(join(folder, 'a.gltf'), gltf('a.bin'));
     assert.equal(spawnSync('gltfpack', ['-i', join(folder, 'a.gltf'), '-o', join(folder, 'b.gltf'), '-cc', '-kn', '-noq'],
@@ -281,7 +284,7 @@ test('glTF: meshopt, with a fallback buffer that has no uri', { skip: skip || no
     }
 }));
 
-test('a signal ends it, and nothing is left behind', { skip }, () => withMaterials(async (folder) => {
+test('a signal ends the import, and no file is left behind', { skip }, () => withMaterials(async (folder) => {
     writeFileSync(join(folder, 'a.ply'), ply().slice(0, ply().length >> 1)); // Assimp hangs on this truncated file
     const program = spawn(join(BIN, 'plantcast'), ['import', join(folder, 'a.ply'), '-o', join(folder, 'plant')]);
     let said = '';
@@ -296,14 +299,14 @@ test('a signal ends it, and nothing is left behind', { skip }, () => withMateria
     assert.deepEqual(readdirSync(folder).sort(), ['a.ply', 'wedge.mtl']);
 }));
 
-test('a colour is kept', { skip }, () => withMaterials((folder) => {
+test('OBJ: a material\'s colour is imported', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'a.obj'), obj());
     assert.equal(plantcast('import', join(folder, 'a.obj'), '-o', join(folder, 'plant')).status, 0);
     const bytes = readFileSync(join(folder, 'plant/a.glb')), { materials } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
     assert.deepEqual(materials[0].pbrMetallicRoughness.baseColorFactor, [1, 0, 0, 1]);
 }));
 
-test('textures are left out, and that is said', { skip }, () => withMaterials((folder) => {
+test('textures are left out, and the report says so', { skip }, () => withMaterials((folder) => {
     writeFileSync(join(folder, 'wedge.mtl'), `${mtl}map_Kd rust.png\nmap_Bump bump.png\n`);
     writeFileSync(join(folder, 'a.obj'), obj());
     const said = plantcast('import', join(folder, 'a.obj'), '-o', join(folder, 'plant'));
@@ -347,7 +350,7 @@ for (const [ending, bytes] of [['obj', obj()], ['stl', stl()], ['b.stl', stlBina
     Object.assign(broken, { [`empty.${ending}`]: '', [`half.${ending}`]: bytes.slice(0, bytes.length >> 1),
         [`noise.${ending}`]: noise(bytes, 29), [`zeros.${ending}`]: Buffer.alloc(5000) });
 
-test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => withMaterials((folder) => {
+test('broken mesh files are read or refused in one line, and leave no files', { skip }, () => withMaterials((folder) => {
     let refused = 0;
     importBroken(folder, broken, () => ['--timeout', '3', '--memory', '2000'], ({ name, status, stdout, stderr }) => {
         assert.ok(status !== 0 || !name.startsWith('half'), 'half a plant');

@@ -120,7 +120,7 @@ const wrong = (page, pattern) => page.waitForFunction((what) => new RegExp(what)
 
 // --- requests over HTTP
 
-test('uploads: names, sizes, other sites, one import at a time', options, async () => {
+test('uploads with a bad name, a bad size or from another site are refused, and only one import runs at a time', options, async () => {
     const served = await Served.start();
     try {
         const put = (name, body = 'x', headers = {}) => served.post(`/upload?name=${encodeURIComponent(name)}`, body, headers);
@@ -157,7 +157,7 @@ test('uploads: names, sizes, other sites, one import at a time', options, async 
     }
 });
 
-test('files on their way: four at most, and none that drips', options, async () => {
+test('at most four uploads run at a time, and one that trickles is ended', options, async () => {
     const served = await Served.start(), drips = [];
     const put = (name) => served.post(`/upload?name=${name}`, 'x');
     try {
@@ -186,7 +186,7 @@ test('files on their way: four at most, and none that drips', options, async () 
     }
 });
 
-test('a daemon that brings no plants in has none of these', options, async () => {
+test('a daemon that does not serve imports has none of the import URLs', options, async () => {
     const { TinyPlant } = await import('./support/tiny_plant.mjs'), plant = await TinyPlant.running();
     try {
         const url = `http://127.0.0.1:${plant.port}/api/v1/import`;
@@ -199,7 +199,7 @@ test('a daemon that brings no plants in has none of these', options, async () =>
     }
 });
 
-test('what goes wrong is one line, and the plant before stays', options, async () => {
+test('a failed import gives one error line, and the previous plant stays', options, async () => {
     const served = await Served.start();
     const put = (name, body) => served.post(`/upload?name=${encodeURIComponent(name)}`, body);
     const fails = async (pattern) => {
@@ -237,7 +237,7 @@ test('what goes wrong is one line, and the plant before stays', options, async (
     }
 });
 
-test('an import that fails or is cancelled once the new models are in place: the models before come back, too', options, async () => {
+test('an import that fails or is cancelled after placing its models restores the previous models, too', options, async () => {
     const served = await Served.start();
     // returns the folder's files by name, without kept versions of replaced files (NAME.1, ...)
     const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true })
@@ -321,7 +321,7 @@ test('an import that fails or is cancelled once the new models are in place: the
     }
 });
 
-test('40 % of the rows are there twice, and one tag with control characters', options, async () => {
+test('the import reports duplicate rows and a tag name with control characters', options, async () => {
     const given = mkdtempSync(join(tmpdir(), 'plantcast-given-')), lines = TAGS.trim().split('\n').slice(1);
     const [model, list] = ['plant.gltf', 't.csv'].map((name) => join(given, name));
     writeFileSync(model, boxes(NAMES));
@@ -353,7 +353,7 @@ after(async () => {
     await served?.destroy();
 });
 
-test('an empty plant opens the panel; a model and a tag list make a plant', options, async () => {
+test('an empty plant opens the import panel; a model and a tag list make a plant', options, async () => {
     await waitForPicture(page);
     await page.locator('#import.new .drop').waitFor();
     await page.locator('.drop-zone').waitFor(); // an empty plant shows this instead of a picture, which would show only the human figure
@@ -372,7 +372,8 @@ test('an empty plant opens the panel; a model and a tag list make a plant', opti
     await shoot(page, 'import-2-plant');
 });
 
-test('by keyboard: gone through, its candidates light up, one accepted, all of a pattern, none; saved', options, async () => {
+test('by keyboard a user browses doubtful tags and their candidates, accepts one, a whole pattern or none, and saves',
+    options, async () => {
     await page.locator('#import .segments label', { hasText: 'Doubtful' }).click();
     await row(page, 'TT-201').click();
     const lit = () => page.evaluate(() => globalThis.plantcast.modules.there('import').highlights.assets.map(({ id }) => id));
@@ -403,7 +404,7 @@ test('by keyboard: gone through, its candidates light up, one accepted, all of a
     await page.waitForFunction(() => globalThis.plantcast.session.model.tag('TT-201')?.asset === 'P-201B');
 });
 
-test('a tag that nothing proposes goes onto the equipment that is selected in the picture', options, async () => {
+test('a tag without a candidate can be put on the equipment selected in the picture', options, async () => {
     await row(page, 'TT-9999').click();
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101' }));
     await row(page, 'TT-9999').click();
@@ -413,7 +414,7 @@ test('a tag that nothing proposes goes onto the equipment that is selected in th
     assert.match(served.read('matches.csv'), /^TT-9999,sure,E-101,,,by hand/m);
 });
 
-test('what was decided stays when the models are read again in other units', options, async () => {
+test('decisions stay when the models are read again in other units', options, async () => {
     const size = () => page.locator('#import .measures .size').textContent();
     await page.locator('#import .measures summary').click();
     assert.match(await size(), /^9\.00 × 1\.00 × 1\.00 m$/);
@@ -432,7 +433,7 @@ test('what was decided stays when the models are read again in other units', opt
     await shoot(page, 'import-5-units');
 });
 
-test('placed by hand: the engineer\'s panel takes over, and the tag is not unplaced any more', options, async () => {
+test('a tag can be placed by hand in the engineer\'s panel, and then counts as placed', options, async () => {
     await row(page, 'TT-9999').click();
     await page.getByRole('button', { name: 'Place by hand' }).click();
     await page.waitForFunction(() => /TT-9999/.test(document.querySelector('#engineer .hint')?.textContent ?? ''));
@@ -471,7 +472,7 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     await page.locator('#engineer').waitFor({ state: 'hidden' });
 });
 
-test('an import that fails says why in one line', options, async () => {
+test('a failed import gives its reason in one line', options, async () => {
     await choose(page, [{ name: 'plant.stl', text: 'no model at all' }]);
     await wrong(page, 'plant\\.stl');
     assert.deepEqual(await assetsOf(page), NAMES);
@@ -482,7 +483,7 @@ test('an import that fails says why in one line', options, async () => {
 const READERS = sweep([['dark, German', 'de', DESK, true], ['Korean on a tablet', 'ko', TABLET, false]],
     [['dark, German, on a tablet', 'de', TABLET, true]]);
 for (const [name, language, screen, dark] of READERS)
-    test(`the panel in ${name}`, options, async () => {
+    test(`the import panel fits and works: ${name}`, options, async () => {
         const other = await openPage(`${served.url}?lang=${language}${dark ? '&theme=dark' : ''}`, screen);
         try {
             await waitForPicture(other.page);
@@ -538,7 +539,7 @@ large('400,000 triangles and 300 tags: a first picture within 5 minutes of the f
     }
 });
 
-test('a source: stated, values seen to arrive, corrected, kept when the plant is made from scratch', options, async () => {
+test('a data source is entered, its values are seen, it is corrected, and it survives an import from scratch', options, async () => {
     const own = await Served.start(), seen = await openPage(`${own.url}?lang=en`, DESK), { page: desk } = seen;
     const list = ['Tag Name,Address,Data Type,Scaled Low,Scaled High,Eng Units,Description', 'E-101.TT-01,400001,Float,0,150,degC,Shell',
         'P-201A.TT-01,400003,Float,0,120,degC,Bearing', 'P-201B.PT-01,400005,Float,0,16,bar,Outlet', ''].join('\n');
@@ -615,7 +616,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
     }
 });
 
-test('decisions stay when what tags were matched to cannot be fetched', options, async () => {
+test('decisions stay when the matches cannot be fetched', options, async () => {
     await page.unrouteAll();
     const inPanel = (f) => page.evaluate(f), decided = () => inPanel(() =>
         globalThis.plantcast.modules.there('import').table.matches.decisions.size);
@@ -635,7 +636,7 @@ test('decisions stay when what tags were matched to cannot be fetched', options,
     await inPanel(() => globalThis.plantcast.modules.there('import').table.forget());
 });
 
-test('millimetres taken for metres: seen beside a person, and corrected', options, async () => {
+test('millimetres read as metres are noticed beside a person\'s figure, and corrected', options, async () => {
     const huge = await Served.start(), seen = await openPage(`${huge.url}?lang=en`, DESK);
     const size = () => seen.page.locator('#import .measures .size').textContent();
     try {
@@ -660,7 +661,7 @@ test('millimetres taken for metres: seen beside a person, and corrected', option
     }
 });
 
-test('letters: what a list is read as is shown, and another encoding is chosen', options, async () => {
+test('the panel shows the text encoding of a list, and the user chooses another', options, async () => {
     const own = await Served.start(), view = await openPage(`${own.url}?lang=en`, DESK), { page: sheet } = view;
     const text = 'Tag Name,Eng Units,Description\nTI-101,℃,泵轴承温度\n';
     const { stdout: list } = spawnSync('iconv', ['-f', 'UTF-8', '-t', 'GB18030'], { input: text });
@@ -687,7 +688,8 @@ test('letters: what a list is read as is shown, and another encoding is chosen',
 
 const noReader = notBuilt || (['plantcast-import-assimp', 'plantcast-import-ifc/ifc.mjs'].every((name) => existsSync(join(BIN, name)))
     ? false : 'built without Assimp or web-ifc');
-test('a guessed unit is a question that reads again; lost elements are counted and named', { ...options, skip: noReader }, async () => {
+test('the panel asks about a guessed unit and reads the model again; lost elements are counted and named',
+    { ...options, skip: noReader }, async () => {
     const own = await Served.start(), view = await openPage(`${own.url}?lang=en`, DESK), { page: sheet } = view;
     const [, , lines, , type] = KINDS.find(([name]) => name === 'extrusion');
     const lost = ['$', '#999'].map((shape, i) => `#90${3 + i}=IFCPIPESEGMENT('0$PlantcastKinds000000${i}',$,'LINE-100${i}',$,$,$,` +

@@ -31,7 +31,7 @@ const near = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < 0.002);
 
 for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { file: 'skid_214.stp', unit: 'inch' },
     { file: 'skid_242.STEP', unit: 'metre' }])
-    test(`${file}: tree, names, sizes, colours, shared parts`, { skip }, () => withSamples((folder) => {
+    test(`${file}: tree, names, sizes, colours and shared parts are imported`, { skip }, () => withSamples((folder) => {
         const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant'));
         assert.equal(said.status, 0, said.stderr);
         assert.match(said.stdout, /4 parts in 11 places; chord error 1 mm; Z axis up/);
@@ -60,7 +60,7 @@ for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { f
         assert.equal(daemon.status, 0, daemon.stderr);
     }));
 
-test('a finer chord error has more triangles, Y up stands otherwise', { skip }, () => withSamples((folder) => {
+test('--chord refines the triangles, --up y turns the model, and --units is refused for STEP', { skip }, () => withSamples((folder) => {
     const of = (...args) => JSON.parse(plantcast('nodes', join(folder, 'skid_203.step'), '--json', ...args).stdout);
     const [coarse, fine, y] = [of(), of('--chord', '0.05'), of('--up', 'y')];
     assert.ok(fine.triangles > 1.5 * coarse.triangles, `${coarse.triangles}, ${fine.triangles}`);
@@ -71,7 +71,7 @@ test('a finer chord error has more triangles, Y up stands otherwise', { skip }, 
 }));
 
 for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 'inches.IGES', unit: 'inch' }])
-    test(`${file}: tree, names, sizes, colours, shared parts`, { skip }, () => withSamples((folder) => {
+    test(`${file}: tree, names, sizes, colours and shared parts are imported`, { skip }, () => withSamples((folder) => {
         const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant')), stem = file.replace(/\.\w+$/, '');
         assert.equal(said.status, 0, said.stderr);
         assert.match(said.stdout, /5 parts in 13 places; chord error 1 mm; Z axis up/);
@@ -98,7 +98,7 @@ for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 
         assert.equal(daemon.status, 0, daemon.stderr);
     }));
 
-test('IGES without groups, and as Open CASCADE writes an assembly', { skip }, () => withSamples((folder) => {
+test('IGES without groups, and an IGES assembly written by Open CASCADE, are imported', { skip }, () => withSamples((folder) => {
     const nodes = (file) => JSON.parse(plantcast('nodes', join(folder, file), '--json').stdout).list;
     const [all, ...layers] = nodes('loose.igs');
     assert.ok(near(all.size, [0.1, 0.2, 0.3]), JSON.stringify(all));
@@ -120,7 +120,7 @@ function imported(folder, name) {
     return { ...found, ...shown, status, out: `${stdout}${stderr}` };
 }
 
-test('a face that Open CASCADE cannot tessellate as it is has its triangles', { skip }, () => withSamples((folder) => {
+test('a face that Open CASCADE cannot tessellate unchanged still gets its triangles', { skip }, () => withSamples((folder) => {
     writeFileSync(join(folder, 'cone.stp'), cone());
     const { area, size, lost, out } = imported(folder, 'cone.stp'), slant = (CONE.large - CONE.small) * Math.SQRT2;
     assert.ok(Math.abs(area / (Math.PI * (CONE.large + CONE.small) * slant * 1e-6) - 1) < 0.01, `${area} m2: ${out}`);
@@ -128,7 +128,7 @@ test('a face that Open CASCADE cannot tessellate as it is has its triangles', { 
     assert.deepEqual(lost, []);
 }));
 
-test('area and size are those of a second reader', { skip }, (t) => withSamples(async (folder) => {
+test('STEP: area and size equal those of a second reader', { skip }, (t) => withSamples(async (folder) => {
     const second = await secondCadReader();
     if (!second)
         return t.skip('no second reader: npm ci in tests/e2e brings occt-import-js');
@@ -145,7 +145,7 @@ test('area and size are those of a second reader', { skip }, (t) => withSamples(
     }
 }));
 
-test('parts in other files: names in other cases, of other folders, with escapes; missing ones are named', { skip },
+test('parts in other files are found despite case, folders and escapes in their names; missing ones are named', { skip },
     () => withSamples((folder) => {
         for (const name of ['a.stp', 'b.stp', 'Geh\u00e4use.step'])
             writeFileSync(join(folder, name), cone());
@@ -159,7 +159,7 @@ test('parts in other files: names in other cases, of other folders, with escapes
 
 // Removes one statement of each kind. The import then names what is missing; where Open CASCADE crashes instead, that too is
 // one line of output.
-test('STEP: no kind of damage takes surface away without a word', { skip }, () => withSamples((folder) => {
+test('STEP: no kind of damage removes surface without a report', { skip }, () => withSamples((folder) => {
     const text = readFileSync(join(folder, 'skid_203.step'), 'latin1'), whole = imported(folder, 'skid_203.step').area, silent = [];
     const table = { 'as before': 0, named: 0, refused: 0 };
     for (const kind of ['ADVANCED_FACE', 'EDGE_LOOP', 'EDGE_CURVE', 'VERTEX_POINT', 'PLANE', 'CYLINDRICAL_SURFACE', 'AXIS2_PLACEMENT_3D',
@@ -181,7 +181,7 @@ test('STEP: no kind of damage takes surface away without a word', { skip }, () =
 }));
 
 // Each broken file is either read or refused with one line, within its time limit, and leaves nothing behind.
-test('broken files are one line each, and leave nothing behind', { skip }, () => withSamples((folder) => {
+test('each broken STEP or IGES file gets one error line, and leaves no files', { skip }, () => withSamples((folder) => {
     const step = readFileSync(join(folder, 'skid_214.stp')), iges = readFileSync(join(folder, 'skid.igs'));
     const text = step.toString('latin1');
     const ring = text.replace(/NEXT_ASSEMBLY_USAGE_OCCURRENCE\(('[^']*','[^']*','[^']*'),#(\d+),#(\d+)/g,

@@ -29,7 +29,8 @@ const etc = (...names) => join(root, 'etc/plantcast', ...names), mode = (path) =
 
 const UP = /^plantcast_source_up\{[^}]*\} 1$/m;
 
-test('init makes folders, plant file, certificate and tokens, and the daemon serves with them', { skip, timeout: 100000 }, async () => {
+test('plantcast init makes folders, plant file, certificate and tokens, and the daemon serves with them',
+    { skip, timeout: 100000 }, async () => {
     const port = await freePort();
     const { code, out, err } = init('one', '--plant', plant.folder, '--host', 'localhost', '--port', String(port));
     assert.equal(code, 0, err);
@@ -64,7 +65,7 @@ test('init makes folders, plant file, certificate and tokens, and the daemon ser
     assert.equal(whole, 0, why);
 });
 
-test('init touches nothing that is there, and gives the next plant another port', { skip }, () => {
+test('plantcast init changes no existing file, and gives the next plant another port', { skip }, () => {
     const options = readFileSync(etc('one/options'), 'utf8');
     const again = init('one', '--plant', plant.folder);
     assert.equal(again.code, 1);
@@ -80,7 +81,7 @@ test('init touches nothing that is there, and gives the next plant another port'
     assert.ok(!existsSync(etc('four')));
 });
 
-test('a certificate that certbot renewed is copied to the plants that name it', { skip }, () => {
+test('a certificate renewed by certbot is copied to the plants that name it', { skip }, () => {
     const lineage = join(root, 'live/plant.example');
     mkdirSync(lineage, { recursive: true });
     for (const part of ['fullchain', 'privkey'])
@@ -95,7 +96,7 @@ test('a certificate that certbot renewed is copied to the plants that name it', 
     assert.match(readFileSync(etc('three/tls/privkey.pem'), 'utf8'), /BEGIN PRIVATE KEY/);
 });
 
-test('a certificate of init is renewed before it expires, and programs that trust the old one accept it; others stay', { skip }, () => {
+test('an own certificate is renewed before it expires, clients that trust the old one accept it; other certificates stay', { skip }, () => {
     const tls = (name) => etc('two/tls', name), openssl = (...args) => {
         const { status, stdout, stderr } = spawnSync('openssl', args, { encoding: 'utf8' });
         return { status, stdout, stderr };
@@ -158,7 +159,7 @@ async function simulatedPlant() {
     return own;
 }
 
-test('`make run` twice on a machine: the second takes another port, and both are fed', { skip, timeout: 200000 }, async (t) => {
+test('a second `make run` on a machine takes another port, and both plants get values', { skip, timeout: 200000 }, async (t) => {
     const own = await simulatedPlant(), runs = [], yaml = readFileSync(own.file, 'utf8');
     t.after(async () => {
         for (const run of runs)
@@ -222,7 +223,7 @@ for (const [how, end] of sweep(ENDINGS, [ENDINGS[1], ENDINGS[2]]))
             await new Promise((done) => setTimeout(done, 50));
     });
 
-test('without npm or a network no page without charts is built', () => {
+test('without npm or a network, the build fails instead of making a page without charts', () => {
     const tree = join(root, 'tree'), bin = join(root, 'bin');
     mkdirSync(join(tree, 'clients/web'), { recursive: true });
     mkdirSync(join(tree, 'deploy'));
@@ -239,7 +240,7 @@ test('without npm or a network no page without charts is built', () => {
     assert.match(offline.stderr, /could not download uPlot/);
 });
 
-test('a package that this Debian does not have is left out if it is optional, and is an error if it is not', () => {
+test('a package that this Debian lacks is skipped if optional, and is an error if required', () => {
     const tree = join(root, 'deps'), bin = join(root, 'deps-bin'), packages = join(tree, 'deploy/packages');
     mkdirSync(packages, { recursive: true });
     mkdirSync(bin);

@@ -53,7 +53,7 @@ const open = async (key) => {
     await page.keyboard.press(key);
 };
 
-test('files are kept as they are used, parts too', options, async () => {
+test('the service worker caches files as the page uses them, parts loaded later too', options, async () => {
     await reload();
     await open('v');
     await page.locator('#views.open').waitFor();
@@ -64,7 +64,7 @@ test('files are kept as they are used, parts too', options, async () => {
         assert.ok(files.includes(path), path);
 });
 
-test('with another version nothing of the one before stays', options, async () => {
+test('a new version of the page replaces all cached files of the old one', options, async () => {
     // The page may still request the version after its last part was loaded, and would then reload itself just when told to.
     await page.evaluate(() => sessionStorage.setItem('plantcast.renewed', 'bbbbbbbbbbbb'));
     version = 'bbbbbbbbbbbb';
@@ -88,7 +88,7 @@ test('a wall display without a network shows its name and since when it is offli
     await display.close();
 });
 
-test('without a network it opens, and says what is missing', options, async () => {
+test('the installed page opens without a network, and says what is missing', options, async () => {
     await open('v');
     await page.locator('#views.open').waitFor();
     server.closeAllConnections();

@@ -148,7 +148,7 @@ const upload = (name, body) => fetch(`http://127.0.0.1:${port}/api/v1/import/upl
 const isDone = ({ done, kept, saved, passed }) => (done ?? 0) > 0 || kept === true || saved === true || (passed && kept !== false);
 const whyNot = ({ why, refused = [], errors = [] }) => [why, ...errors, ...refused.flat()].filter(Boolean).join('; ');
 
-test('on a full disk each kind is answered with "not kept", and why; once there is room, it is', options, async (t) => {
+test('on a full disk each action is answered "not kept" with the reason; once there is space, it is kept', options, async (t) => {
     if (!mounted)
         return t.skip('this user may not mount a file system');
     t.after(free);
@@ -183,7 +183,8 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
     assert.notEqual(state, 'unacknowledged', 'a change that could not be kept is kept once there is space');
 });
 
-test('what is answered as done is there after a kill -9 in that moment, and in the trail', { ...options, timeout: 300000 }, async (t) => {
+test('an action answered as done survives a kill -9 at that moment, and is in the audit trail',
+    { ...options, timeout: 300000 }, async (t) => {
     if (!mounted)
         return t.skip('this user may not mount a file system');
     await plant.tell('set TI-1 20');
@@ -213,7 +214,7 @@ test('what is answered as done is there after a kill -9 in that moment, and in t
         ACTIONS.map(([name]) => name).join(', ')}, upload an export`);
 });
 
-test('a short link is in the trail by its id when it is new, and not when it is used', options, async () => {
+test('creating a short link is recorded in the audit trail with the link\'s id; using the link is not', options, async () => {
     const begun = trail().length, share = { type: 'share_view', view: 'group=pressure' };
     for (const seq of [1, 2]) {
         const { answer, client } = await act(share, 'view_shared', seq);
@@ -250,7 +251,7 @@ const inFiles = async (at) => [
     [{ type: 'pair', digits: (await (await device(at)).json()).digits }, 'paired'],
 ];
 
-test('while the disk hangs, each action is answered with "not kept", and others are served meanwhile', options, async (t) => {
+test('while the disk hangs, each action is answered "not kept", and other clients are served meanwhile', options, async (t) => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-frozen-')), small = freezable(folder);
     t.after(() => rmSync(folder, { recursive: true, force: true }));
     if (!small)
@@ -330,7 +331,7 @@ test('while the disk hangs, each action is answered with "not kept", and others 
     }
 });
 
-test('the page says that it is not kept, in three languages', options, async (t) => {
+test('the page says in three languages that an action was not saved because the disk is full', options, async (t) => {
     if (!mounted)
         return t.skip('this user may not mount a file system');
     for (const [lang, words] of [['en', /Applied, but lost if the server restarts \(not saved: the server’s disk is full\)/],

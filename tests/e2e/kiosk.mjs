@@ -95,7 +95,7 @@ after(async () => {
     rmSync(state ?? '', { recursive: true, force: true });
 });
 
-test('it feeds the watchdog while the page answers; what the page keeps outlives a restart', options, async () => {
+test('the kiosk feeds the watchdog while the page responds; the page\'s storage survives a restart', options, async () => {
     startKiosk(`http://127.0.0.1:${port}/`);
     await until('it is ready, and is fed', () => /notify: READY=1/.test(kiosk.said) && kiosk.fed() > 2 && beats.length > 0);
     const [secret] = beats;
@@ -109,7 +109,7 @@ test('it feeds the watchdog while the page answers; what the page keeps outlives
     assert.equal(await kiosk.ended, 0);
 });
 
-test('a page whose main thread hangs does not feed it: the service is started again', options, async () => {
+test('a page whose main thread hangs does not feed the watchdog, and the service manager restarts the kiosk', options, async () => {
     startKiosk(`http://127.0.0.1:${port}/`);
     beats.length = 0;
     await until('it is fed', () => kiosk.fed() > 1 && beats.length > 0);
@@ -119,7 +119,7 @@ test('a page whose main thread hangs does not feed it: the service is started ag
     answer = '';
 });
 
-test('nor does a browser that stands still', options, async () => {
+test('a frozen browser does not feed the watchdog', options, async () => {
     startKiosk(`http://127.0.0.1:${port}/`);
     await until('it is fed', () => kiosk.fed() > 1);
     kiosk.pids = family(kiosk.pid());
@@ -128,7 +128,7 @@ test('nor does a browser that stands still', options, async () => {
     assert.equal(await kiosk.ended, 99, kiosk.said);
 });
 
-test('while the server is away it is not started again, and shows the page once the server is there', options, async () => {
+test('while the server is down the kiosk is not restarted, and it shows the page once the server is up', options, async () => {
     server.closeAllConnections();
     await new Promise((done) => server.close(done));
     startKiosk(`http://127.0.0.1:${port}/`);
@@ -139,7 +139,7 @@ test('while the server is away it is not started again, and shows the page once 
     assert.equal(kiosk.code, null);
 });
 
-test('a browser that ends ends the service', options, async () => {
+test('the kiosk service ends when its browser ends', options, async () => {
     startKiosk(`http://127.0.0.1:${port}/`);
     await until('it is fed', () => kiosk.fed() > 1);
     kiosk.pids = family(kiosk.pid());
@@ -162,7 +162,7 @@ function authority(name) {
 }
 
 const noCertutil = why || (spawnSync('certutil', ['-H']).error ? 'certutil is not installed (libnss3-tools)' : false);
-test('it shows a server whose certificate another authority signed than before', { ...options, skip: noCertutil }, async () => {
+test('the kiosk still shows a server whose certificate authority has changed', { ...options, skip: noCertutil }, async () => {
     const file = join(state, 'kiosk.pem'), [former, present] = ['Former works', 'Present works'].map(authority);
     const secure = createSecureServer({ cert: present.cert, key: present.key },
         (request, response) => server.emit('request', request, response));
@@ -186,7 +186,7 @@ test('it shows a server whose certificate another authority signed than before',
     }
 });
 
-test('in cage, which draws into memory here, as on a monitor', { ...options, skip: noCage }, async () => {
+test('in cage, which draws into memory here, the kiosk shows the page as on a monitor', { ...options, skip: noCage }, async () => {
     const own = state;
     state = mkdtempSync(join(tmpdir(), 'plantcast-cage-'));
     chownSync(state, NOBODY, NOBODY); // cage refuses to run as root
@@ -206,7 +206,7 @@ test('in cage, which draws into memory here, as on a monitor', { ...options, ski
 });
 
 const noPlant = notBuilt();
-test('it shows a wall of a plant', { ...options, skip: why || noPlant }, async () => {
+test('the kiosk shows a wall of a plant', { ...options, skip: why || noPlant }, async () => {
     const plant = await startTiny(`
 views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
 walls: [{ id: room, displays: [{ grid: [main main time], panes: [{ area: main, views: [whole] }, { area: time, clock: yes }] }] }]
@@ -232,7 +232,7 @@ walls: [{ id: room, displays: [{ grid: [main main time], panes: [{ area: main, v
 });
 
 const noAnalyze = spawnSync('systemd-analyze', ['--version']).error ? 'no systemd-analyze' : false;
-test('systemd finds nothing wrong with its units', { skip: noAnalyze }, () => {
+test('systemd-analyze finds no fault in the kiosk\'s units', { skip: noAnalyze }, () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-units-')), names = ['.service', '-restart.service', '-restart.timer'];
     try {
         for (const name of names) // starts /bin/true instead of the kiosk's programs, which are not installed here

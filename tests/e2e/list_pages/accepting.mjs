@@ -58,7 +58,7 @@ const says = (selector, text) => page.waitForFunction(([where, what]) =>
 const rows = () => readFileSync(tagsFile, 'utf8').split('\n').filter((row) => row.startsWith('TA-'));
 const assumed = () => rows().filter((row) => /equipment\r?$/.test(row)).length;
 
-test('the filter says how many, which not and why, and marks them on the model', options, async () => {
+test('the filter shows how many locations would be accepted and why others are not, and marks them on the model', options, async () => {
     const all = count((i) => !isNowhere(i));
     await says('#engineer .accept p', `${all} locations would be accepted`);
     await says('#engineer .accept ul', '20 left out: no node and no position');
@@ -81,7 +81,7 @@ test('the filter says how many, which not and why, and marks them on the model',
     assert.equal(assumed(), ASSUMED, 'nothing is written before');
 });
 
-test('accepted: one list, one line in the audit trail, the others as they were', options, async () => {
+test('accepting five hundred locations writes one list and one audit line, and leaves the other rows unchanged', options, async () => {
     await page.locator('#engineer .accept select').selectOption('');
     await page.getByPlaceholder('Name or description').fill('');
     const sure = count((i) => i < 250 && !isOff(i));
@@ -104,7 +104,7 @@ test('accepted: one list, one line in the audit trail, the others as they were',
     await shoot(page, 'accepting-accepted');
 });
 
-test('undone, also after a reload of the page: the list is what it was, to the byte', options, async () => {
+test('undo restores the old list byte for byte, also after a reload of the page', options, async () => {
     await page.reload();
     await waitForPicture(page);
     await page.locator('#engineer-toggle').click();
@@ -120,7 +120,7 @@ test('undone, also after a reload of the page: the list is what it was, to the b
     assert.deepEqual(browser.errors, []);
 });
 
-test('on the command line: the same places, with a trial before and undo', options, () => {
+test('on the command line, accepting gives the same locations, and offers a dry run and undo', options, () => {
     const sure = count((i) => i < 250 && !isOff(i));
     const accept = (...args) => runProgram('plantcast', ['sensors', 'accept', plant.file, ...args]);
     const trial = accept('--within', '0.1', '--confidence', '0.9', '--dry-run');
@@ -143,7 +143,7 @@ test('on the command line: the same places, with a trial before and undo', optio
     assert.equal(accept('--tags', 'nothing*').code, 1);
 });
 
-test('--undo takes only versions of that list which differ in Place alone, and nothing while another program is at work', options, () => {
+test('--undo takes only list versions that differ in Place alone, and does nothing while another program is at work', options, () => {
     const accept = (...args) => runProgram('plantcast', ['sensors', 'accept', plant.file, ...args]);
     assert.equal(accept('--asset', 'E-101').code, 0);
     const now = readFileSync(tagsFile, 'utf8'), last = readdirSync(plant.folder).filter((name) => /^tags\.csv\.\d+$/.test(name)).length;

@@ -44,7 +44,7 @@ const ring = (name) => page.evaluate((tag) => {
 const waitForRing = (name) => page.waitForFunction((tag) => globalThis.plantcast.overlay.markers.some((marker) => marker.tag.name === tag &&
     marker.alarm), name);
 
-test('what comes beyond its limit is counted, marked and listed, the most urgent first', options, async () => {
+test('readings beyond a limit are counted, marked and listed, the most urgent first', options, async () => {
     const shaken = tags.find(({ group, limits }) => group === 'vibration' && limits.H !== null).name;
     await plant.ask(`set ${shaken} ${limitOf(shaken).H + 0.1}`);
     await plant.ask(`set ${HOT} ${limitOf(HOT).HH + 1}`);
@@ -66,7 +66,7 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     await shoot(page, 'alarms-desktop');
 });
 
-test('whatever group and way of showing is chosen, it stays marked and counted', options, async () => {
+test('an alarm stays marked and counted in every group and display mode', options, async () => {
     const before = await words();
     for (const params of [{ group: 'vibration' }, { group: 'pressure', show: 'operator' },
         { group: 'temperature', show: 'distance', sensor: 'TE-102' },
@@ -82,7 +82,7 @@ test('whatever group and way of showing is chosen, it stays marked and counted',
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature', show: 'value' }));
 });
 
-test('isolating other equipment hides its ring, not its count', options, async () => {
+test('isolating other equipment hides the alarm\'s ring but not its count', options, async () => {
     const before = await words();
     const other = await page.evaluate((hot) => globalThis.plantcast.session.model.assets.find(({ id, tags: on }) => on.length > 0 &&
         id !== globalThis.plantcast.session.model.tag(hot).asset).id, HOT);
@@ -95,7 +95,7 @@ test('isolating other equipment hides its ring, not its count', options, async (
     await waitForRing(HOT);
 });
 
-test('an acknowledgement is done once, for everybody', options, async () => {
+test('an acknowledgement by one user is shown to everybody', options, async () => {
     const other = await openPage(`${plant.url}?wall`, { viewport: { width: 1280, height: 720 } });
     try {
         await waitForPicture(other.page);
@@ -117,7 +117,7 @@ test('an acknowledgement is done once, for everybody', options, async () => {
     }
 });
 
-test('a row under the hand stays while others come, and can be pressed', options, async () => {
+test('an alarm\'s row stays under the pressed pointer while other alarms arrive', options, async () => {
     const { name, limits } = tags.find(({ group, limits: of, name: is }) => group === 'temperature' && of.HH !== null && is !== HOT);
     const row = page.locator('#alarms-list tr', { hasText: HOT }).first(), held = await row.elementHandle();
     const box = await row.locator('button[data-action="shelve"]').boundingBox();
@@ -152,7 +152,7 @@ test('shelving needs a reason and hides the alarm', options, async () => {
     await page.locator(`#alarms-list tr[data-alarm="${id}"].calls`).waitFor(); /* the alarm is listed again as if it were new */
 });
 
-test('a click flies there, in its own group, and back to normal is said', options, async () => {
+test('a click on an alarm flies to its tag in the tag\'s group, and a return to normal is shown', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
     const { camera } = await view(page);
     await page.locator('#alarms-list tr .alarm-go').first().click();
@@ -181,7 +181,7 @@ const settleAll = async () => { // sets all values within their limits and ackno
     await waitForWords('^No active alarms$');
 };
 
-test('one row and one count for a tag; what has returned is not active, and drawn hollow', options, async () => {
+test('a tag has one row and counts once; a returned alarm is not active, and is drawn hollow', options, async () => {
     await settleAll();
     const { LL, L, H } = limitOf(LOW);
     await plant.ask(`set ${LOW} ${LL - 1}`);
@@ -214,7 +214,7 @@ test('one row and one count for a tag; what has returned is not active, and draw
     await waitForWords('^No active alarms$');
 });
 
-test('several alarms are acknowledged at once, only visible ones; a filter', options, async () => {
+test('a user acknowledges several alarms at once, only visible ones; a filter narrows the list', options, async () => {
     const three = tags.filter(({ group, limits }) => group === 'temperature' && limits.H !== null).slice(0, 3).map(({ name }) => name);
     for (const name of three)
         await plant.ask(`set ${name} ${limitOf(name).H + 0.1}`);
@@ -294,7 +294,7 @@ const wholeRows = () => page.evaluate(() => {
 });
 const column = (col) => page.locator(`#alarms-list td[data-col=${col}]`).allTextContents();
 
-test('at 900 pixels twenty rows and more are seen, sorted by any column, filtered by area', options, async () => {
+test('at 900 pixels the alarm list shows at least twenty rows, sorts by any column, and filters by area', options, async () => {
     await settleAll();
     const many = tags.filter(({ group, limits }) => group === 'temperature' && limits.H !== null).slice(0, 26);
     for (const { name, limits } of many)
@@ -325,7 +325,7 @@ test('at 900 pixels twenty rows and more are seen, sorted by any column, filtere
     await page.locator('#alarms-area').selectOption('');
 });
 
-test('the edge of the list is dragged, moved by keys, kept over a reload, and reset', options, async () => {
+test('the list\'s edge can be dragged and moved by keys; its size survives a reload and can be reset', options, async () => {
     const own = await openPage(plant.url, { viewport: { width: 1280, height: 800 } }), on = own.page, edge = on.locator('.alarms > .edge');
     const opened = async () => {
         await waitForPicture(on);
@@ -358,7 +358,7 @@ test('the edge of the list is dragged, moved by keys, kept over a reload, and re
     }
 });
 
-test('several are shelved at once with one reason; the list is exported', options, async () => {
+test('several alarms are shelved at once with one reason; the list is exported', options, async () => {
     await page.locator('#alarms-list .choose').nth(0).check();
     await page.locator('#alarms-list .choose').nth(3).click({ modifiers: ['Shift'] });
     assert.match(await page.locator('#alarms-chosen').textContent(), /^4 selected$/);
@@ -380,7 +380,7 @@ test('several are shelved at once with one reason; the list is exported', option
     assert.equal(lines.filter((line) => line.includes('shelved') && line.endsWith('work on the line')).length, 2);
 });
 
-test('the journal: the same columns, a time range, each change', options, async () => {
+test('the journal has the list\'s columns, a time range, and each change', options, async () => {
     await page.locator('#journal-tab').click();
     const changes = () => page.locator('#journal-list tr').evaluateAll((rows) => rows.map((row) => row.dataset.event));
     await page.locator('#journal-list tr[data-event=shelve]', { hasText: 'work on the line' }).first().waitFor();
@@ -402,7 +402,7 @@ test('the journal: the same columns, a time range, each change', options, async 
     await page.locator('#alarms-tab').click();
 });
 
-test('the moment before an alarm: half a minute earlier, there, and the alarm is named', options, async () => {
+test('the moment before an alarm opens half a minute before it, at its place, and names the alarm', options, async () => {
     const row = page.locator('#alarms-list tr').first(), name = await row.locator('td[data-col=tag]').textContent();
     const raisedUs = await page.evaluate((of) =>
         globalThis.plantcast.session.model.alarms.list().find(({ tag }) => tag.name === of).raisedUs, name);
@@ -423,7 +423,7 @@ test('the moment before an alarm: half a minute earlier, there, and the alarm is
     await page.setViewportSize(DESKTOP.viewport);
 });
 
-test('without a connection the strip says as of when, and offers nothing', options, async () => {
+test('without a connection the alarm strip shows the time of its data, and offers no actions', options, async () => {
     const before = await words();
     await page.evaluate(() => {
         const { connection } = globalThis.plantcast.session;
@@ -442,7 +442,7 @@ test('without a connection the strip says as of when, and offers nothing', optio
     await page.locator('#alarm-strip:not(.stale)').waitFor();
 });
 
-test('on tablets', options, async () => {
+test('on tablets of three sizes the buttons of the alarm list are finger-sized', options, async () => {
     await plant.ask(`set ${HOT} ${limitOf(HOT).HH + 1}`);
     const sizes = { landscape: [1024, 768], portrait: [768, 1024], large: [1280, 800] };
     for (const [name, [width, height]] of Object.entries(sizes)) {

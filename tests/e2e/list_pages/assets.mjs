@@ -56,7 +56,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-test('areas, assets and tags; a search finds each of 20,000', options, async () => {
+test('the list shows areas, assets and tags, and a search finds each of 20,000', options, async () => {
     const { model } = await page.evaluate(() => ({ model: globalThis.plantcast.session.model.tags.length }));
     assert.equal(model, ASSETS * TAGS_EACH);
     const list = page.locator('#assets-list');
@@ -71,7 +71,7 @@ test('areas, assets and tags; a search finds each of 20,000', options, async () 
     await page.locator('#assets-search').fill('');
 });
 
-test('a click selects and flies there; what is known of it and its links are shown', options, async () => {
+test('a click selects an asset and flies to it; its details and links are shown', options, async () => {
     const { camera } = await view(page);
     await page.locator('#assets-search').fill('E 137');
     await page.locator('#assets-list .asset', { hasText: 'E 137' }).click();
@@ -90,7 +90,7 @@ test('a click selects and flies there; what is known of it and its links are sho
     await shoot(page, 'assets-selected');
 });
 
-test('what is picked in 3D is selected there, a marker with its tag', options, async () => {
+test('an asset picked in 3D is selected in the list, and so is a marker\'s tag', options, async () => {
     const places = await page.evaluate(() => {
         const { model } = globalThis.plantcast.session, { min, max } = model.asset('E-137').bounds;
         return [[(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]], model.tag('TI-137-0').position];
@@ -107,7 +107,7 @@ test('what is picked in 3D is selected there, a marker with its tag', options, a
     await page.keyboard.press('Escape');
 });
 
-test('by the keyboard alone', options, async () => {
+test('the list can be used by the keyboard alone', options, async () => {
     await page.locator('#assets-search').focus();
     await page.keyboard.press('Tab');
     await page.keyboard.press('Home');
@@ -170,7 +170,7 @@ const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); /
 const MOST = sweep({ share: 0.1, megabytes: 2, nodes: 500 }, { share: 0.05, megabytes: 1, nodes: 250 });
 const isSteady = (before, after) => after.megabytes < before.megabytes * (1 + MOST.share) + MOST.megabytes &&
     after.nodes < before.nodes * (1 + 2 * MOST.share) + MOST.nodes;
-test('memory does not grow with use', { ...options, timeout: options.timeout + 2000 * USE_S }, async (t) => {
+test('memory does not grow while the list is used', { ...options, timeout: options.timeout + 2000 * USE_S }, async (t) => {
     const client = await page.context().newCDPSession(page);
     const heap = async () => {
         await client.send('HeapProfiler.collectGarbage');

@@ -56,7 +56,7 @@ const at = (place, on = page) => drawnAt(on, place);
 const moved = (on = page) => on.evaluate(() => [...globalThis.plantcast.session.model.placed.values()][0]?.position ?? null);
 const button = (name, on = page) => on.locator('#engineer').getByRole('button', { name, exact: true });
 
-test('a tag that stands nowhere is put onto the surface by a click, and its field is there', options, async () => {
+test('a click puts an unplaced tag onto the surface, and its field appears', options, async () => {
     await page.locator('#engineer-toggle').click();
     await says('#engineer .tags li', 'TI-9 spare.*not placed');
     await page.locator('#engineer .tags button').first().click();
@@ -72,7 +72,7 @@ test('a tag that stands nowhere is put onto the surface by a click, and its fiel
     await shoot(page, 'engineer-placed');
 });
 
-test('its marker is dragged over the surface; one step back for the whole way', options, async () => {
+test('a marker is dragged over the surface, and one undo step reverts the whole drag', options, async () => {
     const before = await moved(), from = await at(before), to = await at([-0.2, -0.5, -0.1]);
     const eye = await page.evaluate(() => globalThis.plantcast.session.camera.eye);
     await page.mouse.move(from.x, from.y);
@@ -94,7 +94,7 @@ test('its marker is dragged over the surface; one step back for the whole way', 
     await says('#engineer .note', 'There is no surface');
 });
 
-test('gaps are told', options, async () => {
+test('the panel reports coverage gaps', options, async () => {
     await button('Coverage gaps').click();
     await says('#engineer .gaps', 'Coverage gaps: Temperature.*No sensor is off its surface.*' +
         'E-101 Largest distance to the nearest sensor: \\d.*Most isolated sensor');
@@ -110,7 +110,7 @@ const snapshot = async () => {
     return Buffer.from(await answer.arrayBuffer());
 };
 
-test('the list is saved: what changes is shown, then the list is active', options, async () => {
+test('saving the list first shows the changes, then makes the list active', options, async () => {
     const old = readFileSync(tagsFile, 'utf8');
     await says('#assets-list', 'E-101.*2 sensors.*Unassigned tags.*1 sensor');
     await button('Save …').click();
@@ -136,7 +136,7 @@ test('the list is saved: what changes is shown, then the list is active', option
     });
 });
 
-test('walk: the tag that moved is shown, even if two are swapped; a matching value confirms the tag', options, async () => {
+test('loop check: the panel names the tag that changed, even if two are swapped; a matching value passes the tag', options, async () => {
     await page.locator('#engineer label', { hasText: 'Loop check' }).click();
     await says('#engineer .count', '^0 of 4 passed');
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
@@ -162,7 +162,7 @@ test('walk: the tag that moved is shown, even if two are swapped; a matching val
     await shoot(page, 'engineer-proving');
 });
 
-test('expected values come from a CSV file; results are exported with name, time and value', options, async () => {
+test('expected values are read from a CSV file; results are exported with name, time and value', options, async () => {
     const choose = (name, body) =>
         page.locator('#engineer input[type="file"]').setInputFiles({ name, mimeType: 'text/csv', buffer: Buffer.from(body) });
     await choose('wrong.csv', 'Tag,Value\nTI-9,50\n');
@@ -182,7 +182,7 @@ test('expected values come from a CSV file; results are exported with name, time
     assert.match(rows.find((row) => row.includes('"TI-9"')), /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ,"TI-9",pass,50,"°C",50\.3,0\.5,"local"/);
 });
 
-test('what is not proven is said to be so to everybody, and stays through a reload of the page', options, async () => {
+test('a failed or missing loop check is shown to everybody, also after a reload of the page', options, async () => {
     await page.reload();
     await ready(page);
     await page.waitForFunction(() => globalThis.plantcast.session.model.provingBegun);
@@ -200,7 +200,7 @@ test('what is not proven is said to be so to everybody, and stays through a relo
     assert.deepEqual(browser.errors, []);
 });
 
-test('on a tablet: a tap places, a finger drags', options, async () => {
+test('on a tablet a tap places a tag, and a finger drags it', options, async () => {
     const tablet = await openPage(`http://127.0.0.1:${plant.port}/`, TABLET), on = tablet.page;
     await ready(on);
     await on.locator('#engineer-toggle').tap();

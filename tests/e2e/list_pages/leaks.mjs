@@ -145,7 +145,7 @@ const ACTIONS = {
     },
 };
 
-test('cycles of all actions leave as many nodes and listeners as before', options, async (t) => {
+test('repeating all actions leaves as many DOM nodes and listeners as before', options, async (t) => {
     const cycles = async (count) => {
         for (let i = 0; i < count; i++)
             for (const act of Object.values(ACTIONS))

@@ -56,7 +56,7 @@ const waitForText = (page, selector, pattern) => page.waitForFunction(
 const labels = (page) => page.evaluate(() => globalThis.plantcast.overlay.labels().filter(({ rank, ring }) => ring && rank >= 0)
     .map(({ parts }) => parts.map(([text]) => text).join(' ')));
 
-test('an alarm says at which value it was raised, and the present one', options, async () => {
+test('an alarm shows the value at which it was raised, and the present value', options, async () => {
     await plant.tell('set TI-1 95.5');
     await waitForText(desk.page, '#alarm-newest', '^TI-1 High-high, raised at 95\\.5 °C, now 95\\.5 °C \\(limit 90\\.0 °C\\)$');
     await plant.tell('set TI-1 70.25');
@@ -89,7 +89,7 @@ test('an alarm says at which value it was raised, and the present one', options,
     await plant.tell('set TI-1 42');
 });
 
-test('a note is shown at an instant if it was there then', options, async () => {
+test('a note appears in the past only at instants when it existed', options, async () => {
     const { page } = desk, nowUs = () => page.evaluate(() => globalThis.plantcast.session.clockUs());
     const pins = () => page.evaluate(() => [...document.querySelectorAll('.note-pin')].map(({ textContent }) => textContent));
     const waitForPins = (...texts) => page.waitForFunction((wanted) => [...document.querySelectorAll('.note-pin')]
@@ -127,7 +127,7 @@ test('a note is shown at an instant if it was there then', options, async () => 
     await waitForPins();
 });
 
-test('a note for the whole shift needs no place; its author changes and ends it', options, async () => {
+test('a note for the shift needs no place; its author changes and ends it', options, async () => {
     const { page } = desk, rows = page.locator('#notes-list li');
     await page.locator('#viewport').focus();
     await page.keyboard.press('v');
@@ -149,7 +149,7 @@ test('a note for the whole shift needs no place; its author changes and ends it'
     await page.keyboard.press('Escape');
 });
 
-test('the pins of notes cover neither each other nor a legend nor the right half, and are whole', options, async () => {
+test('note pins are complete, and cover no other pin, no legend and not the right half', options, async () => {
     const { page } = desk;
     const texts = ['Manhole open', 'Seal drips, the tray is emptied each hour by the outside operator of the shift', 'Hot'];
     await page.evaluate((all) => {
@@ -204,7 +204,7 @@ test('the pins of notes cover neither each other nor a legend nor the right half
     await settle(page);
 });
 
-test('a lost device raises an alarm of its own; rings keep their names and say since when they are held', options, async () => {
+test('a lost device raises an alarm of its own; rings keep their tag names and say since when the alarm is held', options, async () => {
     await plant.tell('set TI-1 95.5');
     await plant.tell('set TI-2 95.5');
     const rings = (page, pattern) => page.waitForFunction((p) => {
@@ -234,7 +234,7 @@ test('a lost device raises an alarm of its own; rings keep their names and say s
     assert.equal((await labels(desk.page)).length, 2);
 });
 
-test('a refusal is said in the reader\'s language, over the stream and over HTTP', options, async () => {
+test('a refusal is shown in the reader\'s language, over the stream and over HTTP', options, async () => {
     await german.page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-9' }));
     await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: diese Anlage hat kein Anlagenteil „E-9“$');
     await shoot(german.page, 'refused-de');
@@ -245,7 +245,7 @@ test('a refusal is said in the reader\'s language, over the stream and over HTTP
     assert.equal(await answer.text(), 'tags: this plant has no tag “Ü-1”\n');
 });
 
-test('the server is lost: the equipment list goes grey as the strip and the picture do', options, async () => {
+test('when the server is lost, the equipment list turns grey as the strip and the picture do', options, async () => {
     const { page } = desk, list = page.locator('#assets-list');
     if (await page.locator('#assets-toggle').getAttribute('aria-expanded') !== 'true')
         await page.locator('#assets-toggle').click();

@@ -49,7 +49,7 @@ const waitForWhole = (width, height) => page.waitForFunction(([w, h]) => {
     return globalThis.plantcast.session.picture.still && canvas.width === w && canvas.height === h;
 }, [width, height], { polling: 'raf' });
 
-test('live frames arrive, and the page says so', options, async () => {
+test('live frames arrive, and the page says that they are live', options, async () => {
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     await arrive(page);
@@ -62,7 +62,7 @@ test('live frames arrive, and the page says so', options, async () => {
     await shoot(page, 'desktop');
 });
 
-test('one reading changes: the picture changes at its sensor, and nowhere but on its equipment', options, async (t) => {
+test('a changed reading changes the picture at its sensor, and nowhere but on its equipment', options, async (t) => {
     await page.evaluate((group) => globalThis.plantcast.session.setParams({ group }), GROUP);
     const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
     await plant.freeze(tags);
@@ -132,7 +132,7 @@ const measured = () => page.evaluate(() => globalThis.plantcast.session.model.re
 const waitForMeasured = (count) => page.waitForFunction((least) =>
     globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count);
 
-test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
+test('the daemon dies: a message says so and the picture stays; when the daemon returns, so does the view', options, async () => {
     // probes codecs now; otherwise the page would do so at some later picture
     await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs());
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
@@ -176,7 +176,7 @@ test('the address keeps the view across a reload', options, async () => {
     assert.equal(now.params.ramp_interval, 20);
 });
 
-test('the PLC falls silent: no live data, in words; it answers again: live', options, async () => {
+test('a silent PLC: the page says that there are no live data, and is live again when the PLC answers', options, async () => {
     await plant.ask('pause');
     await waitForHealth(page, 'nodata');
     await page.locator('#banner', { hasText: /No live data/i }).waitFor();
@@ -188,7 +188,7 @@ test('the PLC falls silent: no live data, in words; it answers again: live', opt
     await waitForHealth(page, 'live');
 });
 
-test('the page had no errors and requested nothing from other origins', options, async () => {
+test('the page logged no errors and requested nothing from other origins', options, async () => {
     await waitForHealth(page, 'live');
     assert.deepEqual(browser.errors, []);
 });

@@ -44,7 +44,7 @@ location /plantcast/ { proxy_pass http://127.0.0.1:${plant.port}/; proxy_set_hea
 const shown = (page, pattern) => page.waitForFunction(([source]) => new RegExp(source).test(document.getElementById('banner').innerText),
     [pattern.source]);
 
-test('nginx without the lines for WebSocket is named on the page, with these lines; with them the page goes on', withNginx, async () => {
+test('a page behind nginx without WebSocket lines names nginx and the lines; with the lines the page goes live', withNginx, async () => {
     const port = await freePort(), url = `http://127.0.0.1:${port}/plantcast/`;
     let stop = await startNginx(port, 'proxy_http_version 1.1;');
     const began = performance.now();
@@ -132,7 +132,7 @@ const OTHERS = [
     ['hangs up', null, {}, /a proxy in between does not pass the WebSocket on/],
 ];
 for (const [name, answer, headers, words] of OTHERS)
-    test(`a proxy that ${name} is named`, options, async () => {
+    test(`a proxy that ${name} instead of passing WebSockets is named`, options, async () => {
         const proxy = await startOther(answer, headers), { page, close } = await openPage(proxy.url, DESKTOP);
         try {
             await shown(page, words);
@@ -142,7 +142,7 @@ for (const [name, answer, headers, words] of OTHERS)
         }
     });
 
-test('ready fails where /stream does, over http:// and https://, and names the proxy that keeps WebSockets out', options, async () => {
+test('plantcast ready fails where /stream does, over http and https, and names the proxy that blocks WebSockets', options, async () => {
     makeCertificate(plant.folder);
     const secure = { key: readFileSync(join(plant.folder, 'mail.key')), cert: readFileSync(join(plant.folder, 'mail.pem')) };
     const ready = async (proxy) => { // runs as a child process, because the proxy runs in this one
@@ -166,7 +166,7 @@ test('ready fails where /stream does, over http:// and https://, and names the p
     }
 });
 
-test('a server that is not there is not blamed on its proxy', options, async () => {
+test('when the server is down, no proxy is blamed', options, async () => {
     const proxy = await startOther({ line: '502 Bad Gateway' }, { server: 'nginx' }), { page, close } = await openPage(proxy.url, DESKTOP);
     try {
         await shown(page, /nginx does not pass the WebSocket on/);

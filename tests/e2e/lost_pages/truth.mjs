@@ -64,7 +64,7 @@ function letterMinutes(px, { inches, metres }, screen) {
     return (Math.atan2(millimetres, metres * 1000) * 180 * 60) / Math.PI;
 }
 
-test(`a wall of ${SIZE.width} pixels: every letter is read from 3 m, alarms are counted, and nothing is to be pressed`, options, () =>
+test(`on a wall of ${SIZE.width} pixels, all text is legible from 3 m, alarms are counted, and there are no buttons`, options, () =>
     withPage(`${url}?wall&theme=dark`, WALL, async (page) => {
         await waitForHealth(page, 'live');
         await page.waitForFunction(() => document.querySelector('#alarm-counts .priority'));
@@ -86,7 +86,7 @@ test(`a wall of ${SIZE.width} pixels: every letter is read from 3 m, alarms are 
         await shoot(page, 'wall');
     }));
 
-test('simulated values are called so on the picture itself, and by a frame', options, () =>
+test('simulated values are marked on the picture itself and by a frame', options, () =>
     withPage(url, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         await page.evaluate(() => {
@@ -100,7 +100,7 @@ test('simulated values are called so on the picture itself, and by a frame', opt
         await shoot(page, 'simulated');
     }));
 
-test('a tablet that slept knows that its picture is old, until the server speaks', options, () =>
+test('a tablet that slept marks its picture as old until the server responds', options, () =>
     withPage(url, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         await settle(page);
@@ -166,7 +166,7 @@ const samples = (page) => page.evaluate(() => {
         Math.floor((Math.floor(n / 8) + 0.5) * canvas.height / 8), 1, 1).data]);
 });
 
-test('a slow link that comes to a halt: the last picture stays, marked as old, and the view is as it was', options, async () => {
+test('a slow link that stalls: the last picture stays, marked as old, and the view is unchanged', options, async () => {
     const relay = await Relay.open(plant.port, { bytesPerS: 250000, delayMs: 60 });
     await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
@@ -200,7 +200,7 @@ test('a slow link that comes to a halt: the last picture stays, marked as old, a
     relay.close();
 });
 
-test('legend and markers are of the picture that is seen, however late the one comes that was asked for', options, async () => {
+test('legend and markers belong to the shown picture, however late the requested one arrives', options, async () => {
     const relay = await Relay.open(plant.port, { bytesPerS: 1e8, delayMs: 0 });
     await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
@@ -284,7 +284,8 @@ function certify(folder) {
     return { daemon: ['--tls-cert', cert, '--tls-key', key], browser: [`--ignore-certificate-errors-spki-list=${hash}`] };
 }
 
-test('installed over https, the page opens without its server, says so, and is live again with it', options, async (context) => {
+test('installed over https, the page opens without its server, says so, and is live again when the server returns',
+    options, async (context) => {
     const secure = await TinyPlant.create(), by = certify(secure.folder);
     context.after(() => secure.destroy());
     await secure.start(...by.daemon);

@@ -56,7 +56,7 @@ const HAND = /\/(camera_controller|warp|warp_worker)\.js$/; // files that follow
 const PAGES = [['English', 'en'], ['Korean on a phone', 'ko', PHONE], ...sweep([['German', 'de'], ['Korean', 'ko']], [])];
 for (const [name, language, screen] of PAGES) {
     const most = screen === PHONE ? MOST_BYTES.touch : MOST_BYTES.desk;
-    test(`a page in ${name} that shows the plant has loaded at most ${kB(most)} by ${MOST_REQUESTS} requests`, options, async (t) => {
+    test(`a page in ${name} loads at most ${kB(most)} in ${MOST_REQUESTS} requests to show the plant`, options, async (t) => {
         const browser = await openCounted(`${url}?lang=${language}`, screen, watchFirst), { page } = browser;
         try {
             await waitForPicture(page);
@@ -103,7 +103,7 @@ const press = async (page, key) => {
 };
 const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
 
-test('a part that cannot be loaded says so, and comes by itself once it can be', options, async () => {
+test('a part of the page that cannot be loaded says so, and opens by itself once it can be loaded', options, async () => {
     // key that opens a part, a file that the part loads, and the part; parts later in this list may load the same file
     const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'],
         ['p', 'app/picture/picture.html', '#picture-panel.open'], ['v', 'app/views/views.js', '#views.open']];
@@ -126,7 +126,7 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
         }, (page) => all === words && away(page, all[0][1])); // blocks the file before the page opens, because an alarm ring loads it
 });
 
-test('no part shows text before the texts of parts are loaded', options, () => {
+test('no part of the page shows text before its texts are loaded', options, () => {
     const warnings = [];
     return withPage(async (page) => {
         page.on('console', (message) => warnings.push(message.text()));
@@ -138,7 +138,7 @@ test('no part shows text before the texts of parts are loaded', options, () => {
     }));
 });
 
-test('who has given up is not surprised by what comes late', options, () => withPage(async (page) => {
+test('a panel that the user gave up waiting for does not open when it arrives late', options, () => withPage(async (page) => {
     await page.route('**/app/views/views.js*', (route) => route.abort());
     await press(page, 'v');
     await isSaid(page);
@@ -174,7 +174,7 @@ const drag = async (page) => {
     await page.mouse.up();
 };
 
-test('what hands and keys do first is done, though what steers by them is still on its way', options, async (t) => {
+test('the first input by mouse, keys or buttons moves the camera, though the camera controller is still loading', options, async (t) => {
     const firsts = [
         async (page) => drag(page),
         async (page) => press(page, 'ArrowLeft'),
@@ -198,7 +198,8 @@ test('what hands and keys do first is done, though what steers by them is still 
         }));
 });
 
-test('a drag that began before what steers was there is followed, however long that takes', options, () => withPage(async (page) => {
+test('a drag that began before the camera controller was loaded is followed, however long loading takes',
+    options, () => withPage(async (page) => {
     await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
     const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
     await page.mouse.move(left, top);
@@ -212,7 +213,7 @@ test('a drag that began before what steers was there is followed, however long t
     await page.mouse.up();
 }, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));
 
-test('the page names what the pointer is on, even if it has not moved since', options, () => withPage(async (page) => {
+test('the page names the marker under the pointer, even if the pointer has not moved since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
     await land(page); // waits until the marker under the pointer stands still
     const marker = await page.evaluate(() => {
@@ -227,7 +228,8 @@ test('the page names what the pointer is on, even if it has not moved since', op
     await route.continue();
 })));
 
-test('hands that cannot be followed are told so, and are followed once they can be', options, () => withPage(async (page) => {
+test('input that the page cannot follow yet gets a message, and is followed once the controller is loaded',
+    options, () => withPage(async (page) => {
     const before = await eye(page);
     await drag(page);
     await isSaid(page);
@@ -238,7 +240,7 @@ test('hands that cannot be followed are told so, and are followed once they can 
     await waitForMove(page, before);
 }, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));
 
-test('a page whose server was another one meanwhile reloads itself instead of mixing both', options, () => {
+test('a page whose server changed version meanwhile reloads itself instead of mixing both versions', options, () => {
     let version = 'aaaaaaaaaaaa';
     const serve = (route) => route.fulfill({ contentType: 'text/javascript', body: `export const version = '${version}';\n` });
     return withPage(async (page) => {
