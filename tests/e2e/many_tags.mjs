@@ -48,7 +48,7 @@ async function pages(count) {
     }
 }
 
-test('pages hold every tag once, in order, with what its register holds', options, async () => {
+test('pages of tags contain every tag once, in order, with its register\'s value', options, async () => {
     await until('all are good', async () => (await pages(5000)).every(({ quality }) => quality === 'good'));
     for (const count of [1000, 4096]) {
         const tags = await pages(count);
@@ -61,7 +61,7 @@ test('pages hold every tag once, in order, with what its register holds', option
         assert.equal((await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?${query}`)).status, 400, query);
 });
 
-test('other clients meanwhile get pictures, and all tags', options, async () => {
+test('while one client reads pages of tags, others get pictures and all tags', options, async () => {
     const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({});
     assert.equal(welcome.tags.length, MANY + 3);
@@ -82,7 +82,8 @@ test('other clients meanwhile get pictures, and all tags', options, async () => 
     client.close();
 });
 
-test('the loss of their device is one alarm, journalled for each of them, and over when it is back', options, async () => {
+test('the loss of the tags\' device raises one alarm, is in the journal of each tag, and ends when the device is back',
+    options, async () => {
     const counts = async () => (await get('/api/v1/alarms?limit=1')).counts;
     await plant.sim.stop('SIGKILL');
     await until('all are carried', async () => (await counts()).states.suppressed === MANY);

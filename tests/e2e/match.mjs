@@ -69,7 +69,7 @@ for (const { plant, format, bring } of [
         return run('plantcast', 'match', out, join(out, 'none.csv'), ...choice);
     } },
 ])
-    test(`${plant}: 5,000 tags made from its names`, { skip: noData }, () => inFolder((folder) => {
+    test(`${plant}: enough of 5,000 tags generated from its names are matched correctly`, { skip: noData }, () => inFolder((folder) => {
         const out = join(folder, 'plant'), list = join(folder, 'export');
         good(bring(out));
         rmSync(join(out, 'matches.csv'), { force: true });
@@ -88,7 +88,7 @@ for (const { plant, format, bring } of [
         good(run('plantcastd', '--check', join(out, 'plant.yaml')));
     }));
 
-test('2,000 assets and 5,000 tags take no more than 2 minutes', { skip: notBuilt }, (t) => inFolder((folder) => {
+test('matching 5,000 tags to 2,000 assets takes no more than 2 minutes', { skip: notBuilt }, (t) => inFolder((folder) => {
     const names = Array.from({ length: 2000 }, (_, i) => `${'PEVKC'[i % 5]}-${10 + i % 40}${100 + Math.floor(i / 5)}`);
     boxPlant(folder, names);
     const list = join(folder, 'export'), { rows, truth } = makeTagList(names, { seed, foreign: 0.05 });
@@ -100,7 +100,8 @@ test('2,000 assets and 5,000 tags take no more than 2 minutes', { skip: notBuilt
     promise(t, 'matching', ms, 120000);
 }));
 
-test('a malformed list: repeated rows, Korean, slashes, blanks, control characters', { skip: notBuilt }, () => inFolder((folder) => {
+test('a malformed list with duplicate rows, Korean, slashes, blanks and control characters is matched',
+    { skip: notBuilt }, () => inFolder((folder) => {
     boxPlant(folder, ['열교환기-101', 'P-102 A/B', 'V 201']);
     const rows = [['열교환기-101/TT-01', '열교환기 입구 온도'], ['P-102 A/B_PT01', ''], [' V 201 . LT\u0001 01 ', 'level'],
         ['', 'nothing'], ['X\u0007', '']];
@@ -117,7 +118,7 @@ test('a malformed list: repeated rows, Korean, slashes, blanks, control characte
         'V 201 . LT  01': 'sure V 201', X: 'none ' });
 }));
 
-test('what people change stays; a second run changes nothing', { skip: notBuilt }, () => inFolder((folder) => {
+test('manual changes stay, and a second run changes nothing', { skip: notBuilt }, () => inFolder((folder) => {
     boxPlant(folder, ['E-101', 'P-101', 'V-201']);
     const list = join(folder, 'export.csv'), match = (...more) => good(run('plantcast', 'match', folder, list, ...more)).stdout;
     const texts = () => ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(folder, name), 'utf8'));
@@ -167,7 +168,7 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     assert.match(readFileSync(join(folder, 'matches.csv'), 'utf8'), /XT_7,sure,V-201,.*alias 'feed tank'/);
 }));
 
-test('what somebody saves while tags are matched is not replaced', { skip: notBuilt }, () => inFolder(async (folder) => {
+test('a change that a user saves during matching is not overwritten', { skip: notBuilt }, () => inFolder(async (folder) => {
     boxPlant(folder, ['E-101']);
     const list = join(folder, 'export.csv'), mine = 'Tag,Status,Asset\nE-101.TT-01,none,\n';
     const rows = ['Tag Name,Eng Units', ...Array.from({ length: 5000 }, (_, i) => `E-101.TT-${i},degC`)].join('\n');
@@ -202,7 +203,7 @@ test('what somebody saves while tags are matched is not replaced', { skip: notBu
     }
 }));
 
-test('killed between two files, left over, at once, out of disk: a valid plant, and the next run finishes it', { skip: notBuilt },
+test('a killed, interrupted, concurrent or out-of-disk match leaves a valid plant, and the next run completes it', { skip: notBuilt },
     () => inFolder(async (folder) => {
         const list = join(folder, 'export.csv'), first = join(folder, 'first'), whole = join(folder, 'whole');
         const plant = join(folder, 'plant');
@@ -285,7 +286,7 @@ async function startsWhole(folder, whole, filesOf, what) {
 const KILLER = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/kill_at_rename.so');
 const noKiller = notBuilt || (existsSync(KILLER) ? false : 'not built: kill_at_rename.so');
 for (const last of ['import', 'undo'])
-    test(`an ${last} killed in the middle is finished first`, { skip: noKiller }, () => inFolder(async (folder) => {
+    test(`an ${last} killed midway is completed first by the next command`, { skip: noKiller }, () => inFolder(async (folder) => {
         const [first, plant, whole, before, served] = ['first', 'plant', 'whole', 'before', 'served'].map((name) => join(folder, name));
         const model = join(folder, 'model.gltf'), list = join(folder, 'export.csv');
         const names = ['model.glb', 'plant.yaml', 'tags.csv', 'matches.csv', 'review.csv'];
@@ -360,7 +361,7 @@ Eng Units,Description
 "ART1101PO_TEXT",400017,String,1,R/O,100,None,,,,,"","Last operator"
 `;
 
-test('from exports of two systems to a live picture', { skip: noData, timeout: 240000 }, async () => {
+test('two systems\' exports become a live picture', { skip: noData, timeout: 240000 }, async () => {
     const tiny = await TinyPlant.create(), out = tiny.folder;
     for (const name of readdirSync(out))
         rmSync(join(out, name), { recursive: true });
@@ -421,7 +422,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
     }
 });
 
-test('what cannot be read is one line, and nothing is written', { skip: notBuilt }, () => inFolder((folder) => {
+test('unreadable input gets one error line, and no file is written', { skip: notBuilt }, () => inFolder((folder) => {
     boxPlant(folder, ['E-101']);
     const list = join(folder, 'export.csv'), before = readdirSync(folder);
     for (const [text, why] of [['', 'no header'], ['a,b\n1,2\n', 'no header'], ['Tag Name\n"x\n', 'a quote is never closed'],

@@ -38,7 +38,7 @@ before(async () => {
 });
 after(() => plant?.stop());
 
-test('under its bound, whatever somebody tries', options, async (t) => {
+test('the daemon\'s memory stays under its limit, whatever a random user tries', options, async (t) => {
     const random = dice(SEED), began = performance.now(), done = {};
     let most = 0, mostOf = {};
     one = await Curious.come(port, random);
@@ -63,7 +63,7 @@ test('under its bound, whatever somebody tries', options, async (t) => {
     t.diagnostic(told(done));
 });
 
-test('when all have gone it keeps no caches, and is as large as at first', options, async (t) => {
+test('when all clients have left, the daemon keeps no caches and is as small as at the start', options, async (t) => {
     await one?.leave(); // disconnects the client of the first test, whether that test passed or failed
     const isKept = ([name, value]) => !['light', 'models', 'bound'].includes(name) && value > 0;
     let all = await gauges();

@@ -40,7 +40,7 @@ after(async () => {
 const good = { quality_name: 'Good' };
 const until = (...args) => plant.until(...args), metric = (name) => plant.metric(name), run = (...args) => plant.run(...args);
 
-test('numbers come to the tags of their topics, scaled, and as old as they are', options, async () => {
+test('numbers reach the tags of their topics, scaled, and with their true age', options, async () => {
     await run('topic: "plant/{asset}/{tag}"', [...TAGS.number, 'OLD,plant/ti1,,,,,,,,2,,,,,']);
     publisher = await broker.client();
     await publisher.tell('plant/ti1', '21.5');
@@ -60,7 +60,7 @@ test('numbers come to the tags of their topics, scaled, and as old as they are',
         assert.equal(await metric(name), value, name);
 });
 
-test('a value that the broker has kept is never shown as fresh', options, async () => {
+test('a retained value is never shown as fresh', options, async () => {
     publisher = await broker.client();
     await publisher.tell('plant/ti1', '21.5', { retain: true });
     await run('topic: "plant/{asset}/{tag}", protocol: 3.1.1', TAGS.number);
@@ -72,7 +72,7 @@ test('a value that the broker has kept is never shown as fresh', options, async 
 });
 
 for (const protocol of ['5', '3.1.1'])
-    test(`all tags are Bad as soon as the broker is gone, and come back with their next values (${protocol})`, options, async (t) => {
+    test(`all tags are Bad as soon as the broker is gone, and recover with their next values (${protocol})`, options, async (t) => {
         await run(`topic: "plant/{asset}/{tag}", protocol: ${protocol}, keepalive_s: 5`, TAGS.number);
         publisher = await broker.client({ reconnectPeriod: 100 });
         await publisher.tell('plant/ti1', 20);
@@ -96,7 +96,7 @@ for (const protocol of ['5', '3.1.1'])
         await plant.daemon.line(/no readings[^]*reading[^]*no readings[^]*reading/);
     });
 
-test('JSON: by path, with the time and the quality that it states', options, async () => {
+test('JSON values are read by path, with the time and quality in the payload', options, async () => {
     await run('payload: json, topic: "plant/{tag}", time: meta.ts, quality: meta.q', TAGS.json);
     publisher = await broker.client();
     const at = (ms, q = 0) => ({ ts: Date.now() + ms, q }), began = Date.now();
@@ -124,7 +124,7 @@ test('JSON: by path, with the time and the quality that it states', options, asy
 });
 
 // Kepware's IoT Gateway publishes an array of the tags that changed, in any order.
-test('a gateway that publishes what has changed: no tag gets the value of another', options, async () => {
+test('a gateway that publishes only changes: no tag gets another\'s value', options, async () => {
     const paths = { A2: 'values[1].v', A3: 'values[2].v', F1: "values[?@.id=='G.A1'].v", F2: "$.values[?id=='G.A2'].v",
         F9: "values[?id=='G.A9'].v" };
     const rows = ['A1,#values[0].v,,°C,temperature,E-101,0.5,0,0,600,,,,,',
@@ -156,7 +156,7 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     assert.match(out, /F9.*NoMatch/i);
 });
 
-test('a persistent session brings what was published meanwhile, as old as it is', options, async () => {
+test('a persistent session delivers values published meanwhile, with their true age', options, async () => {
     const keys = 'payload: json, topic: "plant/{tag}", time: ts, session: persistent, client_id: plantcast-test';
     await run(keys, TAGS.json);
     publisher = await broker.client();
@@ -170,7 +170,7 @@ test('a persistent session brings what was published meanwhile, as old as it is'
 });
 
 // A broker that sends topics without a subscription: the longest possible topics, each before a reading.
-test('topics of 64 kB, at a broker that lies: nothing else suffers', options, async () => {
+test('topics of 64 kB from a malicious broker affect nothing else', options, async () => {
     await broker.kill();
     let sent = 0;
     const liar = createServer((socket) => {
@@ -204,7 +204,7 @@ test('topics of 64 kB, at a broker that lies: nothing else suffers', options, as
     }
 });
 
-test('payloads that are none are refused by name, and nothing else suffers', options, async () => {
+test('invalid payloads are refused by name, and affect nothing else', options, async () => {
     await run('topic: "plant/{asset}/{tag}", protocol: 3.1.1', TAGS.number);
     publisher = await broker.client();
     await publisher.tell('plant/xs1', 1);
@@ -230,7 +230,7 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
     await until('XS-1', { ...good, value: 0 });
 });
 
-test('plantcast-sim publishes what the tags of MQTT sources find', options, async () => {
+test('plantcast-sim publishes values where the tags of MQTT sources read them', options, async () => {
     const sim = async (...args) => plant.plant.startSim('--mqtt', `127.0.0.1:${broker.port}`, ...args);
     for (const [keys, rows, values] of [['topic: "plant/{asset}/{tag}", poll_ms: 100', TAGS.number, [['PI-1', 5], ['XS-1', 1]]],
         ['payload: json, topic: "plant/{tag}", time: meta.ts, quality: meta.q, poll_ms: 100', TAGS.json, [['TI-1', 40.5], ['PI-1', 5]]]]) {
@@ -247,7 +247,7 @@ test('plantcast-sim publishes what the tags of MQTT sources find', options, asyn
     }
 });
 
-test('what cannot be is said of the plant file', options, async () => {
+test('--check names each mistake in an MQTT source of the plant file', options, async () => {
     const said = (keys, rows) => {
         plant.write(keys, rows);
         const { code, err } = runProgram('plantcastd', ['--check', plant.file]);

@@ -53,7 +53,7 @@ async function refused(keys, why) {
     await plant.daemon.stop();
 }
 
-test('TLS: the broker has to be who it should be, and so have we', options, async () => {
+test('TLS: broker and daemon each verify the other\'s certificate', options, async () => {
     await start(`cafile ${path('ca.crt')}`, `certfile ${path('ca-server.crt')}`, `keyfile ${path('ca-server.key')}`,
         'require_certificate true');
     const own = `certificate: ${path('ca-client.crt')}, key: ${path('ca-client.key')}`;
@@ -74,7 +74,7 @@ test('TLS: the broker has to be who it should be, and so have we', options, asyn
     await refused('payload: number', /no readings \(/);
 });
 
-test('user and password from a file, and a topic that is not for this user', options, async () => {
+test('user name and password are read from a file, and a topic forbidden to this user is reported', options, async () => {
     await start(`password_file ${path('users')}`, `acl_file ${path('acl')}`, 'allow_anonymous false');
     for (const protocol of ['5', '3.1.1']) {
         writeFileSync(path('login'), 'reader\nwrong\n');
@@ -98,7 +98,7 @@ test('user and password from a file, and a topic that is not for this user', opt
     await refused(`login: ${path('login')}`, /no readings \(.*login: No such file or directory\)/);
 });
 
-test('the last will is published when the daemon is killed, and not when it ends', options, async () => {
+test('the last will is published when the daemon is killed, and not when it exits cleanly', options, async () => {
     await start();
     const heard = [];
     publisher = await broker.client();

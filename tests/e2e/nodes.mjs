@@ -36,7 +36,7 @@ const three = () => model([{ name: 'Unit', children: [1, 2, 3] },
     { name: '펌프/P-101', mesh: 0, translation: [100, 0, -240], extras: { Type: 'PUMP', Rating: { power_kW: 7.5 } } },
     { mesh: 0, scale: [2, 2, 2] }, { name: 'a\nb\u0007', translation: [1, 2, 3] }]);
 
-test('the first line says what must be known, then one line for each node', { skip }, () => {
+test('plantcast nodes prints a summary line, then one line for each node', { skip }, () => {
     const { status, stdout } = nodes(three());
     assert.equal(status, 0);
     const lines = stdout.trimEnd().split('\n');
@@ -49,7 +49,7 @@ test('the first line says what must be known, then one line for each node', { sk
     assert.match(nodes(model([{ mesh: 0 }], 1, '')).stdout, / #0\n$/);
 });
 
-test('a part of them, a tree, JSON', { skip }, () => {
+test('plantcast nodes filters with --grep, and prints a tree or JSON', { skip }, () => {
     const found = nodes(three(), '--grep', 'type=pump|nothing');
     assert.equal(found.stdout.trimEnd().split('\n').length, 3);
     assert.equal(nodes(three(), '--grep', 'xyz').status, 3);
@@ -65,7 +65,7 @@ test('a part of them, a tree, JSON', { skip }, () => {
     assert.equal(list[3].name, 'a\nb\u0007');
 });
 
-test('millimetres taken for metres are doubted', { skip }, () => {
+test('a size that suggests millimetres read as metres gets a warning', { skip }, () => {
     assert.match(nodes(model([{ mesh: 0 }], 2500)).stdout, /check its units\. If the numbers of the model are in mm/);
     assert.doesNotMatch(nodes(model([{ mesh: 0 }], 25)).stdout, /check its units/);
     const ours = model([{ mesh: 0 }], 2500);
@@ -73,7 +73,7 @@ test('millimetres taken for metres are doubted', { skip }, () => {
     assert.doesNotMatch(nodes(ours).stdout, /check its units/, 'import knows');
 });
 
-test('100,000 nodes take seconds', { skip }, (t) => {
+test('listing 100,000 nodes takes seconds', { skip }, (t) => {
     const list = [{ name: 'top', children: Array.from({ length: 300 }, (_, i) => i + 1) }];
     for (let i = 0; i < 300; i++)
         list.push({ name: `area ${i}`, children: Array.from({ length: 333 }, (_, k) => 301 + i * 333 + k) });
@@ -86,7 +86,7 @@ test('100,000 nodes take seconds', { skip }, (t) => {
     promise(t, 'listing the nodes', 1000 * seconds, 20000);
 });
 
-test('what is no model is one line', { skip }, () => {
+test('a file that is no model gets one error line', { skip }, () => {
     const cyclic = model([{ children: [1] }, { children: [0] }]);
     const deep = model(Array.from({ length: 600 }, (_, i) => ({ children: [i + 1] })));
     deep.nodes.push({});
@@ -101,7 +101,7 @@ test('what is no model is one line', { skip }, () => {
 });
 
 const noData = existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad';
-test('an RVM file is read as import would', { skip: skip || noData }, () => {
+test('an RVM file is read as import reads it', { skip: skip || noData }, () => {
     const args = ['nodes', join(DATA, 'cad/plm-sample.rvm'), '--tree', '3', '--grep', 'ZONE'];
     const { status, stdout } = spawnSync(join(BIN, 'plantcast'), args,
         { encoding: 'utf8', timeout: 60000 });

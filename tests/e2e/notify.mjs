@@ -50,7 +50,8 @@ async function acknowledge(plant, tag, kinds) {
 }
 
 for (const starttls of [false, true]) {
-    test(`an e-mail comes by ${starttls ? 'STARTTLS' : 'TLS'}, with a name and password, and once over a kill`, options, async () => {
+    test(`an e-mail is sent by ${starttls ? 'STARTTLS' : 'TLS'} with user and password, and only once despite a kill`,
+        options, async () => {
         const port = await freePort();
         const plant = await createPlant(`alarms: local
 notify:
@@ -90,7 +91,7 @@ notify:
     });
 }
 
-test('a certificate that nobody trusts gets no mail, and no password', options, async () => {
+test('a mail server with an untrusted certificate gets no mail and no password', options, async () => {
     const plant = await createPlant(''), mail = new MailServer(plant.folder, { user: 'plant', password: 'x' });
     await mail.listen();
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8')}notify:
@@ -113,7 +114,7 @@ test('a certificate that nobody trusts gets no mail, and no password', options, 
     }
 });
 
-test('500 alarms in one second are one message, while a mail server hangs and a hook is refused', options, async (t) => {
+test('500 alarms in one second make one message, while a mail server hangs and a webhook fails', options, async (t) => {
     const hook = new HookServer(), EXTRA = 500;
     await hook.listen();
     const port = await freePort();
@@ -199,7 +200,7 @@ notify:
     }
 });
 
-test('it goes to the next recipient until somebody acknowledges', options, async () => {
+test('an alarm is sent to one recipient after another until somebody acknowledges it', options, async () => {
     const hooks = [new HookServer(), new HookServer(), new HookServer()];
     for (const hook of hooks)
         await hook.listen();
@@ -235,7 +236,7 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
     }
 });
 
-test('a reload keeps what was told and takes new rules', options, async () => {
+test('a reload remembers which alarms were sent, and applies new rules', options, async () => {
     const hook = new HookServer();
     await hook.listen();
     const plant = await createPlant(`alarms: local
@@ -266,7 +267,7 @@ notify:
 });
 
 const alertmanager = spawnSync('prometheus-alertmanager', ['--version']).status === 0;
-test('Prometheus Alertmanager knows what stands, and when it ends', { ...options,
+test('Prometheus Alertmanager knows which alarms are active and when they end', { ...options,
     skip: options.skip || (!alertmanager && 'prometheus-alertmanager is not installed') }, async () => {
     const port = await freePort(), hook = new HookServer();
     await hook.listen();

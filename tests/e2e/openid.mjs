@@ -99,7 +99,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-test('a person signs in, acts under the name, and signs out', { skip }, async () => {
+test('a user signs in, acts under the own name, and signs out', { skip }, async () => {
     const browser = new Browser();
     const nobody = { name: null, role: 'nobody', signed_in: false, until: null, sign_in: 'Works', notice: null };
     assert.deepEqual(await browser.me(), nobody);
@@ -129,7 +129,7 @@ test('a person signs in, acts under the name, and signs out', { skip }, async ()
     await until('the refresh token being revoked', () => provider.asked.includes('/revoke'));
 });
 
-test('a person whom the provider calls as somebody else is called is told apart', { skip }, async () => {
+test('a user whose name at the provider equals another user\'s name is told apart', { skip }, async () => {
     for (const name of ['local', 'Local', 'break-glass']) {
         provider.claims.preferred_username = name;
         const browser = new Browser();
@@ -145,7 +145,7 @@ test('a person whom the provider calls as somebody else is called is told apart'
     provider.claims.preferred_username = 'kim';
 });
 
-test('untrustworthy answers: each is refused with its reason, and nobody is signed in', { skip }, async () => {
+test('each untrustworthy answer of the provider is refused with its reason, and nobody is signed in', { skip }, async () => {
     const now = () => Math.floor(Date.now() / 1000);
     const cases = [
         ['alg none', /not signed/, (claims, header) => { header.alg = 'none'; }, () => ''],
@@ -174,7 +174,7 @@ test('untrustworthy answers: each is refused with its reason, and nobody is sign
     await recorded('a refusal', (line) => line.event === 'login' && line.result === 'refused' && /nonce/.test(line.why));
 });
 
-test('a code, a state or a whole answer once more, another browser, another issuer, a foreign return', { skip }, async () => {
+test('a repeated code, state or answer, another browser, another issuer and a foreign return address are refused', { skip }, async () => {
     const browser = new Browser();
     const back = await browser.begin();
     const stranger = await new Browser().get(back);
@@ -201,7 +201,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
         assert.equal((await new Browser().signIn(to)).headers.get('location'), '/', to);
 });
 
-test('keys that are rotated are fetched, not more often than they may be', { skip: skip || long }, async () => {
+test('rotated keys are fetched, not more often than permitted', { skip: skip || long }, async () => {
     provider.rotate();
     await until('keys being requested again', async () => (await new Browser().signIn()).status === 303);
     const asked = () => provider.asked.filter((url) => url === '/jwks').length, before_ = asked();
@@ -212,7 +212,7 @@ test('keys that are rotated are fetched, not more often than they may be', { ski
     assert.ok(asked() - before_ <= 1);
 });
 
-test('who loses rights loses the session, and a smaller role counts at once', { skip }, async (t) => {
+test('a user who loses all rights loses the session; a smaller role applies at once', { skip }, async (t) => {
     t.after(() => { provider.claims.groups = ['operators']; provider.status = 200; });
     const browser = new Browser();
     await browser.signIn();
@@ -241,7 +241,7 @@ test('who loses rights loses the session, and a smaller role counts at once', { 
     await recorded('the end', (line) => line.event === 'leave' && /ended the user's sign-in/.test(line.why ?? ''));
 });
 
-test('a provider that is away: who is in stays, nobody new comes, and a token opens', { skip }, async () => {
+test('while the provider is away, signed-in users stay, nobody new signs in, and a token still works', { skip }, async () => {
     const browser = new Browser();
     await browser.signIn();
     const client = await browser.stream();
@@ -266,7 +266,7 @@ test('a provider that is away: who is in stays, nobody new comes, and a token op
     glass.close();
 });
 
-test('without refresh tokens a session ends with its access token; nothing secret is in log or trail', { skip }, async () => {
+test('without refresh tokens a session ends with its access token; log and trail contain no secrets', { skip }, async () => {
     provider.refreshes = false;
     const browser = new Browser();
     assert.equal((await browser.signIn()).status, 303);
@@ -299,7 +299,7 @@ const refusals = () => trail().filter((line) => line.event === 'login' && line.r
 // The trail has at most two summaries per minute: of tokens that were not checked, and of the provider's answers.
 const sumsSince = (began) => 2 + 2 * Math.floor((performance.now() - began) / 60000);
 
-test('foreign answers by thousands leave one line, and lock nobody out', { skip, timeout: 120000 }, async () => {
+test('thousands of forged sign-in answers leave one log line, and lock nobody out', { skip, timeout: 120000 }, async () => {
     const lines = refusals(), began = performance.now();
     const guess = async () => {
         for (let i = 0; i < 500; i++)
@@ -314,7 +314,7 @@ test('foreign answers by thousands leave one line, and lock nobody out', { skip,
     assert.equal((await answer('error=access_denied')).statusCode, 403, 'the address is not held');
 });
 
-test("a provider's own faults, and people who change their mind, slow nobody: the token still opens", { skip }, async () => {
+test("provider errors and cancelled sign-ins slow nobody, and tokens still work", { skip }, async () => {
     const lines = refusals(), began = performance.now(), errors = ['access_denied', 'temporarily_unavailable'];
     const faults = [[401, { error: 'invalid_client' }], [400, { error: 'unauthorized_client' }], [429, { error: 'slow_down' }],
         [429, {}], [503, {}]];
@@ -336,7 +336,7 @@ test("a provider's own faults, and people who change their mind, slow nobody: th
     assert.equal((await new Browser().signIn()).status, 303);
 });
 
-test('made-up codes slow their address, and others sign in meanwhile', { skip, timeout: 120000 }, async () => {
+test('made-up codes slow their own address, and others sign in meanwhile', { skip, timeout: 120000 }, async () => {
     const lines = refusals(), began = performance.now();
     let slowed = 0;
     const guess = async () => {
@@ -352,7 +352,7 @@ test('made-up codes slow their address, and others sign in meanwhile', { skip, t
     assert.ok(refusals() - lines <= checked + sumsSince(began), String(refusals() - lines));
 });
 
-test('a slow provider: codes wait in bounds, and the rights of 40 people end in time beside them', { skip, timeout: 120000 }, async (t) => {
+test('with a slow provider, waiting codes are bounded, and the rights of 40 users end in time', { skip, timeout: 120000 }, async (t) => {
     const metrics = () => fetch(`http://127.0.0.1:${port}/metrics`, { headers: { Authorization: `Bearer ${token}` } });
     const people = async () => Number(/^plantcast_openid_people (\d+)/m.exec(await (await metrics()).text())[1]);
     t.after(() => { Object.assign(provider, { delay_ms: 0, sub: 's1', codesWait: null }); provider.claims.groups = ['operators']; });
@@ -380,7 +380,7 @@ test('a slow provider: codes wait in bounds, and the rights of 40 people end in 
 
 // Signatures, requests and checks of rights run in other threads, so the processor time of the event loop's thread is a valid
 // measure even on a busy machine.
-test('what people cost the loop: a log-in, a request by cookie, and their rights', { skip, timeout: 120000 }, async (t) => {
+test('signing in, requests with cookies and checks of rights cost the event loop little time', { skip, timeout: 120000 }, async (t) => {
     const PEOPLE = 32, REQUESTS = 100;
     t.after(() => { provider.sub = 's1'; provider.claims.groups = ['operators']; });
     const { pid } = plant.daemon.child;
@@ -415,7 +415,7 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     assert.ok(check < 2, `${check} ms of the loop for a check of rights`);
 });
 
-test('keys that cannot be had end nobody; signing out during a check leaves no refresh token', {
+test('failing key requests end no session; signing out during a check leaves no refresh token', {
     skip: skip || long, timeout: 120000,
 }, async (t) => {
     t.after(() => { Object.assign(provider, { keysStatus: 200, delay_ms: 0 }); });
@@ -438,7 +438,7 @@ test('keys that cannot be had end nobody; signing out during a check leaves no r
     await until('all being revoked', () => provider.live.size === 0);
 });
 
-test('who leaves all pages alone is signed out; a notice is there before', {
+test('a user who leaves all pages idle is signed out, after a notice', {
     skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'), timeout: 120000,
 }, async (t) => {
     writeFileSync(path('notice'), 'This system is for authorised people of the works only.\nWhat you do is recorded.\n');
@@ -467,7 +467,7 @@ test('who leaves all pages alone is signed out; a notice is there before', {
     }
 });
 
-test('a person signs in on the page, sees who it is, and signs out', {
+test('a user signs in on the page, sees the own name, and signs out', {
     skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'), timeout: 120000,
 }, async () => {
     for (const [language, theme] of sweep([['en', 'light'], ['de', 'dark'], ['ko', 'light']], [['de', 'dark']])) {
@@ -493,7 +493,7 @@ test('a person signs in on the page, sees who it is, and signs out', {
     }
 });
 
-test('oidc-provider, which others wrote: code flow, refreshing, signing out', { skip, timeout: 120000 }, async (t) => {
+test('with the independent provider oidc-provider, code flow, token refresh and sign-out work', { skip, timeout: 120000 }, async (t) => {
     const { default: Provider } = await import('oidc-provider').catch(() => ({ default: null }));
     if (!Provider)
         return t.skip('oidc-provider is not installed');
@@ -544,7 +544,7 @@ test('oidc-provider, which others wrote: code flow, refreshing, signing out', { 
     }
 });
 
-test('Glewlwyd, as Debian has it: code flow, groups that change and end', {
+test('with Debian\'s Glewlwyd, code flow and changing and ending groups work', {
     skip: skip || (glewlwydIsThere ? false : 'glewlwyd is not installed'), timeout: 120000,
 }, async (t) => {
     const glewlwyd = new Glewlwyd();

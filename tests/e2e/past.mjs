@@ -56,7 +56,7 @@ async function travel(client, us, speed = 0) {
 const reading = (client, index) => client.texts.filter((m) => m.type === 'tags').flatMap((m) => m.values)
     .findLast((row) => row[0] === index);
 
-test('a session that says nothing is at now, and knows where history begins', { skip }, async () => {
+test('a new session starts in the present, and is told where history begins', { skip }, async () => {
     const client = await open();
     const time = await client.until('a time with a beginning', () => client.texts.find((m) => m.type === 'time'));
     assert.deepEqual([time.at_us, time.speed], [null, 0]);
@@ -65,7 +65,7 @@ test('a session that says nothing is at now, and knows where history begins', { 
     client.close();
 });
 
-test('pictures, tags, markers and picks are of the instant, with qualities as they were', { skip }, async () => {
+test('pictures, tags, markers and picks show the chosen instant, with the qualities of then', { skip }, async () => {
     const client = await open();
     const seen = await travel(client, at(300.5));
     assert.equal(seen.from_us, at(0));
@@ -88,7 +88,7 @@ test('pictures, tags, markers and picks are of the instant, with qualities as th
     client.close();
 });
 
-test('play goes on at its speed, stands, and comes back to now', { skip }, async () => {
+test('playback runs at its speed, pauses, and returns to the present', { skip }, async () => {
     const client = await open();
     const began = performance.now();
     await travel(client, at(60), 120);
@@ -112,7 +112,7 @@ test('play goes on at its speed, stands, and comes back to now', { skip }, async
     client.close();
 });
 
-test('who looks at now never notices, and who follows comes along', { skip }, async () => {
+test('one session\'s time travel does not affect others, and followers come along', { skip }, async () => {
     const live = await open(), client = await open(), follower = await open();
     follower.say({ type: 'follow', session: client.welcome.session });
     await follower.text('following');
@@ -129,7 +129,7 @@ test('who looks at now never notices, and who follows comes along', { skip }, as
         one.close();
 });
 
-test('the same instant is drawn once for all who look at it', { skip }, async () => {
+test('the same instant is drawn once for all sessions that show it', { skip }, async () => {
     const first = await open(), second = await open();
     let isShared = false; // a frame is cached for half a second; on a busy machine the two requests may for a while be farther apart
     for (let s = 440, end = performance.now() + 90000; s < 1800 && performance.now() < end && !isShared; s++) {
@@ -144,7 +144,7 @@ test('the same instant is drawn once for all who look at it', { skip }, async ()
     second.close();
 });
 
-test('who begins in the past, or comes back there, never sees now', { skip }, async () => {
+test('a session that starts or reconnects in the past never shows the present', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     const { resume } = await client.hello({ at_us: at(600) });
     assert.equal((await client.frameWhere('the first')).data_time_us, at(600));
@@ -157,7 +157,7 @@ test('who begins in the past, or comes back there, never sees now', { skip }, as
     again.close();
 });
 
-test('mistakes are answered by their names', { skip }, async () => {
+test('invalid time requests are answered with their error codes', { skip }, async () => {
     const client = await open();
     for (const fields of [{}, { at_us: 'noon' }, { at_us: -5 }, { speed: 2 }, { at_us: at(0), speed: 1e9 }]) {
         client.say({ type: 'time', ...fields });
@@ -167,7 +167,7 @@ test('mistakes are answered by their names', { skip }, async () => {
     client.close();
 });
 
-test('single pictures, pixels and films of the past', { skip, timeout: 280000 }, async () => {
+test('snapshots, picks and films of the past are correct, and impossible times are refused', { skip, timeout: 280000 }, async () => {
     const url = `http://127.0.0.1:${plant.port}/`, png = join(plant.folder, 'then.png'), film = join(plant.folder, 'then.mp4');
     for (const [query, status] of [[`at=${BEGIN_S + 300}`, 200], ['at=yesterday', 400], ['at=-1s', 400], [`at=${BEGIN_S + 9000}`, 400]])
         assert.equal((await fetch(`${url}snapshot.png?width=64&height=36&${query}`)).status, status, query);
@@ -207,7 +207,7 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
 });
 
 // This test is the last, because history begins earlier afterwards.
-test('an imported gap, blanks and state words are no data, in pictures, readings, trends, exports and tables', { skip }, async () => {
+test('an imported gap, blanks and state words count as no data in pictures, readings, trends, exports and tables', { skip }, async () => {
     const file = join(plant.folder, 'gap.csv'), from = BEGIN_S - 7 * 86400, day = 86400;
     const rows = [[0, 10], [10, 10], [10, 11], [20, 'I/O Timeout'], [30, 'No Data'], [40, 12], [50, ''], [60, 12], [70, 12], [2 * day, 80],
         [2 * day + 10, 80]];

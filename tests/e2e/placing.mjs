@@ -57,7 +57,7 @@ async function placed(client) {
     }
 }
 
-test('who tries a place sees its field, and nobody else does', options, async () => {
+test('an engineer sees the field of a trial position, and nobody else does', options, async () => {
     const engineer = await enter(), other = await enter();
     const before = await probe(other);
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0.5, 0.05, 0.05] }]);
@@ -77,7 +77,7 @@ test('who tries a place sees its field, and nobody else does', options, async ()
     other.close();
 });
 
-test('who follows an engineer is shown the plant as it is', options, async () => {
+test('a follower of an engineer sees the plant without the trial', options, async () => {
     const engineer = await enter(), other = await enter();
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0.5, 0, 0] }]);
     await placed(engineer);
@@ -88,7 +88,7 @@ test('who follows an engineer is shown the plant as it is', options, async () =>
     other.close();
 });
 
-test('what cannot be is refused with the reason, and nothing moves', options, async () => {
+test('an impossible position is refused with the reason, and nothing moves', options, async () => {
     const engineer = await enter();
     const wrong = async (moves, pattern) => {
         place(engineer, moves);
@@ -109,7 +109,7 @@ test('what cannot be is refused with the reason, and nothing moves', options, as
     engineer.close();
 });
 
-test('gaps: what is far from every sensor, and what has no data', options, async () => {
+test('coverage gaps list areas far from every sensor, and areas without data', options, async () => {
     const engineer = await enter();
     engineer.say({ type: 'gaps', seq: ++seq, far_m: 0.5 });
     const before = await engineer.text('gaps');
@@ -131,7 +131,7 @@ test('gaps: what is far from every sensor, and what has no data', options, async
     engineer.close();
 });
 
-test('a list is saved: the difference first, then active for all, with the old one kept', options, async () => {
+test('saving a list first shows the difference; then the list is active for all, and the old one is kept', options, async () => {
     const engineer = await enter(), other = await enter(), old = readFileSync(tagsFile, 'utf8');
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.12345] },
         { tag: 'TI-2', asset: 'E-101', position: [-0.5, 0.25, 0] }]);
@@ -176,7 +176,7 @@ test('a list is saved: the difference first, then active for all, with the old o
     other.close();
 });
 
-test('a list that somebody else changed meanwhile is not written over: what they changed is shown', options, async () => {
+test('a list that somebody else changed meanwhile is not overwritten: the other changes are shown', options, async () => {
     const engineer = await enter(), good = readFileSync(tagsFile, 'utf8');
     place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [0.5, 0.25, 0] }]);
     await placed(engineer);
@@ -194,7 +194,7 @@ test('a list that somebody else changed meanwhile is not written over: what they
 });
 
 // Saving replaces the file behind a symlink and keeps versions next to that file, so restoring must look there.
-test('a version of a list that is a symlink is found by the name that saving tells', options, async () => {
+test('restoring accepts the version name that saving reported, also when the tag list is a symlink', options, async () => {
     const engineer = await enter(), now = readFileSync(tagsFile, 'utf8'), real = join(plant.folder, 'lists-v1.csv');
     const before = now.replace('TI-9', 'TI-8');
     renameSync(tagsFile, real);
@@ -211,7 +211,7 @@ test('a version of a list that is a symlink is found by the name that saving tel
     engineer.close();
 });
 
-test('a list that cannot be prepared is put back', options, async () => {
+test('a list that cannot be prepared is rolled back', options, async () => {
     const engineer = await enter(), good = readFileSync(tagsFile, 'utf8'), model = join(plant.folder, 'box.gltf');
     const box = readFileSync(model), files = readdirSync(plant.folder).sort();
     place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [0.5, 0.25, 0] }]);
@@ -230,7 +230,7 @@ test('a list that cannot be prepared is put back', options, async () => {
     engineer.close();
 });
 
-test('while another program is at work in the plant\'s folder, a list is not saved, and frames go on', options, async (t) => {
+test('while another program is at work in the plant\'s folder, a list is not saved, and frames continue', options, async (t) => {
     const engineer = await enter(), good = readFileSync(tagsFile, 'utf8'), files = readdirSync(plant.folder).sort();
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.25] }]);
     await placed(engineer);
@@ -276,7 +276,7 @@ async function forced(tag, value) {
     await until(`${tag} ${value}`, async () => Math.abs((await readings()).find(({ name }) => name === tag).value - value) < 0.01);
 }
 
-test('a forced value proves a tag, for all to see; beyond the tolerance it does not', options, async () => {
+test('a forced value passes a tag\'s loop check for all to see; a value beyond the tolerance does not', options, async () => {
     const engineer = await enter(), other = await enter();
     const { all, begun, tags } = await other.text('proofs');
     assert.deepEqual([all, begun, tags], [true, false, []]);
@@ -299,7 +299,7 @@ test('a forced value proves a tag, for all to see; beyond the tolerance it does 
     other.close();
 });
 
-test('proofs are exported, outlive the daemon, and end where the tag is another', options, async () => {
+test('loop checks are exported, survive a restart of the daemon, and end when the tag is another', options, async () => {
     const csv = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/proofs`)).text();
     const [head, first] = csv.split('\n');
     assert.equal(head, 'Time,Tag Name,Result,Value,Unit,Expected,Tolerance,By,Remark,Fingerprint');

@@ -119,7 +119,7 @@ async function startSending() {
     return from;
 }
 
-test('what is recorded is there, each point once and with its quality', options, async () => {
+test('the database has each recorded point once, with its quality', options, async () => {
     configure();
     const from = begin();
     await plant.startDaemon();
@@ -138,7 +138,7 @@ test('what is recorded is there, each point once and with its quality', options,
     assert.ok(await metric('postgres_points_total') > 100);
 });
 
-test('a gap and a Bad sample of an import are there, and a later import removes what is no gap any more', options, async () => {
+test('the database has an import\'s gap and Bad sample, and a later import removes a gap that is filled', options, async () => {
     configure();
     const file = join(plant.folder, 'gap.csv'), from = Math.floor(Date.now() / 1000) - 3 * 86400;
     writeFileSync(file, `Time,TI-1\n${[[0, 10], [10, 10], [20, 'Bad'], [30, 10], [40, 10], [86400, 90], [86410, 90]]
@@ -176,7 +176,7 @@ function expanded(sql, from, chosen) {
     return sql.replaceAll(/\$__timeFilter\(([\w.]+)\)/g, (_, at) => time(at)).replaceAll(/\$\{(\w+):sqlstring\}/g, (_, name) => text(name));
 }
 
-test('every panel and variable of the dashboard of trends is answered, and a reading that is not good is not drawn', options, async () => {
+test('every panel and variable of the trend dashboard gets data, and readings that are not good are not drawn', options, async () => {
     configure();
     const from = begin();
     await plant.startDaemon();
@@ -208,7 +208,7 @@ test('every panel and variable of the dashboard of trends is answered, and a rea
     await plant.tell('resume');
 });
 
-test('nothing is lost while the server is killed, nor while it is frozen; live readings do not wait', options, async (t) => {
+test('no point is lost while the server is killed or frozen; live readings do not wait', options, async (t) => {
     configure();
     const from = await startSending();
     await server.kill();
@@ -234,7 +234,7 @@ test('nothing is lost while the server is killed, nor while it is frozen; live r
     assert.equal(await metric('postgres_lost_total'), 0);
 });
 
-test('the daemon is killed while the server is away, and started again: nothing is lost, nothing comes twice', options, async () => {
+test('the daemon is killed while the server is away and restarted: each point is stored exactly once', options, async () => {
     configure();
     const from = await startSending();
     await sent(100);
@@ -250,7 +250,7 @@ test('the daemon is killed while the server is away, and started again: nothing 
     assert.ok(gaps.length >= TAGS.length, 'and when it did not run');
 });
 
-test('a connection that is cut in the middle of a batch', options, async () => {
+test('a connection cut in the middle of a batch loses and repeats no point', options, async () => {
     link = await CuttableLink.open(server.port);
     configure({ port: link.port });
     const from = begin();
@@ -268,7 +268,7 @@ test('a connection that is cut in the middle of a batch', options, async () => {
     assert.ok(await assertSame(from) > 20);
 });
 
-test('a disk of the server that is full', options, async (t) => {
+test('a full disk of the server loses no point', options, async (t) => {
     const disk = server.smallDisk(24);
     if (!disk) {
         t.skip('no disk can be mounted here');
@@ -293,7 +293,7 @@ test('a disk of the server that is full', options, async (t) => {
     server.database = 'postgres';
 });
 
-test('too many waiting points: the oldest are dropped and reported; the local files have them', options, async () => {
+test('with too many waiting points, the oldest are dropped and reported; the local files have them', options, async () => {
     configure({ more: ', spool_points: 1000' });
     const from = Math.floor(Date.now() / 1000) - 20000, rows = ['Tag,Time,Value'];
     for (let i = 0; i < 3000; i++)
@@ -332,7 +332,7 @@ test('tables of another version are refused by name, and left alone', options, a
     await settled();
 });
 
-test('two that write for one plant: the second is refused; and takes over when the first has gone', options, async () => {
+test('of two daemons that write for one plant, the second is refused, and takes over when the first has gone', options, async () => {
     configure();
     const from = begin();
     await plant.startDaemon();
@@ -377,7 +377,7 @@ test('a replacement machine gets the plant\'s history and continues it', options
 });
 
 // TimescaleDB is not in Debian: a fake create_hypertable() in the database records how it is called.
-test('a database with TimescaleDB: the points are a hypertable of weeks', options, async () => {
+test('with TimescaleDB, the points are stored in a hypertable with chunks of a week', options, async () => {
     configure();
     server.ask(`SET allow_system_table_mods = on; INSERT INTO pg_extension(oid, extname, extowner, extnamespace, extrelocatable, extversion)
         VALUES (999999, 'timescaledb', 10, 2200, false, '2.0'); CREATE TABLE asked(text text); GRANT ALL ON asked TO plantcast;
@@ -388,7 +388,7 @@ test('a database with TimescaleDB: the points are a hypertable of weeks', option
     assert.deepEqual(server.ask('SELECT text FROM asked'), [['sample t 7 days']]);
 });
 
-test('a password in the plant file, and a schema that is not a name, are refused', options, () => {
+test('a password in the plant file, and an invalid schema name, are refused', options, () => {
     configure();
     const text = readFileSync(plant.file, 'utf8'), check = () => runProgram('plantcastd', ['--check', plant.file]);
     writeFileSync(plant.file, text.replace('postgresql://', 'postgresql://me:secret@'));

@@ -55,7 +55,7 @@ async function listen() {
 const until = (what, ask) => waitFor(what, ask, 90, () => `heard ${JSON.stringify(heard)}`);
 const tag = (name) => JSON.parse(heard[`${PREFIX}/tags/${name}`] ?? '{}');
 
-test('values with their time, quality and unit; each tag has a topic of one level', options, async () => {
+test('values are published with time, quality and unit, each tag in a topic of one level', options, async () => {
     const topics = ['alarms', 'state', 'tags/PI-1', 'tags/TI%2F2%23a', 'tags/TI-1'];
     await until('a value, and all topics', () => tag('TI-1').value === 21.5 && Object.keys(heard).length >= topics.length);
     assert.deepEqual([tag('TI-1').quality, tag('TI-1').unit, heard[`${PREFIX}/state`]], [0, '°C', 'online']);
@@ -68,7 +68,7 @@ test('values with their time, quality and unit; each tag has a topic of one leve
     await until('Good', () => tag('PI-1').quality === 0);
 });
 
-test('alarms: all active ones are published, and none once they have ended', options, async () => {
+test('all active alarms are published, and none once they have ended', options, async () => {
     const alarms = () => JSON.parse(heard[`${PREFIX}/alarms`] ?? '{}').alarms;
     await until('no alarm', () => alarms()?.length === 0);
     await plant.tell('set TI-1 95.5');
@@ -79,7 +79,7 @@ test('alarms: all active ones are published, and none once they have ended', opt
     await until('none', () => alarms()?.length === 0);
 });
 
-test('the newest value wins: publishing does not exceed the requested rate', options, async () => {
+test('publishing sends the newest value, and does not exceed the configured rate', options, async () => {
     publications = 0;
     const began = performance.now();
     for (let i = 0; i < 40; i++) {
@@ -90,7 +90,7 @@ test('the newest value wins: publishing does not exceed the requested rate', opt
     await until('the last', () => tag('TI-1').value === 39);
 });
 
-test('another Plantcast shows it, with the same values, qualities and times', options, async () => {
+test('another Plantcast shows the published values with the same qualities and times', options, async () => {
     other = await PublishedPlant.create(broker);
     const rows = ['TI-1,,,°C,temperature,E-101,0.5,0,0,600,,,,,', 'PI-1,,,bar,pressure,P-101A,3,0,0.5,600,,,,,',
         `TI-2,${PREFIX}/tags/TI%2F2%23a,,°C,temperature,E-101,-0.5,0,0,600,,,,,`];
@@ -129,7 +129,7 @@ test('a value that replaces another of the same time is published', options, asy
     }
 });
 
-test('a broker that is killed and comes back receives all values again; a daemon that dies is shown as offline', options, async () => {
+test('a broker that restarts receives all values again; a killed daemon is shown as offline', options, async () => {
     await broker.restart();
     await plant.daemon.line(/publish: .*: not publishing: /);
     await listen();
@@ -142,7 +142,7 @@ test('a broker that is killed and comes back receives all values again; a daemon
     await until('offline at its end', () => heard[`${PREFIX}/state`] === 'offline');
 });
 
-test('a prefix where devices may listen is refused', options, () => {
+test('a topic prefix on which devices may listen is refused', options, () => {
     const text = readFileSync(plant.file, 'utf8');
     for (const prefix of ['plc1/write', 'plantcast/#', 'plantcast/']) {
         writeFileSync(plant.file, text.replace(`prefix: ${PREFIX}`, `prefix: "${prefix}"`));

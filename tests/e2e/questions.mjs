@@ -48,13 +48,13 @@ async function othersSeconds() {
     return (performance.now() - began) / 1000;
 }
 
-test('a tag is asked for once', options, async () => {
+test('a history request that lists a tag twice is refused', options, async () => {
     const { status, body } = await get(plant.port, query(Array(64).fill('T-1').join(','), 100));
     assert.equal(status, 400);
     assert.match(body.toString(), /'T-1' is listed twice/);
 });
 
-test('a long answer comes whole, in pieces', options, async () => {
+test('a long answer arrives complete, in pieces', options, async () => {
     const url = `http://127.0.0.1:${plant.port}`, answer = await fetch(url + all);
     assert.equal(answer.headers.get('content-length'), null);
     const { series } = await answer.json();
@@ -72,7 +72,7 @@ test('a long answer comes whole, in pieces', options, async () => {
     assert.equal(JSON.parse(old.slice(old.indexOf('\r\n\r\n'))).series.length, TAGS);
 });
 
-test('readers who do not read cost little memory, and others have their answers', options, async (t) => {
+test('clients that do not read their answers cost little memory, and do not delay others', options, async (t) => {
     const alone = await othersSeconds(), before = residentMB();
     const readers = Array.from({ length: READERS }, () => {
         const socket = connect({ port: plant.port, host: '127.0.0.1', ...GREEDY }, () => socket.write(head(all)));
@@ -93,7 +93,7 @@ test('readers who do not read cost little memory, and others have their answers'
     promise(t, "the slowest answer to another client", 1000 * slowest, 1000 * Math.max(1, 20 * alone));
 });
 
-test('who asks for all, all the time, leaves others their answers', options, async (t) => {
+test('a client that constantly requests everything does not delay others', options, async (t) => {
     const alone = await othersSeconds();
     let going = true, had = 0;
     const greedy = Array.from({ length: 8 }, () => new Promise((done) => {

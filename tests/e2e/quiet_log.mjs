@@ -51,7 +51,7 @@ const look = async () => {
     client.close();
 };
 
-test('what happens in normal life is measured', options, async () => {
+test('each normal event writes few bytes to the log', options, async () => {
     assert.equal(await measure('10 s of changing readings', 10, async (i) => {
         await plant.tell(`set TI-2 ${20 + i}`);
         await sleep(1000);
@@ -85,14 +85,14 @@ test('what happens in normal life is measured', options, async () => {
     }), /source|link/i);
 });
 
-test('a device that stays lost is not told of again and again', options, async () => {
+test('a device that stays lost is not logged again and again', options, async () => {
     await plant.sim.stop();
     await sleep(6000);
     assert.equal(await measure('second of a lost device', 20, () => sleep(1000), 0), '');
     await plant.startSim();
 });
 
-test('a busy day stays under 10 MB, and one with a device that flaps all day, too', options, () => {
+test('the log of a busy day stays under 10 MB, also with a device that flaps all day', options, () => {
     for (const [what, { bytes, lines }] of Object.entries(costs))
         console.log(`# ${what}: ${bytes.toFixed(0)} bytes, ${lines.toFixed(1)} lines`);
     // A day of each plant: 40 people and walls that reconnect 50 times each, a scraper and programs that poll every 5 s, a

@@ -34,14 +34,14 @@ async function sleeps(seconds) {
     return (count() - start) / seconds;
 }
 
-test('a loop with nothing to do sleeps', options, async () => {
+test('an event loop with nothing to do sleeps', options, async () => {
     await sleep(2000);
     const rate = await sleeps(3);
     assert.ok(rate < 5, `woken ${rate} times a second`); // the loop would sleep ten times a second if it polled every tenth of a second
 });
 
 // The device is read every 100 ms, so the oldest reading of a frame is as old as the change that led to the frame.
-test('a changed reading does not wait for a tick', options, async (t) => {
+test('a changed reading is sent without waiting for a tick', options, async (t) => {
     const ages = [];
     for (let i = 0; i < CHANGES; i++) {
         const shown = client.frames.length;
@@ -54,7 +54,7 @@ test('a changed reading does not wait for a tick', options, async (t) => {
     promise(t, `from a reading to its frame, median of ${ages.join(', ')} ms`, median(ages), 35);
 });
 
-test('what is asked for between changes is of now', options, async (t) => {
+test('an answer between changes has the present time and current ages', options, async (t) => {
     await sleep(1500);
     const asked = Date.now(), page = JSON.parse((await get(plant.port, '/api/v1/tags')).body.toString()), time = page.time_us / 1000;
     assert.ok(time > asked - 500 && time < Date.now() + 500, `the time of the page: ${time - asked} ms after it was asked for`);
@@ -63,7 +63,7 @@ test('what is asked for between changes is of now', options, async (t) => {
     promise(t, 'the oldest reading', Math.max(pong.oldest_age_ms, ...page.tags.map((tag) => tag.age_ms)), 500);
 });
 
-test('a reading gets stale when its time is over, though nobody writes it', options, async () => {
+test('a reading becomes stale when its time is over, though nothing is written', options, async () => {
     const told = client.texts.length, bad = (row) => row[2] === 'bad';
     await plant.tell('pause');
     await client.until('all readings bad', (c) => {

@@ -39,7 +39,7 @@ const active = async () => {
     return alarms.map(({ tag, kind, state }) => `${tag}/${kind} ${state}`);
 };
 
-test('after errors the previous plant stays active, and each error is named with its place', options, async () => {
+test('after a failed reload the old plant stays active, and each error is named with its position', options, async () => {
     const before = await (await fetch(url('/api/v1/plant'))).json();
     const good = readFileSync(tagsFile, 'utf8');
     writeFileSync(tagsFile, good.replace('TI-2,400003,Float', 'TI-2,400003,Flaot'));
@@ -51,7 +51,7 @@ test('after errors the previous plant stays active, and each error is named with
     assert.deepEqual((await (await fetch(url('/api/v1/plant'))).json()).plant.configuration, before.plant.configuration);
 });
 
-test('changes are reported; sessions, alarms and readings continue', options, async () => {
+test('a reload reports the changes; sessions, alarms and readings continue', options, async () => {
     const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({});
     client.say({ type: 'params', seq: 1, group: 'temperature', ramp_interval: 10 });
@@ -85,7 +85,7 @@ test('changes are reported; sessions, alarms and readings continue', options, as
     client.close();
 });
 
-test('history has no gap where the tag stays', options, async () => {
+test('a tag that stays has no gap in its history', options, async () => {
     const { series } = await until('a value', async () => {
         const answer = await (await fetch(url('/api/v1/history?tags=TI-1&from=-10m'))).json();
         return answer.series[0].points.some(([, value]) => value !== null) && answer;
@@ -94,7 +94,7 @@ test('history has no gap where the tag stays', options, async () => {
     assert.ok(series[0].points.slice(begins).every(([, value]) => value !== null), JSON.stringify(series[0].points));
 });
 
-test('points in a unit that cannot be converted are left out, and come back with their unit', options, async () => {
+test('points in a unit that cannot be converted are left out, and return with their unit', options, async () => {
     const files = [[plant.file, readFileSync(plant.file, 'utf8')], [tagsFile, readFileSync(tagsFile, 'utf8')]];
     const series = async () => (await (await fetch(url('/api/v1/history?tags=PI-1&from=-10m'))).json()).series[0];
     const begins = async () => until('a value', async () => (await series()).points.find(([, value]) => value !== null)?.[0]);
@@ -114,14 +114,14 @@ test('points in a unit that cannot be converted are left out, and come back with
     assert.equal((await series()).unit, 'bar');
 });
 
-test('who may not, and from where it may not be', options, async () => {
+test('a reload is refused by GET and from foreign origins', options, async () => {
     assert.equal((await fetch(url('/api/v1/reload'))).status, 404, 'GET changes nothing');
     const foreign = await fetch(url('/api/v1/reload'), { method: 'POST', headers: { Origin: 'http://elsewhere.example' } });
     assert.equal(foreign.status, 403);
     assert.equal((await fetch(url('/api/v1/tags'), { method: 'POST' })).status, 405);
 });
 
-test('the picture goes on until the new plant has one', options, async (t) => {
+test('the old picture continues until the new plant has one', options, async (t) => {
     const client = await PlainClient.open(plant.port);
     await client.hello({ width: 1280, height: 720 });
     let seq = 0, welcome = null;
@@ -142,7 +142,7 @@ test('the picture goes on until the new plant has one', options, async (t) => {
     promise(t, `without a picture, in a reload of ${whole.toFixed(0)} ms`, longest, 0.6 * whole);
 });
 
-test('again and again, by signal, under clients that move', options, async () => {
+test('repeated reloads by signal, under clients that move, disconnect nobody', options, async () => {
     const clients = await Promise.all([1, 2, 3].map(() => PlainClient.open(plant.port)));
     for (const client of clients)
         await client.hello({});
@@ -169,7 +169,7 @@ test('again and again, by signal, under clients that move', options, async () =>
 });
 
 // Reading a named pipe blocks until a writer opens it, so the test decides when the reload finishes.
-test('who waits too long for an answer is told so, and can ask again', options, async () => {
+test('a client whose answer takes too long gets an error, and can ask again', options, async () => {
     const other = await TinyPlant.create(), tags = join(other.folder, 'tags.csv'), aside = join(other.folder, 'aside.csv');
     const ask = () => fetch(`http://127.0.0.1:${other.port}/api/v1/reload`, { method: 'POST' });
     try {

@@ -65,7 +65,8 @@ function bring(folder, ...more) {
     assert.notEqual(readFileSync(list, 'utf8'), text);
 }
 
-test('a real plant: rename, move, delete, add; and back', { skip: noData }, () => inFolder((folder) => {
+test('a real plant\'s import applies renamed, moved, deleted and added equipment, and undo reverts it',
+    { skip: noData }, () => inFolder((folder) => {
     const plant = join(folder, 'plant'), revised = revise(folder);
     bring(plant, '--modbus', '127.0.0.1:502', '--byte-order', 'CDAB');
     const before = filesOf(plant);
@@ -113,7 +114,7 @@ function boxes(path, nodes) {
     { scene: nodes.map((_, i) => i) })));
 }
 
-test('identities: GUIDs, numbers of nodes, names that are used again', { skip: notBuilt }, () => inFolder((folder) => {
+test('assets are recognised by GUID, node number and reused names', { skip: notBuilt }, () => inFolder((folder) => {
     const model = join(folder, 'm.gltf'), plant = join(folder, 'plant'), list = join(plant, 'tags.csv');
     const A = { name: 'A', at: [0, 0, 0], guid: 'gA' }, B = { name: 'B', at: [5, 0, 0], guid: 'gB' }, C = { name: '', at: [9, 0, 0] },
         D = { name: 'D', at: [20, 0, 0] }, E = { name: 'E', at: [30, 0, 0] }, T = { name: 'TT-9', at: [5, 2, 0], guid: 'gT' };
@@ -177,7 +178,7 @@ T6;temperature;second;TT-9;;;;;f
     assert.deepEqual(filesOf(plant), first);
 }));
 
-test('a tag list in a folder of its own, or behind a link', { skip: notBuilt }, () => inFolder((folder) => {
+test('an import revises a tag list in another folder, or behind a symlink', { skip: notBuilt }, () => inFolder((folder) => {
     const model = join(folder, 'm.gltf'), lists = join(folder, 'lists'), list = join(lists, 'tags.csv');
     const A = { name: 'A', at: [0, 0, 0] }, B = { name: 'B', at: [5, 0, 0] };
     for (const linked of [false, true]) {
@@ -209,7 +210,7 @@ test('a tag list in a folder of its own, or behind a link', { skip: notBuilt }, 
     }
 }));
 
-test('under a daemon that runs: readings, history and alarms keep their tags', { skip: noData, timeout: 300000 }, async () => {
+test('under a running daemon, readings, history and alarms keep their tags', { skip: noData, timeout: 300000 }, async () => {
     const tiny = await TinyPlant.create(), plant = tiny.folder;
     for (const name of readdirSync(plant))
         rmSync(join(plant, name), { recursive: true });
@@ -253,7 +254,7 @@ test('under a daemon that runs: readings, history and alarms keep their tags', {
 });
 
 const patient = { skip: noData, timeout: 300000 };
-test('killed in the middle, or out of disk: the old plant or the new one', patient, () => inFolder(async (folder) => {
+test('after a kill midway or a full disk, the plant is the old or the new one', patient, () => inFolder(async (folder) => {
     const first = join(folder, 'first'), revised = revise(folder), plant = join(folder, 'plant');
     bring(first);
     const old = filesOf(first);

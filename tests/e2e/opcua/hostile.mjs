@@ -40,7 +40,7 @@ async function meet(before = 0) {
     return peakMb() - before;
 }
 
-test('what lies about sizes is left, named, and costs nothing', options, async () => {
+test('a server that announces false sizes is disconnected, named, and costs no memory', options, async () => {
     const real = server.port;
     server.port = await freePort();
     const before = await meet(); // memory while nothing listens at the server's port
@@ -62,7 +62,7 @@ test('what lies about sizes is left, named, and costs nothing', options, async (
     server.port = real;
 });
 
-test('a real server\'s messages with sizes in them that are none cost no more', options, async () => {
+test('a real server\'s messages with invalid sizes cost no extra memory', options, async () => {
     await server.reset();
     const real = server.port;
     for (const spared of [0, 600, 3000]) {
@@ -80,7 +80,7 @@ test('a real server\'s messages with sizes in them that are none cost no more', 
     }
 });
 
-test('a reading whose source is an hour ahead is shown, and not as if it came from the future', options, async () => {
+test('a reading timestamped an hour ahead is shown, but not with that future time', options, async () => {
     await server.reset({});
     await plant.run('security: none', ROWS);
     await server.set('TI-1', 33, { at: Date.now() + 3600000 });
@@ -90,7 +90,7 @@ test('a reading whose source is an hour ahead is shown, and not as if it came fr
 
 // The first of its two addresses refuses connections.
 const named = { ...options, skip: options.skip || !canMount && 'no right to mount' };
-test('of a name with several addresses, each is tried', named, async () => {
+test('each address of a server\'s host name is tried', named, async () => {
     const hosts = join(server.folder, 'hosts');
     writeFileSync(hosts, '127.0.0.1 localhost\n127.0.0.9 plc.test\n127.0.0.1 plc.test\n');
     plant.plant.before = ['unshare', '--mount', 'sh', '-c', `mount --bind ${hosts} /etc/hosts && exec "$@"`, 'sh'];
@@ -107,7 +107,7 @@ test('of a name with several addresses, each is tried', named, async () => {
     server.host = undefined;
 });
 
-test('a server that tells rarely says so, and is missed soon all the same', options, async (t) => {
+test('a server with a long publishing interval is reported, and its loss is noticed soon all the same', options, async (t) => {
     await server.restart({ publishing_ms: 60000 });
     await plant.run('security: none', ROWS);
     await plant.said(/the server publishes changes every 60000 ms instead of every 100 ms/);
@@ -120,7 +120,7 @@ test('a server that tells rarely says so, and is missed soon all the same', opti
 
 const clocks = { ...options, skip: options.skip || (missingClocks() ?? false) };
 for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
-    test(`a server whose clock is an hour ${word} ours is believed in all but that`, clocks, async () => {
+    test(`readings from a server whose clock is an hour ${word} ours are used, its clock is not`, clocks, async () => {
         const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
         for (const name of ['yesterday', 'client2'])
             makeCertificate(server.folder, name, { dates: [day(-1), day(1)] }); // valid by the clocks of both daemon and server
@@ -138,7 +138,8 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
     });
 
 // If the server's clock is slow, new certificates are not valid yet: neither the server's nor the client's.
-test('a server whose clock is before its certificate is read, and said; a certificate of tomorrow is refused by name', clocks, async () => {
+test('a server whose clock is before its certificate is read and reported; a certificate not yet valid is refused by name',
+    clocks, async () => {
     const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
     for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])
         makeCertificate(server.folder, name, { dates: [day(from), day(to)] });

@@ -21,7 +21,7 @@ const at = (file) => join(server.folder, file);
 const browse = (...more) => runProgram('plantcast', ['tags', '--browse', `opc.tcp://127.0.0.1:${server.port}`,
     '--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted'), ...more], 60000);
 
-test('users: by password, by certificate, and refused by name', options, async () => {
+test('users sign in by password or certificate, and refusals name the reason', options, async () => {
     await server.restart({ anonymous: false });
     const login = join(server.folder, 'login');
     writeFileSync(login, 'reader\nsaid & done\n');
@@ -45,7 +45,7 @@ test('users: by password, by certificate, and refused by name', options, async (
     await said(/no readings \(/);
 });
 
-test('certificates that are wrong are refused by name, ours and theirs', options, async () => {
+test('invalid certificates are refused by name, the server\'s and ours', options, async () => {
     const folder = server.folder;
     makeCertificate(folder, 'old', { dates: ['20200101000000Z', '20200201000000Z'] });
     makeCertificate(folder, 'elsewhere', { hosts: 'DNS:other.example' });

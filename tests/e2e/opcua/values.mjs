@@ -29,7 +29,7 @@ const said = (...args) => plant.said(...args);
 const start = (keys, rows = ROWS) => plant.start(keys, rows);
 const browse = (url, ...more) => runProgram('plantcast', ['tags', '--browse', url, ...more], PATIENCE_MS);
 
-test('values, status codes and times come as they are, and nothing is ever written', options, async () => {
+test('values, status codes and times arrive unchanged, and nothing is ever written', options, async () => {
     await server.reset();
     const first = performance.now();
     await plant.run(server.security(), [...ROWS, ROW3, TEXT, ...TEMPS, `GONE,${NODE}Gone,,,,,,,,,,,,,`]);
@@ -65,7 +65,7 @@ test('values, status codes and times come as they are, and nothing is ever writt
     assert.equal((await server.tell({})).sessions, 0, 'the session was closed');
 });
 
-test('all tags are Bad as soon as the server is gone; all is subscribed again, whatever number its namespace has', options, async (t) => {
+test('all tags are Bad when the server is gone; on return all are subscribed again, whatever the namespace index', options, async (t) => {
     await server.reset();
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
@@ -86,7 +86,7 @@ test('all tags are Bad as soon as the server is gone; all is subscribed again, w
     await said(/no readings[^]*reading[^]*no readings[^]*reading/);
 });
 
-test('a notification that is lost is noticed, and all nodes are read', options, async () => {
+test('a lost notification is noticed, and all nodes are read', options, async () => {
     await server.reset({ readsPerCall: 3 }); // one request may read fewer nodes than the plant has
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
@@ -100,7 +100,7 @@ test('a notification that is lost is noticed, and all nodes are read', options, 
     assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
 });
 
-test('the server applies deadbands; a node that cannot have one is read without', options, async () => {
+test('the server applies deadbands; a node that cannot have a deadband is read without', options, async () => {
     await server.reset();
     await plant.run(`${server.security()}, deadband_percent: 10`, [...ROWS, `B,${NODE}Bounded,,,,,,,,,,,,,`]);
     await until('B', { ...good, value: 50 });
@@ -113,7 +113,7 @@ test('the server applies deadbands; a node that cannot have one is read without'
     await until('B', { ...good, value: 65 });
 });
 
-test('a tag may have a deadband of its own; one that the server refuses is logged', options, async () => {
+test('a tag may have its own deadband; a deadband that the server refuses is logged', options, async () => {
     await server.reset();
     const rows = ROWS.map((row) => `${row},${{ 'TI-1': '5', 'TI-2': '10%', 'PI-1': '0' }[row.split(',')[0]] ?? ''}`);
     await plant.run(`${server.security()}, deadband: 20`, [...rows, `B,${NODE}Bounded,,,,,,,,,,,,,,20 %`], ',OPC Deadband');
@@ -136,7 +136,7 @@ test('a tag may have a deadband of its own; one that the server refuses is logge
     await until('B', { ...good, value: 71 });
 });
 
-test('a server that is full is tried again until it has room', options, async () => {
+test('a server without free sessions is retried until it has one', options, async () => {
     await server.reset({ sessions: 1 });
     await plant.run(server.security(), ROWS);
     const other = await PublishedPlant.create(server);
@@ -152,7 +152,7 @@ test('a server that is full is tried again until it has room', options, async ()
     }
 });
 
-test(`${MANY} nodes, and changes of all of them`, options, async () => {
+test(`changes of ${MANY} nodes at once all arrive`, options, async () => {
     const rows = Array.from({ length: MANY }, (_, i) => `N${i},${NODE}N${i},,,,,,,,,,,,,`);
     await server.reset({ many: MANY });
     await plant.run(server.security(), rows);
@@ -171,7 +171,7 @@ test(`${MANY} nodes, and changes of all of them`, options, async () => {
     assert.ok(await plant.metric('samples_total{source="plc"}') >= 3 * MANY);
 });
 
-test('plantcast tags --browse writes a tag list that is read as it is', options, async () => {
+test('plantcast tags --browse writes a tag list that the daemon reads unchanged', options, async () => {
     await server.reset({ many: MANY }); // the server has more nodes than fit into one answer
     const url = `opc.tcp://127.0.0.1:${server.port}`, at = (file) => join(server.folder, file);
     const secure = ['--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted')];
@@ -195,7 +195,7 @@ test('plantcast tags --browse writes a tag list that is read as it is', options,
     assert.equal(browse('http://127.0.0.1').code, 2);
 });
 
-test('nothing that writes or calls is linked, or could be sent', options, () => {
+test('the daemon links and sends no OPC UA request that writes or calls', options, () => {
     const symbols = spawnSync('nm', [join(BIN, 'plantcastd')], { encoding: 'utf8', maxBuffer: 1 << 27 }).stdout;
     assert.match(symbols, /UA_Client_run_iterate/);
     assert.doesNotMatch(symbols, /UA_Client_(write|call)|UA_Client_\w*writeAttribute|UA_Client_(add|delete)\w*(Node|Reference)/);
@@ -205,7 +205,7 @@ test('nothing that writes or calls is linked, or could be sent', options, () => 
     assert.deepEqual([...sent].filter((name) => !['GETENDPOINTS', 'READ', 'BROWSE', 'BROWSENEXT'].includes(name)), []);
 });
 
-test('what cannot be is said of the plant file', options, () => {
+test('--check names each mistake in an OPC UA source of the plant file', options, () => {
     const refused = (keys, row = ROWS[0], more = '') => {
         plant.write(keys, [row], more);
         const { code, err } = runProgram('plantcastd', ['--check', plant.file]);

@@ -100,7 +100,7 @@ async function until(what, good) {
     }
 }
 
-test('arrows go around the tank like the wind, near sensors and where there are none', options, async () => {
+test('arrows follow the wind around the tank, near sensors and away from them', options, async () => {
     // Up to two arrows may be unknown: at the top of the tank, the four sensors' directions cancel out.
     const known = ({ rows }) => rows.length > 15 && rows.filter(isUnknown).length < 3 && rows.every((row) => row[5] === 0);
     const { rows, width, height } = await until('directions known', known);
@@ -119,7 +119,7 @@ test('arrows go around the tank like the wind, near sensors and where there are 
     assert.ok(apart >= Math.max(48, width / 24) - 0.2, `${apart}`);
 });
 
-test('the page draws them, and its legend says how long they are', options, async () => {
+test('the page draws the arrows, and its legend states their length', options, async () => {
     const key = browser.page.locator('.legend .arrow-key');
     await key.waitFor();
     assert.match(await key.textContent(), /12\s*m\/s/);
@@ -128,7 +128,7 @@ test('the page draws them, and its legend says how long they are', options, asyn
     assert.deepEqual(browser.errors, []);
 });
 
-test('strokes follow the wind round the tank, each to the right where it is seen from in front, and run', options, async () => {
+test('streaks follow the wind around the tank, move, and point the way that is seen from the front', options, async () => {
     await browser.page.evaluate(() => globalThis.plantcast.session.setParams({ arrows: 'strokes' }));
     const { rows, width, height } = await until('strokes', ({ rows: all }) => all.filter((row) => row[7] > 0).length > 60);
     const numbers = new Set(rows.map((row) => row[7] ?? 0).filter((number) => number > 0));
@@ -175,7 +175,7 @@ test('strokes follow the wind round the tank, each to the right where it is seen
     assert.deepEqual(browser.errors, []);
 });
 
-test('the panel of the picture says what is drawn, and when not to trust it', options, async () => {
+test('the picture panel explains what arrows and streaks show, and when not to trust them', options, async () => {
     const { page } = browser;
     await page.click('#picture-toggle');
     await page.locator('#directions .note').waitFor();
@@ -190,7 +190,7 @@ test('the panel of the picture says what is drawn, and when not to trust it', op
     assert.deepEqual(browser.errors, []);
 });
 
-test('where a direction is lost it is unknown, and only there', options, async () => {
+test('where a sensor\'s direction is lost, arrows are unknown, and only there', options, async () => {
     const before = (await arrows()).rows.filter(isUnknown).length;
     await plant.tell(`fail ${bearingTag(LOST)}`);
     const { rows } = await until('more unknown', ({ rows: all }) => all.filter(isUnknown).length > before + 3);
@@ -199,7 +199,7 @@ test('where a direction is lost it is unknown, and only there', options, async (
     await shoot(browser.page, 'arrows_unknown');
 });
 
-test('dashed arrows are those of uncertain readings, and the legend says so', options, async () => {
+test('arrows based on uncertain readings are dashed, and the legend says so', options, async () => {
     const key = browser.page.locator('.legend .arrow-key');
     assert.doesNotMatch(await key.textContent(), /Uncertain/);
     await plant.tell('pause'); // the device stops answering: the last usable values are shown
@@ -209,7 +209,7 @@ test('dashed arrows are those of uncertain readings, and the legend says so', op
     await shoot(browser.page, 'arrows_uncertain');
 });
 
-test('what a choice of Display means stands below its buttons', options, async () => {
+test('the explanation of the chosen Display mode stands below its buttons', options, async () => {
     const { page } = browser;
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'blind' }));
     await page.locator('#viewport').focus();
@@ -224,7 +224,7 @@ test('what a choice of Display means stands below its buttons', options, async (
     await page.keyboard.press('Escape');
 });
 
-test('on a phone no choice of Display is cut; legends have units, and nothing that cannot be', options, async () => {
+test('on a phone no Display choice is cut off; legends have units and no impossible values', options, async () => {
     for (const language of ['de', 'ko']) {
         const { page, errors, close } = await openPage(`http://127.0.0.1:${plant.port}/?lang=${language}`, PHONE);
         await waitForPicture(page);
@@ -258,7 +258,7 @@ test('on a phone no choice of Display is cut; legends have units, and nothing th
     }
 });
 
-test('new sensors are suggested where the existing ones see least: at one pole, then at the other', options, () => {
+test('new sensors are suggested at one pole, then at the other, where existing sensors see least', options, () => {
     const suggest = (...more) => runProgram('plantcast', ['sensors', 'suggest', plant.file, ...more]);
     const { code, out, err } = suggest('--add', '3', '--csv');
     assert.equal(code, 0, err);

@@ -36,7 +36,7 @@ const gripAt = async (on, id) => {
     return [box.x + box.width / 2, box.y + box.height / 2];
 };
 
-test('a plane is dragged by its arrow: it goes where the hand goes, and the camera stays', options, async () => {
+test('a section plane dragged by its arrow follows the pointer, and the camera stays', options, async () => {
     await setClip(page, { planes: [[1, 0, 0, 0.1]] });
     const camera = await readCamera(page), [x, y] = await gripAt(page, 'plane0');
     const to = await drawnAt(page, await page.evaluate(async () => { // returns the position of the handle after a drag by half a metre
@@ -60,7 +60,7 @@ test('a plane is dragged by its arrow: it goes where the hand goes, and the came
     assert.deepEqual(await readCamera(page), camera);
 });
 
-test('keys move it, as far as it goes; a screen reader is told where it is', options, async () => {
+test('keys move a section plane within its range; a screen reader announces its position', options, async () => {
     const camera = await readCamera(page), slider = page.getByRole('slider', { name: 'Move the section: X' });
     const said = async (name) => Number(await slider.getAttribute(`aria-value${name}`));
     const at = await said('now');
@@ -78,7 +78,7 @@ test('keys move it, as far as it goes; a screen reader is told where it is', opt
     assert.deepEqual(await readCamera(page), camera);
 });
 
-test('a box has an arrow on each side; Escape puts back what is being dragged', options, async () => {
+test('a section box has an arrow on each side; Escape cancels a drag', options, async () => {
     await setClip(page, { box: { min: [-0.7, -0.7, -0.7], max: [0.3, 0.7, 0.3] } });
     const shown = await page.locator('.grip').evaluateAll((all) => all.filter((e) => e.checkVisibility()).map((e) => e.dataset.id).sort());
     assert.deepEqual(shown, ['whole', 'xmax', 'xmin', 'ymax', 'ymin', 'zmax', 'zmin']);
@@ -103,7 +103,7 @@ test('a box has an arrow on each side; Escape puts back what is being dragged', 
     assert.deepEqual(browser.errors, []);
 });
 
-test('the box is moved as a whole: it goes where the hand goes and keeps its size; by keys, too', options, async () => {
+test('the whole box follows the pointer or the keys, and keeps its size', options, async () => {
     const box = { min: [-0.6, -0.7, -0.6], max: [0.2, 0.1, 0.2] }, middle = ({ min, max }) => min.map((m, i) => (m + max[i]) / 2);
     await setClip(page, { box });
     const camera = await readCamera(page), [x, y] = await gripAt(page, 'whole');
@@ -162,7 +162,7 @@ test('in a split view the right half has arrows, too, and both halves are cut al
     assert.deepEqual(browser.errors, []);
 });
 
-test('on a tablet a finger takes the arrow, and the camera stays', options, async () => {
+test('on a tablet a finger drags the arrow, and the camera stays', options, async () => {
     const tablet = await openPage(url, TABLET), on = tablet.page;
     await waitForPicture(on);
     await setClip(on, { planes: [[0, 0, -1, 0.2]] });

@@ -40,7 +40,7 @@ const look = (page) => page.evaluate((reach) => {
     return { all: names(overlay.all), drawn: names(overlay.markers), free: free && [free.tag.name, free.x, free.y] };
 }, REACH_PX);
 
-test('some are left out, and are there again from near by', options, async () => {
+test('some markers of a crowd are left out, and reappear when the user zooms in', options, async () => {
     const { page } = browser;
     await waitForPicture(page);
     await waitForHealth(page, 'live');

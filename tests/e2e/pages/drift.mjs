@@ -51,7 +51,7 @@ const ask = async (query) => {
     return [answer.status, answer.ok ? await answer.json() : await answer.text()];
 };
 
-test('the one that drifts is found, and no other', options, async () => {
+test('the daemon finds the one drifting sensor, and no other', options, async () => {
     const [status, { from_us: from, to_us: to, group, unit, sensors }] = await ask('group=temperature');
     assert.equal(status, 200);
     assert.deepEqual([group, unit, to - from], ['temperature', '°C', HOURS * HOUR * 1e6]);
@@ -68,7 +68,7 @@ test('the one that drifts is found, and no other', options, async () => {
         [['unknown', 'fewer than 3 sensors of the group on the asset', null]]);
 });
 
-test('the tool says the same; a week before nothing is known', options, async () => {
+test('plantcast sensors drift gives the daemon\'s verdicts; a week earlier all are unknown', options, async () => {
     const { code, out, err } = runProgram('plantcast', ['sensors', 'drift', plant.file, '--group', 'temperature']);
     assert.equal(code, 1, err);
     const [, { sensors }] = await ask('group=temperature');
@@ -91,7 +91,7 @@ const overhang = (page) => page.evaluate(() => {
     return Math.max(...[...card.querySelectorAll('dd, .drift-curve')].map((part) => part.getBoundingClientRect().right - right));
 });
 
-test('the page lists it, and its card shows the week', options, async () => {
+test('the page lists the drifting sensor, and its card shows the week', options, async () => {
     await plant.set({ 'TI-1': 60, 'TI-2': 50, 'TI-3': 63, 'TI-4': 45 });
     const languages = [['en', /\+[78]\.\d °C.*: drifts/, /no drift detected/], ['de', /\+[78],\d °C.*: driftet/, /keine Drift/],
         ['ko', /\+[78]\.\d °C.*드리프트 있음/, /드리프트 없음/]];

@@ -125,7 +125,7 @@ const TASKS = {
 };
 
 for (const [name, [most, task, end = () => {}]] of Object.entries(TASKS))
-    test(`${name}: ${most} clicks`, options, async () => {
+    test(`a new user needs ${most} clicks: ${name}`, options, async () => {
         clicks = 0;
         await task();
         assert.ok(clicks === most && clicks <= MOST, `${clicks} clicks`);

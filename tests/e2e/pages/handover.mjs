@@ -36,7 +36,7 @@ after(async () => {
     await plant?.stop();
 });
 
-test('it says what was noted, raised, acknowledged and shelved', options, async () => {
+test('the handover page lists notes, alarms, acknowledgements and shelved alarms of the shift', options, async () => {
     await until('the shelved alarm', async () => { // the journal is written with a delay
         await page.goto(`${plant.url}handover.html`);
         await page.locator('[data-part=notes]').waitFor();
@@ -55,7 +55,7 @@ test('it says what was noted, raised, acknowledged and shelved', options, async 
     await shoot(page, 'handover');
 });
 
-test('on a phone, each row is a block of titled lines', options, async () => {
+test('on a phone, each row of the handover is a block of titled lines', options, async () => {
     const screen = page.viewportSize();
     await page.setViewportSize({ width: 390, height: 844 });
     const cells = await page.locator('[data-part=notes] td:not(:empty)').evaluateAll((all) => all.map((cell) =>
@@ -65,7 +65,7 @@ test('on a phone, each row is a block of titled lines', options, async () => {
     assert.ok(cells.every(([width]) => width > 300), JSON.stringify(cells));
 });
 
-test('it is printed on paper: no controls, as many pages as it takes', options, async () => {
+test('the handover prints on paper without controls, on as many pages as needed', options, async () => {
     const pdf = await page.pdf({ preferCSSPageSize: true });
     assert.equal(pdf.subarray(0, 5).toString(), '%PDF-');
     assert.ok(pdf.length > 10000);
@@ -74,7 +74,8 @@ test('it is printed on paper: no controls, as many pages as it takes', options, 
     await page.emulateMedia({ media: 'screen' });
 });
 
-test('a span is asked for, in other languages too; before it there was nothing', options, async () => {
+test('the handover of a requested time span, also in German, is empty before the first event; a wrong span is refused',
+    options, async () => {
     await page.goto(`${plant.url}handover.html?from=-2h&to=-1h&lang=de`);
     await page.locator('h2', { hasText: /^Quittiert$/ }).waitFor();
     assert.equal(await page.locator('[data-part=acknowledged] tbody tr').count(), 0);

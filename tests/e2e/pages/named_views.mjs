@@ -29,7 +29,7 @@ const isFrom = (at, eye) => at.waitForFunction((wanted) =>
     globalThis.plantcast?.session.picture?.camera.eye.every((m, i) => Math.abs(m - wanted[i]) < 0.01), eye);
 const views = async () => (await (await fetch(new URL('api/v1/views', plant.url))).json()).list;
 
-test('those of the plant file are there, each with its picture', options, async () => {
+test('the views of the plant file are listed, each with its picture', options, async () => {
     await page.click('#views-toggle');
     await page.locator('#named-list li').waitFor();
     assert.deepEqual(await rows(page), ['From above']);
@@ -42,7 +42,7 @@ test('those of the plant file are there, each with its picture', options, async 
     assert.equal(await page.locator('#named summary').count(), 0, 'the plant file keeps it');
 });
 
-test('what is seen is saved under a name, for all', options, async () => {
+test('the current view is saved under a name, for all users', options, async () => {
     const other = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101', look: 'glossy' }));
     await page.fill('#named-title', 'Tank, von Süden');
@@ -62,7 +62,7 @@ test('what is seen is saved under a name, for all', options, async () => {
     assert.ok(saved.by && saved.time_us > 0);
 });
 
-test('one that is changed keeps what it was, and can be taken back', options, async () => {
+test('an updated view keeps its earlier version, which can be restored', options, async () => {
     await page.click('#named-list li:nth-child(1) .named-open');
     await isFrom(page, [8, 2, 30]);
     await page.click('#named-list summary');
@@ -77,7 +77,7 @@ test('one that is changed keeps what it was, and can be taken back', options, as
     assert.equal((await views())[1].view.includes('look=glossy'), true);
 });
 
-test('an address names one; one that is not there is said', options, async () => {
+test('an address opens a view by its name; an unknown name gets a message', options, async () => {
     const there = await openPage(`${plant.url}#view=above`, { viewport: { width: 800, height: 600 } });
     await isFrom(there.page, [8, 2, 30]);
     await there.close();
@@ -88,7 +88,7 @@ test('an address names one; one that is not there is said', options, async () =>
     assert.ok((await view(page)).camera);
 });
 
-test('they are put in another order, removed, and outlive the page', options, async () => {
+test('views are reordered and removed, and the server keeps the new order', options, async () => {
     await page.fill('#named-title', 'Second');
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 3);
@@ -101,7 +101,7 @@ test('they are put in another order, removed, and outlive the page', options, as
     assert.deepEqual((await views()).map(({ id }) => id), ['above', 'tank-von-suden']);
 });
 
-test('a view without a flight ends a flight whose module still loads', options, async () => {
+test('opening a view without a flight ends a flight whose module is still loading', options, async () => {
     let release;
     const held = new Promise((go) => { release = go; });
     const late = async (route) => {

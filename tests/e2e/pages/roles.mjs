@@ -77,13 +77,14 @@ const ask = (page, action) => page.evaluate(async (what) => {
     });
 }, action);
 
-test('on plain http by a name it is live, in pictures that need no secure page', options, () => everyRole(async (page, role) => {
+test('on plain http with a host name the page is live, with a codec that needs no secure context',
+    options, () => everyRole(async (page, role) => {
     await waitForHealth(page, 'live');
     assert.deepEqual(await page.evaluate(() => [isSecureContext, globalThis.plantcast.session.codec, globalThis.plantcast.session.role]),
         [false, 'jpeg', role]);
 }));
 
-test('where alarms are this site\'s own, operators and engineers act on them, viewers only look', options, async () => {
+test('with alarms managed by Plantcast, operators and engineers act on them; viewers only look', options, async () => {
     await everyRole(async (page, role) => {
         await waitForState(page, ['unacknowledged']);
         await page.locator('#alarm-strip').tap();
@@ -112,7 +113,7 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     });
 });
 
-test('operators change and end the notes of their own account, engineers end all; a changed note keeps its end', options, async () => {
+test('operators change and end their own notes, engineers end all; a changed note keeps its end', options, async () => {
     const post = (page, text, more) => page.evaluate(([words, rest]) => {
         const { session } = globalThis.plantcast;
         session.post({ type: 'note', seq: 1, text: words, ...rest });
@@ -153,7 +154,7 @@ test('operators change and end the notes of their own account, engineers end all
 });
 
 for (const mode of ['display', 'mirror']) {
-    test(`where the control system has them (${mode}), nobody acts on them here`, options, async () => {
+    test(`with alarms managed by the control system (${mode}), nobody can act on them here`, options, async () => {
         setMode(mode);
         plant.daemon.child.kill('SIGHUP');
         await everyRole(async (page, role) => {

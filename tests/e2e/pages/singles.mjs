@@ -12,7 +12,7 @@ const options = { skip: missing().length > 0 && `not built: ${missing().join(', 
 const PAPER = /“paper” \(Kim & Suh\) cannot be drawn accurately where pressure has one sensor \(1 of 2 assets, the first P-101A\)/;
 const DISTANCES = /distances cannot be drawn accurately where pressure has one sensor, as on P-101A/;
 
-test('paper and distances of a single sensor are refused, until the plant file has its equipment cut', options, async () => {
+test('for a single sensor, paper style and distances are refused until the plant file refines its asset', options, async () => {
     const tiny = await TinyPlant.running(), whole = readFileSync(tiny.file, 'utf8'), url = `http://127.0.0.1:${tiny.port}/`;
     const picture = async (query) => {
         const answer = await fetch(`${url}snapshot.png?width=160&height=100&group=pressure&${query}`);

@@ -11,7 +11,7 @@ import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 const options = { skip: missing().length > 0 && `not built: ${missing().join(', ')}`, timeout: 120000 };
 const NONE = { hidden: [], isolate: [], ghost: [] };
 
-test('a plant that was changed and not prepared since is prepared when the daemon starts', options, async () => {
+test('a plant changed since its preparation is prepared when the daemon starts', options, async () => {
     const tiny = await TinyPlant.create();
     try {
         assert.equal(tiny.prepare().code, 0);
@@ -33,7 +33,7 @@ test('a plant that was changed and not prepared since is prepared when the daemo
     }
 });
 
-test('a plant may begin with less than all of it; whoever asks for the rest keeps it', options, async () => {
+test('a plant can start with hidden and ghosted assets; a user who shows all keeps them shown', options, async () => {
     const tiny = await TinyPlant.create(), text = readFileSync(tiny.file, 'utf8');
     const write = (id, how) => writeFileSync(tiny.file, text.replace('{ id: P-101A,', '{ id: P-101A, start: ghost,')
         .replace('groups:', `  - { id: ${id}, model: box.gltf, start: ${how}, placement: { scale: 9 } }\ngroups:`));

@@ -62,7 +62,7 @@ test('overview: the whole plant is shown live', options, async () => {
     await keep('1-overview');
 });
 
-test('an alarm: counted at once, listed, and one click leads there', options, async () => {
+test('a new alarm is counted at once and listed, and one click leads to its place', options, async () => {
     const limit = await page.evaluate((name) => globalThis.plantcast.session.model.tag(name).limits.HH, HOT);
     await plant.ask(`set ${HOT} ${limit + 2}`);
     await page.waitForFunction((name) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) =>
@@ -83,7 +83,7 @@ test('an alarm: counted at once, listed, and one click leads there', options, as
     await keep('3-there');
 });
 
-test('its trend, and the instant before it began', options, async () => {
+test('the alarm\'s trend opens, and the instant before the alarm', options, async () => {
     await page.locator('#card .trend').click();
     await page.locator('#trend-chart canvas').waitFor();
     await page.waitForFunction(() => globalThis.plantcast.trends?.series.size > 0);
@@ -110,7 +110,7 @@ test('its trend, and the instant before it began', options, async () => {
     await page.locator('#time-toggle').click();
 });
 
-test('acknowledged, and said to everybody', options, async () => {
+test('an acknowledgement is shown to everybody', options, async () => {
     await page.locator('#alarm-strip').click();
     const row = page.locator('#alarms-list tr', { hasText: `${HOT}High-high` });
     await row.locator('button[data-action="acknowledge"]').click();
@@ -121,7 +121,7 @@ test('acknowledged, and said to everybody', options, async () => {
     await page.locator('#alarms-close').click();
 });
 
-test('shared: a link and a code to this place', options, async (t) => {
+test('sharing gives a link and a QR code to this view', options, async (t) => {
     await page.locator('#share-open').click();
     await page.locator('#share-code svg').waitFor();
     assert.equal(await page.locator('#share-link').inputValue(), `${plant.url}#tag=${HOT}`);
