@@ -68,7 +68,7 @@ after(async () => {
         rmSync(runtime, { recursive: true });
 });
 
-test('the manager hears that it starts, that it is ready once /readyz is, and that it ends', { skip }, async () => {
+test('the service manager is notified of the start, of readiness once /readyz is 200, and of the end', { skip }, async () => {
     const port = await freePort(), service = serve(['--port', String(port)]);
     await service.said(/^notify: EXTEND_TIMEOUT_USEC=60000000$/m);
     await service.said(/^notify: READY=1$/m);
@@ -77,7 +77,7 @@ test('the manager hears that it starts, that it is ready once /readyz is, and th
     assert.match(service.out, /notify: STATUS=drawing the first picture\n[^]*notify: READY=1\n[^]*notify: STOPPING=1\n/);
 });
 
-test('plantcast-prep asks for time while it works', { skip }, () => {
+test('plantcast-prep asks the service manager for more time while it works', { skip }, () => {
     const { status, stdout } = spawnSync('tests/support/service_manager.py', [join(BIN, 'plantcast-prep'), plant.file],
         { encoding: 'utf8', timeout: 60000 });
     assert.equal(status, 0);
@@ -95,7 +95,7 @@ async function unprepared() {
     return tiny;
 }
 
-test('a start that prepares the plant asks for time as long as it does, and ends when it is told to', { skip }, async () => {
+test('a start that prepares the plant asks for more time meanwhile, and ends on SIGTERM', { skip }, async () => {
     const tiny = await unprepared(), was = plant;
     try {
         plant = tiny;
@@ -116,7 +116,7 @@ test('a start that prepares the plant asks for time as long as it does, and ends
 
 const alone = spawnSync('unshare', ['--pid', '--fork', 'true']).status === 0 ? skip : 'there are no process namespaces';
 
-test('as the first process of a container, it ends when it is told to while it prepares the plant', { skip: alone }, async () => {
+test('as the first process of a container, the daemon ends on SIGTERM while it prepares the plant', { skip: alone }, async () => {
     const tiny = await unprepared();
     try {
         const child = spawn('unshare', ['--pid', '--fork', '--kill-child', join(BIN, 'plantcastd'), tiny.file, '--port', '0'],
@@ -135,7 +135,7 @@ test('as the first process of a container, it ends when it is told to while it p
 });
 
 for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 'the loop']])
-    test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s; before, it lives`, { skip, timeout: 240000 }, async (t) => {
+    test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s, and not before`, { skip, timeout: 240000 }, async (t) => {
         const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]);
         await service.said(/^notify: READY=1$/m);
         // watchdog messages are 2 s apart, so six take longer than the watchdog's interval
@@ -151,7 +151,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
             assert.match(service.err, /render thread: no progress; the service manager will start the daemon again/);
     });
 
-test('connections wait in the socket of the manager while the daemon is started again; it says when it will be back',
+test('during a restart connections wait in the manager\'s socket; clients are told when the daemon will be back',
     { skip, timeout: 120000 }, async () => {
         const service = serve(['--port', '1'], ['--socket']); // plantcastd ignores --port when it gets a socket
         const port = Number((await service.said(/^port: (\d+)$/m))[1]);
@@ -175,7 +175,7 @@ test('connections wait in the socket of the manager while the daemon is started 
         await service.stop();
     });
 
-test('whoever asks while the daemon stops is answered, by it or by the next one', { skip, timeout: 120000 }, async () => {
+test('each request sent while the daemon restarts is answered, by the old daemon or the new one', { skip, timeout: 120000 }, async () => {
     const service = serve(['--port', '1'], ['--socket']), port = Number((await service.said(/^port: (\d+)$/m))[1]);
     for (let round = 1; round <= 4; round++) {
         await service.said(new RegExp(`(^notify: READY=1$[^]*){${round}}`, 'm'));
@@ -188,7 +188,7 @@ test('whoever asks while the daemon stops is answered, by it or by the next one'
     await service.stop();
 });
 
-test('a port in use ends the daemon before it is ready', { skip }, async () => {
+test('a port in use ends the daemon before it reports readiness', { skip }, async () => {
     const other = createServer().listen(0, '127.0.0.1');
     await new Promise((done) => other.once('listening', done));
     const service = serve(['--port', String(other.address().port)]);
@@ -198,7 +198,7 @@ test('a port in use ends the daemon before it is ready', { skip }, async () => {
     other.close();
 });
 
-test('lines for the journal begin with their priority, and have no time of their own', {
+test('log lines for the journal begin with their priority, and have no timestamp', {
     skip: skip || (existsSync('/run/systemd/journal/socket') ? 'a journal takes them on this machine' : false),
 }, async () => {
     const service = serve(['--port', '0', '--log-format', 'journal']);
@@ -211,7 +211,7 @@ test('lines for the journal begin with their priority, and have no time of their
     assert.match(service.err, /^<6>ready http:/m);
 });
 
-test('lines of JSON are objects, those of a faulty plant file too', { skip }, async () => {
+test('JSON log lines are objects, also those about a faulty plant file', { skip }, async () => {
     const service = serve(['--port', '0', '--log-format', 'json']);
     await service.said(/^notify: READY=1$/m);
     await service.stop();
@@ -251,7 +251,7 @@ test('`plantcast reload` fails after a refused reload, and says why; metrics and
     assert.equal(reload().code, 1, 'it has ended');
 });
 
-test('metrics: build, process and certificate; no old name of one that was renamed', { skip }, async () => {
+test('metrics include build, process and certificate, and no names from before a rename', { skip }, async () => {
     const [cert, key] = ['cert.pem', 'key.pem'].map((name) => join(plant.folder, name));
     const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '3',
         '-keyout', key, '-out', cert, '-subj', '/CN=localhost', '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
@@ -277,7 +277,7 @@ test('metrics: build, process and certificate; no old name of one that was renam
     assert.match(service.err, /warn .*cert\.pem: this certificate expires within 14 days, in 3\.0 days/);
 });
 
-test('promtool has nothing to say about them', {
+test('promtool finds no fault in the metrics', {
     skip: skip || (has('promtool') ? false : 'promtool (of the package prometheus) is not installed'),
 }, () => {
     const { status, stdout, stderr } = spawnSync('promtool', ['check', 'metrics'],

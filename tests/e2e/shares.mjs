@@ -46,7 +46,7 @@ async function framesPerSecond(client, seconds) {
     return (client.frames.length - before) / seconds;
 }
 
-test('hidden views of the largest size leave room for another address', options, async () => {
+test('one address\'s hidden views of the largest size leave room for another address', options, async () => {
     const greedy = await crowd(32, GREEDY, LARGE);
     for (const client of greedy.admitted)
         client.say({ type: 'visible', visible: false });
@@ -97,7 +97,7 @@ async function othersPart() {
     return part;
 }
 
-test('who has all drawn that may be leaves another address its frames and its pictures', crowded, async (t) => {
+test('an address that requests everything leaves another its frames and its pictures', crowded, async (t) => {
     const alone = await othersPart(), greedy = await crowd(30, GREEDY, { width: 1280, height: 720 });
     assert.ok(greedy.admitted.length > 10);
     let going = true, turn = 0;
@@ -127,7 +127,7 @@ test('who has all drawn that may be leaves another address its frames and its pi
     assert.ok(answers.includes(200) && answers.includes(503), 'the greedy one had some, and not all');
 });
 
-test('behind a proxy, connections are those of the address that it names', options, async () => {
+test('behind a proxy, connections count for the address that the proxy names', options, async () => {
     const proxied = await TinyPlant.create();
     try {
         assert.equal(proxied.prepare().code, 0);

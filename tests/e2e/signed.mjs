@@ -72,7 +72,7 @@ walls: [{ id: tiled, tile: { columns: 2, rows: 1, views: warm } }]
 });
 after(() => plant?.destroy());
 
-test('a picture is good, and every pixel is drawn again', { skip }, async () => {
+test('a signed picture is verified, and every pixel is drawn again', { skip }, async () => {
     const { code, out, err } = redraw(picture);
     assert.equal(code, 0, out + err);
     assert.match(out, /signature is good/);
@@ -82,7 +82,7 @@ test('a picture is good, and every pixel is drawn again', { skip }, async () => 
     assert.doesNotMatch(JSON.stringify(statement), /127\.0\.0\.1|modbus|plantcast-tiny/, 'no addresses, no paths');
 });
 
-test('so are views of all kinds', { skip }, async () => {
+test('signed pictures of all kinds of views are verified and drawn again', { skip }, async () => {
     for (const query of ['width=512&height=320&language=ko&look=glossy&isolines=every:10&split=interpolation=paper',
         'width=512&height=320&group=pressure&fit=P-101A&side=top&clip=1,0,0,-3&backdrop=dark&hidden=E-101']) {
         const { code, out, err } = redraw(await fetchPicture(query));
@@ -90,7 +90,7 @@ test('so are views of all kinds', { skip }, async () => {
     }
 });
 
-test('a changed pixel, reading, time or camera is found', { skip }, () => {
+test('a changed pixel, reading, time or camera is detected', { skip }, () => {
     refused(withRows(picture, (rows) => { rows[2000] ^= 1; }), /the pixels of the picture differ from the signed pixels/);
     const changes = [['reading', '"TI-1",80.0', '"TI-1",79.0'],
         ['camera', '"width=640"', '"width=641"'], ['plant', 'Two boxes', 'Six boxes'],
@@ -103,7 +103,7 @@ test('a changed pixel, reading, time or camera is found', { skip }, () => {
     }
 });
 
-test('so is a statement of another picture, and a signature of another key', { skip }, async () => {
+test('another picture\'s statement, and a signature with another key, are detected', { skip }, async () => {
     const other = await fetchPicture('width=640&height=400&group=pressure');
     const moved = chunksOf(picture).map((chunk) => (chunk.type === 'IDAT' ? null : chunk)).filter(Boolean);
     moved.splice(-1, 0, ...chunksOf(other).filter(({ type }) => type === 'IDAT'));
@@ -124,7 +124,7 @@ function resigned(png, change) {
     return withText(withText(png, STATEMENT, () => text), SIGNATURE, () => `ed25519 ${by} ${signature}`);
 }
 
-test('a statement of another version is signed well, and not understood', { skip }, () => {
+test('a statement of another version with a valid signature is reported as not understood', { skip }, () => {
     for (const version of [0, 3, 1e9])
         refused(resigned(picture, (text) => text.replace('"plantcast_statement":2', `"plantcast_statement":${version}`)),
             new RegExp(`the picture's signed statement has version ${version}; this program supports versions 1 to 2`));
@@ -148,7 +148,7 @@ test('a statement of version 1 is verified, and its picture drawn again', { skip
     refused(withText(first, STATEMENT, (text) => text.replace('"TI-1",80.0', '"TI-1",79.0')), /the signature is wrong/);
 });
 
-test('no file that would show something else is good: the chunk is named', { skip }, () => {
+test('a PNG with extra chunks that could change its look is refused, and the chunk is named', { skip }, () => {
     const chunks = chunksOf(picture), place = (type) => chunks.findIndex((chunk) => chunk.type === type);
     const hex = (text) => Buffer.from(text, 'hex');
     const SRGB = '00007a26000080840000fa00000080e8000075300000ea6000003a9800001770';
@@ -224,7 +224,7 @@ function probe(folder, least, ...args) {
 const FLAG = { still: 2, signed: 64 };
 let frame; // a refined frame of a session
 
-test('refined frames of a session come signed where it asks for that, and are drawn again', { skip }, () => {
+test('a session that requests signed frames gets refined frames signed, and they can be drawn again', { skip }, () => {
     const { names } = probe(path('refined'), 1, '--motion', 'still');
     assert.ok(names.length >= 1 && names.every((name) => /^001-\d{6}\.png$/.test(name)), names.join());
     frame = readFileSync(join(path('refined'), names[0]));
@@ -234,7 +234,7 @@ test('refined frames of a session come signed where it asks for that, and are dr
     assert.match(again.out, / {2}64000 of 64000 pixels agree with the redrawn picture within 1\/255/);
 });
 
-test('every frame of a moving session does, if it asks for all', { skip }, () => {
+test('a session that requests all frames signed gets every frame signed while it moves', { skip }, () => {
     const { out, names } = probe(path('all'), 2, '--motion', 'orbit', '--codec', 'h264', '--signed', 'all', '--json');
     const { frames, signed_frames: count } = JSON.parse(out);
     assert.ok(frames > 1 && frames === count && frames === names.length, `${count} of ${frames}, ${names.length} files`);
@@ -243,7 +243,7 @@ test('every frame of a moving session does, if it asks for all', { skip }, () =>
     assert.match(again.out, /frame of a live session, quality (preview|refined)/);
 });
 
-test('a changed pixel, reading, time or camera of a frame is found', { skip }, () => {
+test('a changed pixel, reading, time or camera of a frame is detected', { skip }, () => {
     refused(withRows(frame, (rows) => { rows[2000] ^= 1; }), /the pixels of the picture differ from the signed pixels/);
     for (const [what, from, to] of [['reading', '"TI-1",80.0', '"TI-1",79.0'], ['time', /"taken_ns":\d/, '"taken_ns":9'],
         ['camera', /"camera=[^,]*,/, '"camera=9,'], ['tier', '"tier":"refined"', '"tier":"preview"'],
@@ -278,7 +278,7 @@ test('sessions of one view get one signed frame, drawn and encoded once', { skip
     clients.forEach((client) => client.close());
 });
 
-test('a session requests signed frames, and is told why one is not signed', { skip }, async () => {
+test('a session requests signed frames, and is told why a frame is not signed', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     const hello = { type: 'hello', width: 320, height: 200, codecs: ['jpeg', 'png'] }, still = ({ flags }) => flags & FLAG.still;
     client.say({ ...hello, codecs: ['jpeg'], signed: 'all' });
@@ -299,7 +299,7 @@ test('a session requests signed frames, and is told why one is not signed', { sk
     client.close();
 });
 
-test('the page saves what is on its screen, signed, and a picture with legend and markers', { skip, timeout: 120000 }, async () => {
+test('the page saves the screen\'s picture, signed, and one with legend and markers', { skip, timeout: 120000 }, async () => {
     const browser = await openPage(url(), { viewport: { width: 1280, height: 800 } }), { page } = browser;
     try {
         await waitForPicture(page);
@@ -346,7 +346,7 @@ test('the page saves what is on its screen, signed, and a picture with legend an
     }
 });
 
-test('a plant that was changed since is said to be another', { skip }, () => {
+test('verification after a change of the plant says that the plant has changed', { skip }, () => {
     const tags = readFileSync(path('tags.csv'), 'utf8');
     appendFileSync(path('tags.csv'), 'TI-3,400007,Float,°C,new,temperature,E-101,0,0.5,0,1\n');
     const { code, err } = redraw(picture);
@@ -369,7 +369,7 @@ const recorded = (compare) => {
     }, 90, () => said.out + said.err);
 };
 
-test('the past agrees with what was recorded', { skip }, async () => {
+test('a signed picture of the past agrees with the recorded history', { skip }, async () => {
     await sleep(1000);
     const then = new Date().toISOString();
     await plant.tell('set TI-1 30');
@@ -383,7 +383,7 @@ test('the past agrees with what was recorded', { skip }, async () => {
 });
 
 const filmed = { skip: skip || noFfmpeg, timeout: 120000 };
-test('a film is good picture by picture; one that was changed, cut or encoded again is not', filmed, async () => {
+test('each picture of a signed film is verified; a changed, cut or re-encoded film is refused', filmed, async () => {
     const from = new Date(Date.now() - 4500).toISOString(), to = new Date(Date.now() - 3500).toISOString(), film = path('film.mp4');
     const made = runProgram('plantcast', ['clip', `http://127.0.0.1:${plant.port}/`, '-o', film, '--from', from, '--to', to, '--speed', '1',
         '--fps', '3', '--size', '321x200', '--signed'], 60000);
@@ -448,7 +448,7 @@ test('a film is good picture by picture; one that was changed, cut or encoded ag
     assert.match(plain.err, /needs the URL of a daemon/);
 });
 
-test('a tour is filmed signed, with its texts beside it; its views are printed', filmed, () => {
+test('a tour is filmed signed, with its texts in a subtitle file; its views are printed', filmed, () => {
     const film = path('tour.mp4'), from = new Date(Date.now() - 6000).toISOString();
     const url = `http://127.0.0.1:${plant.port}/`, view = ['--fps', '2', '--size', '320x200'];
     const made = runProgram('plantcast', ['clip', url, '-o', film, '--from', from, '--tour', 'round', ...view, '--signed']);
@@ -464,7 +464,7 @@ test('a tour is filmed signed, with its texts beside it; its views are printed',
     assert.match(strict.err, /frame 3: the view differs/);
 });
 
-test('frames of a tile are never signed, whenever that is requested', { skip }, async () => {
+test('frames of wall tiles are never signed, whenever signing is requested', { skip }, async () => {
     const asks = async (hello, after) => {
         const client = await PlainClient.open(plant.port);
         client.say({ type: 'hello', width: 320, height: 200, codecs: ['png'], tile: { wall: 'tiled', display: 1 }, ...hello });
@@ -480,7 +480,7 @@ test('frames of a tile are never signed, whenever that is requested', { skip }, 
     }
 });
 
-test('who may see no readings is told none', { skip }, async () => {
+test('a client that may see no readings gets no readings through signed frames', { skip }, async () => {
     await plant.daemon.stop();
     writeFileSync(path('tokens'), '');
     chmodSync(path('tokens'), 0o600);
@@ -500,7 +500,7 @@ test('who may see no readings is told none', { skip }, async () => {
     assert.match(again.err, /a user who may not see readings/);
 });
 
-test('a key that is none, or that everybody may read, is refused', { skip }, () => {
+test('an invalid signing key, and one that everybody may read, are refused', { skip }, () => {
     const start = (key) => runProgram('plantcastd', [plant.file, '--port', '0', '--signing-key', key]);
     writeFileSync(path('none.pem'), 'no key\n', { mode: 0o600 });
     for (const [key, why] of [['none.pem', /none\.pem: not a private key/], ['server.pub', /all users can read this|not a private key/],
@@ -521,7 +521,7 @@ function threadTimes(pid) {
     return new Map(readdirSync(folder).map((id) => [id, Number(readFileSync(join(folder, id, 'schedstat'), 'utf8').split(' ')[0])]));
 }
 
-test('the loop does not wait for a signature: 10,000 readings are stated and signed beside it', { skip, timeout: 180000 }, async () => {
+test('the event loop does not wait for signatures: 10,000 readings are signed in another thread', { skip, timeout: 180000 }, async () => {
     const lines = Array.from({ length: 10000 }, (_, i) => `X-${i},${400101 + i},Short,bar,spare,,,,,,3`);
     writeFileSync(path('tags.csv'), `${readFileSync(path('tags.csv'), 'utf8')}${lines.join('\n')}\n`);
     assert.equal(plant.prepare().code, 0);

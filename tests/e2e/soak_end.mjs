@@ -55,7 +55,7 @@ async function leavesNothing({ folder, said }) {
 const CORES = /plantcastd .*--node two/;
 for (const [signal, what, pattern] of [['SIGTERM', 'the database starts', /postgres -D/], ['SIGINT', 'both cores run', CORES],
     ['SIGKILL', 'both cores run', CORES]])
-    test(`${signal} while ${what}`, options, async (t) => {
+    test(`${signal} while ${what} leaves no program, mount or file of the soak test behind`, options, async (t) => {
         const run = soak(t);
         await runs(run, pattern);
         process.kill(-run.child.pid, signal);
@@ -65,7 +65,7 @@ for (const [signal, what, pattern] of [['SIGTERM', 'the database starts', /postg
             assert.deepEqual(readdirSync(run.folder), [], run.said);
     });
 
-test('a start that fails because a daemon ends at once', options, async (t) => {
+test('a soak test whose daemon fails at the start leaves nothing behind', options, async (t) => {
     const bin = mkdtempSync(join(tmpdir(), 'plantcast-bin-'));
     t.after(() => rmSync(bin, { recursive: true, force: true }));
     for (const name of PROGRAMS.filter((one) => one !== 'plantcastd'))

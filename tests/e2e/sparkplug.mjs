@@ -72,7 +72,7 @@ after(async () => {
     await broker?.destroy();
 });
 
-test('births and data, by name and by alias, of every kind of number', options, async () => {
+test('births and data of every number type are read, by name and by alias', options, async () => {
     await plant.run('payload: sparkplug', ROWS);
     const began = Date.now(), node = await startNode();
     await until('TI-1', { ...good, value: 20.5 });
@@ -104,7 +104,7 @@ test('births and data, by name and by alias, of every kind of number', options, 
     assert.equal(await metric('rebirths_total'), 0);
 });
 
-test('the death of a device and of a node makes all its tags Bad at once', options, async (t) => {
+test('the death of a device or a node makes all its tags Bad at once', options, async (t) => {
     await plant.run('payload: sparkplug', ROWS);
     const node = await startNode({ mqttOptions: { reconnectPeriod: 0 } }); // the client does not reconnect by itself
     await until('XS-1', { ...good, value: 1 });
@@ -137,7 +137,7 @@ test('an old death certificate is ignored', options, async () => {
     await late.leave();
 });
 
-test('a lost message leaves no value Good; the node is asked for its birth only where that is allowed', options, async () => {
+test('a lost message leaves no value Good; the node is asked for a rebirth only where that is permitted', options, async () => {
     for (const rebirth of ['no', 'yes']) {
         await plant.run(`payload: sparkplug, rebirth: ${rebirth}`, ROWS);
         const node = await startNode();
@@ -163,7 +163,7 @@ test('a lost message leaves no value Good; the node is asked for its birth only 
     }
 });
 
-test('who was born before we came is read once its birth is known', options, async () => {
+test('a node born before the daemon connected is read once its birth certificate is known', options, async () => {
     const node = await startNode(), stranger = await broker.client();
     await stranger.tell('spBv1.0/U100/NBIRTH/edge', encode({ seq: 0, metrics: [{ name: 'Inlet/Temperature', type: 'Double', value: 9 }] }),
         { retain: true });
@@ -181,7 +181,7 @@ test('who was born before we came is read once its birth is known', options, asy
     assert.equal(node.births, 2);
 });
 
-test('the broker is killed and comes back; so do node and tags', options, async () => {
+test('the broker is killed and restarts; node and tags recover', options, async () => {
     await plant.run('payload: sparkplug, rebirth: yes', ROWS);
     await startNode({ mqttOptions: { reconnectPeriod: 200 } });
     await until('XS-1', { ...good, value: 1 });
@@ -192,7 +192,7 @@ test('the broker is killed and comes back; so do node and tags', options, async 
     await until('TI-1', good);
 });
 
-test('what is no Sparkplug, and metrics that change their type, are refused by name', options, async () => {
+test('invalid Sparkplug payloads, and metrics that change their type, are refused by name', options, async () => {
     await plant.run('payload: sparkplug', ROWS);
     const node = await startNode();
     await until('XS-1', { ...good, value: 1 });
@@ -223,7 +223,7 @@ test('what is no Sparkplug, and metrics that change their type, are refused by n
 
 // 4,000 metrics, five times a second, `each` of them per message.
 for (const each of [4000, 40])
-    test(`20,000 metrics a second, ${each} in a message`, options, async () => {
+    test(`20,000 metrics a second, ${each} in a message, all arrive`, options, async () => {
         const MANY = 4000, SECONDS = 4, name = (i) => `N-${i}`;
         const numbers = Array.from({ length: MANY }, (_, i) => i);
         await plant.run('payload: sparkplug', [ROWS[0], ...numbers.map((i) => `${name(i)},U100/edge#${name(i)},,,,,,,,,,,,,`)]);

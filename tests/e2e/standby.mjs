@@ -52,7 +52,7 @@ function feed() {
     feeding = async () => { going = false; await done; feeding = null; };
 }
 
-test('one of two leads, the other follows and is not ready; a renderer finds who leads', options, async (t) => {
+test('of two cores one leads, the other follows and is not ready; a renderer finds the leader', options, async (t) => {
     await Promise.all([two.start('one'), two.start('two')]);
     const core = await two.leader();
     renderer = await two.renderer('r');
@@ -77,7 +77,8 @@ test('one of two leads, the other follows and is not ready; a renderer finds who
     t.diagnostic(`${core.name} leads`);
 });
 
-test('kill -9, there and back: within 5 s the other polls; what operators did is there, and nobody is told twice', options, async (t) => {
+test('kill -9 of each leader: the other core polls within 5 s, operators\' actions survive, no notification is repeated',
+    options, async (t) => {
     feed();
     from = begin();
     let core = await two.leader();
@@ -147,7 +148,7 @@ const FEW = 50; // limit on points waiting to be sent: there are always new ones
 // Only make test-long runs this test, because two cores, a device and a database each run at their own pace. historian_test
 // covers points that arise from the passing of time alone.
 const inLong = { ...options, skip: skip || long };
-test('history is whole: what the database has is what the API has, and the gaps are the take-overs', inLong, async () => {
+test('history is complete: database and API agree, and only the take-overs are gaps', inLong, async () => {
     await sleep(5000);
     await feeding();
     await sleep(3000);
@@ -185,7 +186,7 @@ test('history is whole: what the database has is what the API has, and the gaps 
     assert.match([...sql][next - 1][1], /^ [1-9]/, 'the line ends where its leader was killed');
 });
 
-test('nobody was told of an alarm twice, and the journal has each change once, on both', options, async () => {
+test('no alarm was notified twice, and each alarm change is in both cores\' journals once', options, async () => {
     // messages by id, because a killed sender may send one twice
     const messages = [...new Map(hook.taken.map((one) => [one.id, one])).values()];
     const told = messages.flatMap(({ alarms }) => alarms.map(({ tag, state, raised }) => `${tag} ${state} ${raised}`));
@@ -205,7 +206,7 @@ test('nobody was told of an alarm twice, and the journal has each change once, o
     assert.deepEqual(second, first);
 });
 
-test('a leader that is stopped is ended by the kernel, without SIGCONT, and polls not one block more', options, async (t) => {
+test('the kernel ends a frozen leader, and the leader polls not one block more', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGSTOP'));
@@ -238,7 +239,7 @@ test('a standby that is loading its plant takes over as fast', options, async (t
     await two.restart(core);
 });
 
-test('a leader that is ended in good order gives the lease to the other', options, async (t) => {
+test('a leader that shuts down properly hands the lease to the other core', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGTERM'));
@@ -258,7 +259,7 @@ test('two cores with one name, and a core without a database, are refused by nam
     await started.program.stop();
 });
 
-test('a core of another version or configuration keeps no seat, and a renderer\'s token takes none', options, async () => {
+test('a core of another version or configuration cannot become standby, nor can a renderer\'s token', options, async () => {
     const core = await two.leader(), other = two.other(core);
     const [, present] = /plantcast_configuration_info\{hash="(\w+)"\} 1/.exec(await (await core.node.fetch('/metrics')).text());
     const stranger = async (token, differs) => {
@@ -288,7 +289,7 @@ test('a core of another version or configuration keeps no seat, and a renderer\'
     await voter.until('its end', ({ closed }) => closed);
 });
 
-test('a database that answers but refuses every change is logged once, and once when it is well again', options, async () => {
+test('a database that refuses every change is logged once, and its recovery once', options, async () => {
     const core = await two.leader(), start = core.program.said.length, table = server.ask(
         "SELECT format('%I.lease', schemaname) FROM pg_tables WHERE tablename = 'lease'")[0][0];
     const count = (text) => core.program.said.slice(start).split(text).length - 1;
@@ -321,7 +322,8 @@ while True:
     return told;
 }
 
-test('maintenance of the standby: the leader polls on without the database, and no other core takes over', options, async (t) => {
+test('during maintenance of the standby and without the database, the leader polls on, and no other core takes over',
+    options, async (t) => {
     const core = await two.leader(), other = two.other(core), history = join(two.plant.folder, core.name, 'history');
     const standby = (word) => assert.equal(runProgram('plantcast', ['standby', word, history]).code, 0);
     const alone = (is) => two.waitsFor(`maintenance ${is}`, async () =>

@@ -21,7 +21,7 @@ before(async () => {
 });
 after(() => two?.destroy());
 
-test('an answer comes once the standby has what was done', { skip, timeout: 240000 }, async (t) => {
+test('an action is answered once the standby has it', { skip, timeout: 240000 }, async (t) => {
     const renderer = await two.renderer('r');
     for (let round = 0; round < ROUNDS; round++) {
         const core = await two.leader();
@@ -53,7 +53,7 @@ async function raise(...nodes) {
 }
 
 for (const reloads of [false, true])
-    test(`a leader that is cut off from both ${reloads ? 'and reloaded ' : ''}confirms nothing that the next leader lacks`,
+    test(`a leader cut off from standby and database ${reloads ? 'and reloaded ' : ''}confirms nothing that the next leader lacks`,
         { skip, timeout: 240000 }, async (t) => {
             const core = await two.leader(), other = two.other(core), renderer = await two.renderer(`cut-${reloads}`);
             await two.followed(core);

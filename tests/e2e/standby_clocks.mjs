@@ -48,7 +48,8 @@ function allowLateAnswers({ file, plant }) {
 }
 
 for (const off_s of [HOUR_S, -HOUR_S])
-    test(`a standby whose clock is an hour ${off_s > 0 ? 'ahead' : 'behind'} takes over, and the other from it`, options, async (t) => {
+    test(`a standby whose clock is an hour ${off_s > 0 ? 'ahead' : 'behind'} takes over, and the first core takes over from it`,
+        options, async (t) => {
         server.makeDatabase(off_s > 0 ? 'ahead' : 'behind');
         const two = await TwoCores.create(server), { one, two: other } = two.cores;
         allowLateAnswers(two);

@@ -14,7 +14,7 @@ let two;
 before(async () => { two = skip ? null : await TwoCores.running((cores) => cores.plant.tell('set TI-1 50')); });
 after(() => two?.destroy());
 
-test('one cut changes nothing: between the cores, to the database on either side; nor does its restart', options, async (t) => {
+test('a single cut, between the cores or to the database, changes nothing; nor does a restart of the database', options, async (t) => {
     const core = await two.leader(), other = two.other(core);
     await two.followed(core);
     for (const [what, link] of [['between the cores', other.toOther], ['leader and database', core.toDatabase],
@@ -35,7 +35,7 @@ test('one cut changes nothing: between the cores, to the database on either side
     await two.followed(core);
 });
 
-test('a leader that reaches neither ends before the other begins', options, async (t) => {
+test('a leader that reaches neither standby nor database ends before the other core begins', options, async (t) => {
     for (const how of ['cut', 'freeze']) {
         const core = await two.leader(), other = two.other(core);
         await two.followed(core);
@@ -49,7 +49,7 @@ test('a leader that reaches neither ends before the other begins', options, asyn
     }
 });
 
-test('with the database away and the standby gone it stops; whoever finds the database first leads again', options, async (t) => {
+test('without database and standby the leader stops; the first core that reaches the database leads', options, async (t) => {
     const core = await two.leader(), other = two.other(core);
     await two.followed(core);
     for (const one of [core, other])
@@ -72,7 +72,7 @@ test('with the database away and the standby gone it stops; whoever finds the da
 });
 
 
-test('a leader that was reloaded goes on by the promise of a standby that was not', options, async (t) => {
+test('a reloaded leader goes on with the lease confirmed by a standby that has not reloaded', options, async (t) => {
     const core = await two.leader(), other = two.other(core), text = readFileSync(two.file, 'utf8');
     await two.followed(core);
     for (const one of [core, other])
@@ -107,7 +107,8 @@ test('a leader reloads while the database does not answer and its standby keeps 
     await two.followed(core);
 });
 
-test('others of the names of both are told, and take nobody\'s place while the leader has no way to the database', options, async (t) => {
+test('extra cores with the names of both are refused and take no place while the leader is cut off from the database',
+    options, async (t) => {
     const core = await two.leader(), other = two.other(core);
     await two.followed(core);
     const more = [['three', '127.0.0.4', core, /the leading core has the same name as this core/],
@@ -127,7 +128,7 @@ test('others of the names of both are told, and take nobody\'s place while the l
     await two.followed(core);
 });
 
-test('of bids that the database takes up at the same time one is taken', options, async (t) => {
+test('of two simultaneous bids for the lease in the database, exactly one wins', options, async (t) => {
     for (const core of Object.values(two.cores))
         await core.program.stop();
     const row = () => two.server.ask('SELECT epoch, leader FROM plantcast.lease')[0], [before_] = row();
@@ -151,7 +152,8 @@ test('of bids that the database takes up at the same time one is taken', options
     await two.followed(core);
 });
 
-test('a standby of another version is named, shows nothing, votes, and takes over: so both are brought to it', options, async (t) => {
+test('a standby of another version is named, shows nothing, votes and takes over, so that both cores can be updated',
+    options, async (t) => {
     const core = await two.leader(), other = two.other(core), newer = otherVersion(two.plant.folder);
     await two.followed(core);
     const begin = async (one) => {

@@ -48,7 +48,7 @@ async function shows(node) {
     client.close();
 }
 
-test('let in at the leader, it shows its wall after a take-over, at the new leader and at a renderer', options, async (t) => {
+test('a display paired at the leader shows its wall after a take-over, at the new leader and at a renderer', options, async (t) => {
     const core = await two.leader(), digits = await until('digits', async () => (await ask(core)).digits);
     assert.equal((await act({ type: 'pair', digits })).kept, true);
     await shows(core.node);
@@ -63,7 +63,7 @@ test('let in at the leader, it shows its wall after a take-over, at the new lead
     await two.restart(core);
 });
 
-test('revoked while the other one leads, it stays out where it was let in', options, async (t) => {
+test('a display revoked at the second leader stays revoked at the first core', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     assert.equal((await act({ type: 'unpair', id: 'room.1.1' })).kept, true);

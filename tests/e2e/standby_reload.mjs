@@ -19,7 +19,7 @@ const valuesOf = async (core, from_us, to_us) => {
     return (await (await core.node.fetch(path)).json()).series[0].points.map(([, value]) => value);
 };
 
-test('what was recorded behind a cut is read although the plant is reloaded meanwhile', options, async (t) => {
+test('points recorded during a cut are read although the plant is reloaded meanwhile', options, async (t) => {
     const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
     await other.toOther.cut();
     for (let i = 0; i < CUT_S * 2; i++) { // changes that the other core misses because of the cut
@@ -41,7 +41,8 @@ test('what was recorded behind a cut is read although the plant is reloaded mean
     await two.followed(other);
 });
 
-test('a standby that comes again and again does not have it read as often', { ...options, skip: skip || long }, async () => {
+test('a standby that keeps reconnecting does not make the leader read the points as often',
+    { ...options, skip: skip || long }, async () => {
     const core = await two.leader(), other = two.other(core);
     await until('nothing left', async () => { // waits until the core no longer reads points that the previous test left in the database
         const { length } = core.program.said.match(READ) ?? [];
@@ -88,7 +89,7 @@ test('a standby with the same changed files loads them when the leader does', op
     await two.followed(core);
 });
 
-test('a standby with other files keeps its own, does not take over before it is reloaded, and says so', options, async () => {
+test('a standby with different files keeps its own, takes over only after a reload, and says so', options, async () => {
     const core = await two.leader(), other = two.other(core);
     change(core.file, 102, 103);
     other.program.said = '';

@@ -55,7 +55,7 @@ function watch(renderer) {
     return { end: async () => { going = false; await done; return longest; } };
 }
 
-test('each change of an alarm is written once, whoever leads, and the standby leads at once', options, async (t) => {
+test('with changing leaders each change of an alarm is written once, and the standby leads at once', options, async (t) => {
     const renderer = await two.renderer('r');
     feed();
     for (let stop = 0; stop < STOPS; stop++) {
@@ -113,7 +113,7 @@ async function handNewToken(core) {
     return () => change('revoke', other.tokenFile, 's');
 }
 
-test('the cores get new tokens as KEYS.md says, without a refused connection', options, async (t) => {
+test('the cores get new tokens as KEYS.md describes, without a refused connection', options, async (t) => {
     await separateTokens();
     const leader = await two.leader(), standby = two.other(leader);
     await two.followed(leader);

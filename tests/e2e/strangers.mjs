@@ -71,7 +71,7 @@ const metric = async (name) => {
     return Number((await answer.text()).match(new RegExp(`^${name} (\\d+)`, 'm'))?.[1]);
 };
 
-test('through a proxy that nobody told of: 403, on every way to listen', { skip }, async () => {
+test('clients of an unknown proxy get 403, however the daemon listens', { skip }, async () => {
     const any = ['--listen', '0.0.0.0', '--host', 'plant.example'], more = ['--tokens', tokensFile];
     const ways = [ // [arguments, status that a local client gets without a token]
         [[], 200], [more, 401], [[...more, '--trust-local'], 200], [[...tls, ...more], 401], [[...any, '--open-viewers'], 200],
@@ -92,7 +92,7 @@ test('through a proxy that nobody told of: 403, on every way to listen', { skip 
 });
 
 // Tag names appear in what an engineer saves, writes and checks. Session numbers must not be guessable.
-test('anyone who looks on is told of no reading, tag or person, and follows nobody by counting', { skip }, async () => {
+test('an open viewer gets no reading, tag or user name, and can follow nobody by guessing session numbers', { skip }, async () => {
     await plant.startSim();
     await serve('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--tokens', tokensFile);
     await plant.set({ 'TI-1': 81.25, 'TI-2': 20.5, 'PI-1': 5 });
@@ -184,7 +184,7 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     engineer.close();
 });
 
-test('over TLS: no CBC, HSTS, connections home only, and frames of pages that were named', { skip }, async () => {
+test('over TLS: no CBC ciphers, HSTS is sent, and the policy limits connections and framing to named origins', { skip }, async () => {
     await serve(...tls, '--tokens', tokensFile, '--origin', 'https://portal.example');
     const { headers } = await ask('/', {}, true), policy = headers['content-security-policy'];
     assert.match(headers['strict-transport-security'], /^max-age=31536000/);
@@ -204,7 +204,7 @@ test('over TLS: no CBC, HSTS, connections home only, and frames of pages that we
         assert.equal(await handshake(cipher), null, cipher);
 });
 
-test('text that is not UTF-8 is closed with 1007, and what people write is no formula in a file', { skip }, async () => {
+test('text that is not UTF-8 is closed with 1007, and user texts cannot become formulas in CSV files', { skip }, async () => {
     await serve();
     assert.equal((await ask('/')).headers['strict-transport-security'], undefined);
     for (const bytes of [[0x7b, 0xff, 0x7d], [0xc0, 0xaf], [0xed, 0xa0, 0x80], [0x7b, 0xe2, 0x82]]) {
@@ -225,7 +225,7 @@ test('text that is not UTF-8 is closed with 1007, and what people write is no fo
     assert.match(await answer.text(), /,"'=HYPERLINK\(""http/);
 });
 
-test('every token that is let in, or is not, is a line in the log; ten wrong ones slow an address', { skip }, async () => {
+test('every accepted or refused token is logged; ten wrong tokens slow an address', { skip }, async () => {
     await serve('--tokens', tokensFile);
     const before = await metric('plantcast_sessions_refused_total');
     const wrong = 'pc_0123456789', lines = (pattern) => plant.daemon.said.match(pattern) ?? [];
@@ -305,7 +305,7 @@ test(ENDING, { skip, timeout: 200000 }, async () => {
     assert.match(await speak('GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Plant: 1\r\n\r\n'), /^HTTP\/1\.1 200/, 'an unknown name');
 });
 
-test('over TLS too; a connection without a request yet stays open', { skip, timeout: 200000 }, async () => {
+test('over TLS, slow requests are ended, too; a connection without a request yet stays open', { skip, timeout: 200000 }, async () => {
     await serve(...tls, '--limit', 'patience=60');
     // twice the 2 s after which the server ends an incomplete request head
     const head = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n', idleMs = 4000;

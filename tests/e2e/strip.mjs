@@ -60,7 +60,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-test('the picture itself', { skip }, () => {
+test('values are read from a snapshot with a legend strip', { skip }, () => {
     assert.ok(spots.length > 20, `${spots.length} places`);
     const { out, code } = read('whole.png', [640, 5]);
     assert.match(out, /group temperature, 0 to 100 °C/);
@@ -71,21 +71,21 @@ test('the picture itself', { skip }, () => {
 });
 
 for (const quality of [3, 8]) { // in ffmpeg's quality scale, these are about 90 and 70 of other programs
-    test(`JPEG, ${quality}`, { skip }, () => {
+    test(`values are read from a JPEG of ffmpeg quality ${quality}`, { skip }, () => {
         ffmpeg('whole.png', 'whole.jpg', '-q:v', String(quality));
         const { read: share, held, error, width } = judge('whole.jpg');
         assert.ok(share > 0.9 && held > 0.95 && error < 0.8 && width < 10);
     });
 }
 
-test('a screenshot: scaled, on a desktop, JPEG again', { skip }, () => {
+test('values are read from a screenshot that was scaled, framed and compressed', { skip }, () => {
     const scale = 0.9, move = ([x, y]) => [Math.round(x * scale + 37), Math.round(y * scale + 61)];
     ffmpeg('whole.png', 'shot.jpg', '-vf', `scale=iw*${scale}:ih*${scale}:flags=bicubic,pad=1600:900:37:61:color=0x336699`, '-q:v', '4');
     const { read: share, held, error, width } = judge('shot.jpg', move);
     assert.ok(share > 0.9 && held > 0.95 && error < 0.8 && width < 10);
 });
 
-test('what has no strip, half of one, or is no picture', { skip }, () => {
+test('pictures without a whole legend strip, and files that are no pictures, are refused', { skip }, () => {
     assert.equal(snapshot('bare.png').code, 0);
     const refusals = [['bare.png', /has no legend strip/], ['plant.yaml', /expected a valid PNG or JPEG file/],
         ['gone.png', /No such file/]];

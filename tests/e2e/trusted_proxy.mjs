@@ -70,7 +70,7 @@ after(async () => {
     await nodes?.destroy();
 });
 
-test('eighty sessions of twenty clients on two nodes are all let in, with the default limits', options, async (t) => {
+test('eighty sessions of twenty clients on two nodes are all admitted, with the default limits', options, async (t) => {
     const clients = [];
     t.after(() => clients.forEach((client) => client.close()));
     for (let i = 0; i < SESSIONS; i++) {
@@ -85,7 +85,7 @@ test('eighty sessions of twenty clients on two nodes are all let in, with the de
     assert.deepEqual([...new Set(logins().map(({ from }) => from))].sort(), Array.from({ length: CLIENTS }, (_, i) => `127.0.0.${10 + i}`));
 });
 
-test('one client with wrong tokens is slowed down, and nobody else; also where it forges X-Forwarded-For', options, async () => {
+test('only a client with wrong tokens is slowed, also when that client forges X-Forwarded-For', options, async () => {
     const [liar, user] = ['127.0.0.40', '127.0.0.41'];
     for (const page of ['/api/v1/tags', '/api/v1/history?tags=TI-1']) { // renderers answer the first page, the core the second
         const answers = [], forged = `X-Forwarded-For: ${user}\r\nForwarded: for=${user}\r\nX-Real-IP: ${user}\r\n`;
@@ -115,7 +115,7 @@ test('an action through a renderer is recorded with the client\'s address', opti
     assert.deepEqual([note?.who, note?.from], ['anna', '127.0.0.43']);
 });
 
-test('headers of a peer that is no trusted proxy are ignored', options, async () => {
+test('forwarded headers from a peer that is no trusted proxy are ignored', options, async () => {
     other = await nodes.start(['--port', String(await freePort()), '--trusted-proxy', '198.51.100.1', ...served('other')]);
     const direct = (host, headers) => secure(other, headers, { host }).then(({ status }) => status);
     assert.equal(await direct(HOST, { Authorization: `Bearer ${WRONG}` }), 401);
@@ -123,7 +123,7 @@ test('headers of a peer that is no trusted proxy are ignored', options, async ()
     assert.equal(await direct('127.0.0.1', { Authorization: `Bearer ${nodes.tokens.viewer}` }), 403, 'a local proxy needs --behind-proxy');
 });
 
-test('as a renderer, HAProxy takes a daemon that draws for a core, and no other, and the answer says why', options, async () => {
+test('HAProxy accepts as renderer a renderer or a core that draws, and no other daemon; the answer says why', options, async () => {
     const asked = (node) => secure(node, {}, { page: '/readyz?role=render' });
     assert.equal((await asked(renderers[0])).status, 200);
     assert.equal((await asked(core)).status, 200);
@@ -133,7 +133,7 @@ test('as a renderer, HAProxy takes a daemon that draws for a core, and no other,
 });
 
 const NGINX = '/usr/sbin/nginx';
-test('through nginx on another host, with the shipped configuration, the core names the client as well',
+test('through nginx on another host, with the shipped configuration, the core sees the client\'s address, too',
     { ...options, skip: options.skip || (existsSync(NGINX) ? false : 'nginx is not installed') }, async (t) => {
         const port = await freePort(), client = '127.0.0.60';
         const shipped = readFileSync('deploy/proxy/nginx.conf', 'utf8').replace('listen 443 ssl', `listen 127.0.0.1:${port} ssl`)

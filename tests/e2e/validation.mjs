@@ -29,7 +29,7 @@ const errors = (sensors, interpolation, distance = '') => part.rows.find((row) =
     row.interpolation === interpolation && row.distance === distance).outside;
 
 // The temperatures that CalculiX computes are at most the fixed 200, at least the ambient temperature, and mostly in between.
-test('CalculiX solves what was asked', { skip }, () => {
+test('the reference temperatures of CalculiX are within the given limits', { skip }, () => {
     assert.ok(part.nodes > 2000 && part.triangles > 4000, `${part.nodes} nodes`);
     assert.ok(Math.abs(part.high - 200) < 0.01 && part.low > 20 && part.low < 40, `${part.low} to ${part.high}`);
 });
@@ -40,7 +40,7 @@ for (const [sensors, interpolation, distance, mean, p95] of [
     [20, 'shepard', 'geodesic', 6.3, 18.6], [20, 'harmonic', '', 4.6, 13], [20, 'fin', '', 4.8, 27], [5, 'fin', '', 11.8, 54],
     [20, 'gp', '', 3.3, 6.8], [5, 'gp', '', 21.7, 93],
 ]) {
-    test(`${interpolation} from ${sensors} sensors`, { skip }, () => {
+    test(`${interpolation} from ${sensors} sensors has an error within its limits`, { skip }, () => {
         const { mean: is, p95: high, unknown } = errors(sensors, interpolation, distance);
         assert.ok(is <= mean && high <= p95, `mean ${is} K (${mean}), 95 % ${high} K (${p95})`);
         assert.ok(unknown < 0.02, `${100 * unknown} % unknown`);
@@ -48,7 +48,7 @@ for (const [sensors, interpolation, distance, mean, p95] of [
 }
 
 // The walls of the two legs are as far apart as the pipe is thick: straight-line distances mix a hot leg with a cold one.
-test('along the surface is nearer than straight across the gap', { skip }, () => {
+test('distances along the surface give smaller errors than straight ones across the gap', { skip }, () => {
     const along = errors(20, 'shepard', 'geodesic').mean, straight = errors(20, 'shepard', 'euclidean').mean;
     assert.ok(along < 0.85 * straight, `${along} K along, ${straight} K straight`);
 });

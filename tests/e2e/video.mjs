@@ -99,7 +99,7 @@ after(async () => {
     assert.equal(video?.fault ?? null, null);
 });
 
-test('RTSP: H.264 of the size and rate asked for, by TCP and UDP, to who has the password', options, () => {
+test('RTSP by TCP and UDP gives H.264 of the configured size and rate, to clients with the password', options, () => {
     const probe = (url, transport) => spawnSync('ffprobe', ['-v', 'error', '-rtsp_transport', transport, '-show_entries',
         'stream=codec_name,profile,width,height,r_frame_rate', '-of', 'csv=p=0', url], { encoding: 'utf8', timeout: 30000 });
     for (const transport of ['tcp', 'udp'])
@@ -119,7 +119,7 @@ test('SRT carries the same pictures, encrypted with the password', options, asyn
     assert.equal(stranger.frames.length, 0);
 });
 
-test('ten readers of a stream cost one encoder, and one that reads nothing holds up no other', options, async () => {
+test('ten readers of a stream cost one encoder, and a reader that stalls delays no other', options, async () => {
     const readers = Array.from({ length: 10 }, readRtsp);
     for (const reader of readers)
         await reader.until(() => true, 60000);
@@ -135,7 +135,7 @@ test('ten readers of a stream cost one encoder, and one that reads nothing holds
         await reader.stop();
 });
 
-test('every second is there, on time, whatever happens', { ...options, timeout: (RECORDED_S + 60) * 1000 }, async () => {
+test('every second is in the video, on time, whatever happens', { ...options, timeout: (RECORDED_S + 60) * 1000 }, async () => {
     const reader = readRtsp();
     await reader.until(() => true);
     await new Promise((done) => setTimeout(done, RECORDED_S * 1000));
@@ -150,7 +150,7 @@ test('every second is there, on time, whatever happens', { ...options, timeout: 
     assert.ok(lag[Math.floor(lag.length / 2)] < 2000, `${lag[Math.floor(lag.length / 2)]} ms from clock to reader`);
 });
 
-test('a server that dies or hangs: a card within 3 s, and pictures again by themselves', options, async (t) => {
+test('when a server dies or hangs, a card appears within 3 s, and pictures return by themselves', options, async (t) => {
     const reader = readRtsp();
     await reader.until(({ card }) => !card);
     for (const signal of ['SIGSTOP', 'SIGKILL']) {
@@ -177,7 +177,7 @@ test('a server that dies or hangs: a card within 3 s, and pictures again by them
     await reader.stop();
 });
 
-test('counters are for this machine alone, and connections that say nothing keep nobody from them', options, async () => {
+test('metrics are served on this machine only, and idle connections do not block them', options, async () => {
     const elsewhere = Object.values(networkInterfaces()).flat().find(({ family, internal }) => family === 'IPv4' && !internal);
     if (elsewhere) // --http listens on 127.0.0.1 only
         await assert.rejects(fetch(`http://${elsewhere.address}:${ports.http}/metrics`));
@@ -191,11 +191,11 @@ test('counters are for this machine alone, and connections that say nothing keep
     idle.forEach((socket) => socket.destroy());
 });
 
-test('it ends when it is told to', options, async () => {
+test('the video program ends on SIGTERM', options, async () => {
     assert.deepEqual(await video.stop(), { code: 0, signal: null });
 });
 
-test('a token that is none, or is revoked, and a view that is not there: a card that says so', options, async (t) => {
+test('an invalid or revoked token, and an unknown view, are reported on a card', options, async (t) => {
     const tokens = join(plant.folder, 'tokens'), token = join(folder, 'token');
     const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'video']);
     assert.equal(made.code, 0, made.err);
@@ -223,7 +223,7 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     await program.stop();
 });
 
-test('a view with a name: all that it says is understood by the server, in perspective or not', options, async () => {
+test('a named view is drawn with all its parameters, in perspective or orthographic', options, async () => {
     const port = await freePort(), camera = 'camera=4,-4,3,0,0,0,0,0,1,45';
     const text = `group=temperature&show=operator&look=flat&colormap=viridis&ramp=10&range=0,50&isolines=20,40&light=1,1,2&ghost=P-101A&` +
         `split=group:pressure;look:glossy&clip=1,0,0,0.2&asset=E-101&tag=TI-1&strength=2&${camera}`;
@@ -252,7 +252,7 @@ function difference(a, b, wide, [left, top, right, bottom]) {
     return sum / count;
 }
 
-test('cards, strip and legend speak the language asked for', options, async () => {
+test('cards, strip and legend are in the requested language', options, async () => {
     const port = await freePort(), HEADLINE = [0, 0.3, 1, 0.55], LEGEND = [0.9, 0.72, 0.99, 0.77], AGE = [0.65, 0.965, 0.82, 0.985];
     const see = async (language, card, wide, tall, ...args) => {
         const program = await startVideo('--size', `${wide}x${tall}`, '--rtsp', String(port), '--language', language, ...args);
@@ -282,7 +282,7 @@ test('cards, strip and legend speak the language asked for', options, async () =
     }
 });
 
-test('a token for one view shows that view, and no other; losing it ends the picture', options, async () => {
+test('a token restricted to one view shows that view and no other; revoking the token ends the picture', options, async () => {
     const tokens = join(plant.folder, 'tokens'), token = join(folder, 'token'), port = await freePort();
     const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'lobby', '--views', 'first']);
     assert.equal(made.code, 0, made.err);
@@ -312,7 +312,7 @@ test('a token for one view shows that view, and no other; losing it ends the pic
     await plant.startDaemon();
 });
 
-test('bad input: what is wrong is said', options, async () => {
+test('invalid options and configuration are reported', options, async () => {
     const url = `http://127.0.0.1:${plant.port}/`, taken = createServer();
     await new Promise((done) => taken.listen(0, '127.0.0.1', done));
     const port = taken.address().port;

@@ -30,7 +30,7 @@ function stepsOf(text) {
     return steps.filter(({ command }) => !command.includes('--serve'));
 }
 
-test('what the page says is typed, and what it shows comes', { skip, timeout: 400000 }, async () => {
+test('each command of YOUR_PLANT.md prints the output that the page shows', { skip, timeout: 400000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), port = await freePort(), running = [];
     const ours = (text) => text.replaceAll(':5020', `:${device}`).replaceAll(':8080', `:${port}`)
         .replace(/^plantcastd plant/, `plantcastd --port ${port} plant`);
@@ -88,7 +88,7 @@ test('what the page says is typed, and what it shows comes', { skip, timeout: 40
 
 // The steps of the section `On a page`, in their printed order. In one of many complete runs the click on *Place by hand* did
 // nothing; the cause is not known yet.
-test('what the page says is clicked, and what it shows comes', { skip: skip || long, timeout: 400000 }, async () => {
+test('each click described in YOUR_PLANT.md has the described result', { skip: skip || long, timeout: 400000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), running = [];
     const section = page.slice(page.indexOf('## On a page'), page.indexOf('## 1. The model'));
     const written = section.slice(section.indexOf('1. ')).replace(/\s+/g, ' ');

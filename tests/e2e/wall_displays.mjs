@@ -61,7 +61,7 @@ after(async () => {
 
 const paneTitle = (area) => page.locator(`.pane.${area} h2`);
 const inner = () => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture;
-test('each pane shows what it is for', options, async () => {
+test('each pane shows its configured content', options, async () => {
     await page.waitForURL(/wall\.html\?wall=room/);
     await page.locator('.tile .value', { hasText: '°C' }).first().waitFor();
     await page.waitForFunction(inner);
@@ -81,7 +81,7 @@ test('each pane shows what it is for', options, async () => {
     await shoot(page, 'wall-display');
 });
 
-test('views follow each other without a flight', options, async () => {
+test('the views of a pane follow each other without a flight', options, async () => {
     await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor();
     await page.waitForFunction(() => {
         const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast.session;
@@ -167,7 +167,7 @@ test('another display has its own panes', options, async () => {
 });
 
 // The daemon would not start with such a wall, but a display keeps its panes for a while after a reload.
-test('tags that the plant does not have are named in tiles and trends', options, async () => {
+test('tags that the plant lacks are named in tiles and trends', options, async () => {
     const openWith = (names, display) => openPage(`${plant.url}wall.html?wall=room&display=${display}`,
         { viewport: { width: 960, height: 540 } }, null, (one) => one.route(/api\/v1\/walls/, async (route) => {
             const answer = await route.fetch(), text = await answer.text();
@@ -208,7 +208,7 @@ test('a heading names the view in the picture, not one that is still loading', o
 });
 
 // The page must not show another picture instead: people would take it for the requested view.
-test('a view that names what the plant does not have is not shown, and said', options, async () => {
+test('a view that names things the plant lacks is not shown, and is reported', options, async () => {
     const { list } = await (await fetch(new URL('api/v1/views', plant.url))).json();
     const wrong = Object.fromEntries(list.map(({ id, wrong: why }) => [id, why]));
     assert.match(wrong.gone, /group: this plant has no quantity “presure”/);
@@ -295,7 +295,7 @@ test('a tour shows each view for its time, with its text', options, async () => 
     await other.close();
 });
 
-test('a lost server is said in large letters, and ends by itself', options, async () => {
+test('a lost server is reported in large letters, and the report ends by itself', options, async () => {
     await plant.stopDaemon('SIGKILL');
     await page.locator('#lost', { hasText: 'No connection to the plant since' }).waitFor();
     const px = await page.evaluate(() => parseFloat(getComputedStyle(document.getElementById('lost')).fontSize));

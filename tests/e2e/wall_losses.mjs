@@ -45,7 +45,7 @@ const live = (since) => wall.page.waitForFunction(([picture, words]) => {
         session.freshAt > words;
 }, [since.picture, since.words], { polling: 200 });
 
-test(`${LOSSES} losses: each is said, and ends by itself`, options, async (t) => {
+test(`each of ${LOSSES} losses of the server is reported, and the wall recovers by itself`, options, async (t) => {
     await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0); // waits for the wall; until then another page is loaded
     await live({ picture: 0, words: 0 });
     let slowest = 0;

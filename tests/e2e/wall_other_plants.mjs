@@ -136,7 +136,7 @@ after(async () => {
     await other?.destroy();
 });
 
-test('what a server does instead of sending its picture is said', options, async () => {
+test('each way that another plant\'s server fails to send a picture is reported', options, async () => {
     const ids = Object.keys(EXPECTED), query = ids.map((id) => `id=${id}`).join('&');
     await until(async () => {
         const { list } = JSON.parse((await get(`api/v1/other_plants?${query}`)).body);
@@ -158,7 +158,7 @@ test('what a server does instead of sending its picture is said', options, async
     assert.ok(!plant.daemon.said.includes(tokens.other), 'no token in the log');
 });
 
-test('a paired display asks for what it shows, and for nothing else', options, async () => {
+test('a paired display can request its own panes\' plants, and nothing else', options, async () => {
     assert.equal((await get('api/v1/other_plants?id=tanks', tokens.display)).status, 200);
     for (const [path, token] of [['?id=good', tokens.display], ['?id=tanks', tokens.second],
         ['/picture?id=good&picture=1', tokens.display]])
@@ -166,7 +166,8 @@ test('a paired display asks for what it shows, and for nothing else', options, a
     assert.equal((await get('api/v1/other_plants?id=tanks', 'nonsense')).status, 401);
 });
 
-test('its picture, its name and the age of its readings; a server that is gone and since when; and back', options, async (t) => {
+test('the pane shows another plant\'s picture, name and data age; also that its server is down, since when, and its return',
+    options, async (t) => {
     const screen = { viewport: { width: SIZE[0], height: SIZE[1] } };
     const { page, close, errors } = await openPage(`http://127.0.0.1:${plant.port}/wall.html?wall=room`, screen,
         // only in the top window, because frames within the page are sandboxed

@@ -73,7 +73,7 @@ after(async () => {
     await plant?.stop();
 });
 
-test('a tile takes the token of its display: who only looks on can neither lead a wall nor hold it up', options, async () => {
+test('a wall tile takes its display\'s token: a viewer\'s token can neither lead nor delay a wall', options, async () => {
     const port = Number(new URL(plant.url).port), open = [];
     const hello = async (token, display) => {
         const client = await PlainClient.open(port);
@@ -96,7 +96,7 @@ test('a tile takes the token of its display: who only looks on can neither lead 
     open.forEach((client) => client.close());
 });
 
-test('it shows six digits, and nothing of the plant', options, async () => {
+test('an unpaired display shows six digits, and nothing of the plant', options, async () => {
     const digits = await digitsOf(wall.page);
     assert.equal(await wall.page.locator('.pane').count(), 0);
     await shoot(wall.page, 'wall-pairing');
@@ -104,7 +104,7 @@ test('it shows six digits, and nothing of the plant', options, async () => {
     assert.equal(await digitsOf(wall.page), digits); // the digits stay the same until they expire
 });
 
-test('digits that no display shows, other secrets and other people change nothing', options, async () => {
+test('digits that no display shows, other secrets and other users change nothing', options, async () => {
     await desk.page.fill('#devices-digits', '000 000');
     await desk.page.click('#devices button[type=submit]');
     await desk.page.locator('#toast, [role=status], [role=alert]').filter({ hasText: 'no display shows this code' }).first()
@@ -119,7 +119,7 @@ test('digits that no display shows, other secrets and other people change nothin
     assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing pc_${'a'.repeat(64)}`)).status, 503);
 });
 
-test('an engineer lets it in, and who did it is in the audit trail', options, async () => {
+test('an engineer approves the display, and the audit trail names the engineer', options, async () => {
     await desk.page.fill('#devices-digits', await digitsOf(wall.page));
     await desk.page.click('#devices button[type=submit]');
     const row = desk.page.locator('#devices-list li');
@@ -132,7 +132,7 @@ test('an engineer lets it in, and who did it is in the audit trail', options, as
     await recorded(/engineer-1.*pair room\.1\.1/);
 });
 
-test('it is that display only, as a viewer, also after a restart of the daemon', options, async () => {
+test('a paired display is that display only, as a viewer, also after a restart of the daemon', options, async () => {
     await plant.stopDaemon('SIGKILL');
     await plant.startDaemon();
     await wall.page.reload();
@@ -230,7 +230,7 @@ async function wallPage(display, key, token) {
     return screen;
 }
 
-test('the pages of a display that is let in, and of a token of some views, show what they may', options, async () => {
+test('pages of a paired display, and of a token for some views, show what these may see', options, async () => {
     const tiles = await wallPage(2, 'plantcast.wall.room.2', `pc_${'1'.repeat(64)}`);
     await tiles.page.waitForFunction(() => /\d/.test(document.querySelector('.tile .value')?.textContent ?? ''));
     const trend = tiles.page.frameLocator('.pane.trend iframe');
@@ -253,7 +253,7 @@ test('the pages of a display that is let in, and of a token of some views, show 
     await seen.close();
 });
 
-test('a viewer notes, sends and points at nothing; who may stands in the audit trail', options, async () => {
+test('a viewer can note, send and point at nothing; the audit trail names users who can', options, async () => {
     const pane = { wall: 'room', display: 1, area: 'main' };
     const asked = [{ type: 'note', seq: 1, text: 'Manhole open', asset: 'E-101' }, { type: 'send_to_wall', seq: 2, ...pane, held: true },
         { type: 'point', ...pane, position: [1, 2, 3] }];
@@ -270,7 +270,7 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
     await recorded(/engineer-1.*hold room, display 1, main/);
 });
 
-test('it is dark within 3 s of being revoked', options, async (t) => {
+test('a revoked display is dark within 3 s', options, async (t) => {
     await connected(desk.page, 'plantcast');
     await desk.page.locator(`#devices-list li[data-id="${id}"] button`).click();
     const clicked = Date.now();

@@ -95,7 +95,8 @@ const amiss = () => [...document.querySelectorAll('.pane iframe')].flatMap((fram
 
 for (const wall of ['overview', 'six']) {
     for (const size of SIZES) {
-        test(`${wall} at ${size.join('x')}`, wall === 'six' && size === SIZES[0] ? options : more, async () => {
+        test(`nothing on wall ${wall} at ${size.join('x')} is cut off or misplaced`,
+            wall === 'six' && size === SIZES[0] ? options : more, async () => {
             const { page, close, errors } = await open(wall, 1, size);
             await page.locator('.pane.alarms li', { hasText: 'TE-101' }).waitFor();
             await page.waitForFunction(whole, null, { polling: 200 });
@@ -112,7 +113,7 @@ for (const wall of ['overview', 'six']) {
 
 // The browsers' windows represent adjacent screens with bezels in between.
 for (const size of SIZES) {
-    test(`tiles at ${size.join('x')}`, more, async () => {
+    test(`tiles at ${size.join('x')} show one picture with nothing cut off`, more, async () => {
         const each = [size[0] / COLUMNS, size[1] / ROWS];
         const opened = await Promise.all(Array.from({ length: COLUMNS * ROWS }, (_, i) => open('tiles', i + 1, each)));
         await Promise.all(opened.map(({ page }) => page.waitForFunction(() => {

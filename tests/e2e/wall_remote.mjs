@@ -47,7 +47,7 @@ const eyeOfPane = (z) => wall.page.waitForFunction((wanted) => {
 }, z, { polling: 100 });
 const inPane = () => wall.page.frameLocator('.pane.views iframe');
 
-test('a note is seen by all, and on the wall, until it is removed', options, async () => {
+test('a note is seen by all users, and on the wall, until it is removed', options, async () => {
     await desk.page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101' }));
     await desk.page.fill('#note-text', 'Manhole open, permit 4711');
     await desk.page.locator('#note-at option', { hasText: 'E-101' }).waitFor({ state: 'attached' });
@@ -76,7 +76,7 @@ const opened = (page, isOld) => page.waitForFunction((marks) => {
     return models.every((model) => model && Boolean(model.isOld) === marks);
 }, isOld);
 
-test('notes outlive the daemon', options, async () => {
+test('notes survive a restart of the daemon', options, async () => {
     const pages = [desk.page, wall.page];
     await Promise.all(pages.map((page) => opened(page, true)));
     await plant.stopDaemon('SIGKILL');
@@ -87,7 +87,7 @@ test('notes outlive the daemon', options, async () => {
     await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor();
 });
 
-test('a view is sent to a pane, which names the sender', options, async () => {
+test('a view sent to a pane appears there with the sender\'s name', options, async () => {
     await desk.page.fill('#remote-desk', 'Desk 2');
     await desk.page.locator('#remote-said', { hasText: 'connected' }).waitFor();
     await desk.page.locator('.named-open', { hasText: 'From above' }).click();
@@ -98,7 +98,7 @@ test('a view is sent to a pane, which names the sender', options, async () => {
     await eyeOfPane(30);
 });
 
-test('a place is pointed at in the pane', options, async () => {
+test('a place pointed at from the desk is marked in the pane', options, async () => {
     await desk.page.check('#remote-points');
     const at = await desk.page.evaluate(() => {
         const { viewport } = globalThis.plantcast, { left, top } = viewport.element.getBoundingClientRect();
@@ -116,7 +116,7 @@ test('a place is pointed at in the pane', options, async () => {
     await inPane().locator('.note-pin.pointer').waitFor({ state: 'detached' });
 });
 
-test('a click while pointing gets an answer', options, async () => {
+test('a click while pointing is answered by the server', options, async () => {
     await desk.page.check('#remote-points');
     await desk.page.mouse.move(500, 500);
     await desk.page.mouse.move(520, 480);
@@ -135,7 +135,7 @@ test('a click while pointing gets an answer', options, async () => {
     await desk.page.uncheck('#remote-points');
 });
 
-test('desk and wall find each other again after reloads', options, async () => {
+test('desk and wall reconnect to each other after reloads', options, async () => {
     await wall.page.reload();
     await desk.page.reload();
     await title().filter({ hasText: 'sent by Desk 2' }).waitFor();
@@ -146,7 +146,7 @@ test('desk and wall find each other again after reloads', options, async () => {
     assert.equal(await desk.page.inputValue('#remote-desk'), 'Desk 2');
 });
 
-test('an alarm comes before what was sent, which then comes back', options, async () => {
+test('an alarm replaces a sent view, and the sent view returns afterwards', options, async () => {
     const usual = await plant.ask('get TI-1');
     await plant.ask('set TI-1 95');
     await wall.page.locator('.pane.views.called h2', { hasText: 'TI-1' }).waitFor();
@@ -162,7 +162,7 @@ test('an alarm comes before what was sent, which then comes back', options, asyn
     await eyeOfPane(30);
 });
 
-test('it is held, and given back', options, async () => {
+test('a desk holds a pane, and gives it back', options, async () => {
     await desk.page.click('#remote-hold');
     await title().filter({ hasText: 'held by Desk 2' }).waitFor();
     await desk.page.click('#remote-back');
@@ -173,7 +173,7 @@ test('it is held, and given back', options, async () => {
     await inPane().locator('.note-pin').waitFor({ state: 'detached' });
 });
 
-test('how old its picture is stands in the metrics, and grows once it has gone', options, async () => {
+test('the metrics state the age of a wall\'s picture, and the age grows once the wall is closed', options, async () => {
     const age = async () => {
         const text = await (await fetch(`${plant.url}metrics`)).text();
         return Number(/plantcast_wall_frame_age_seconds\{wall="room",display="1"\} (\S+)/.exec(text)?.[1]);

@@ -88,7 +88,7 @@ async function expectOnePicture(grab, name) {
     assert.ok(share >= 0.97, `${share} of the pixels are those of the large picture`);
 }
 
-test('pages: no line between them', options, async () => {
+test('the pages of two adjacent displays show one picture without a line between them', options, async () => {
     const url = (display) => `http://127.0.0.1:${plant.port}/wall.html?wall=wide&display=${display}`;
     const pages = [await openPage(url(1), SCREEN), await openPage(url(2), SCREEN)];
     for (const { page } of pages)

@@ -53,7 +53,7 @@ const count = (i, what) => pages[i].page.locator(what).count();
 const placeOf = (i, what, hasText) => pages[i].page.locator(what, { hasText }).evaluate((element) =>
     ['--x', '--y'].map((name) => parseFloat(element.style.getPropertyValue(name)) / 100));
 
-test('the first display leads and names what is shown, though another came first', options, async () => {
+test('the first display leads and titles the view, though another connected first', options, async () => {
     const url = (display) => `http://127.0.0.1:${plant.port}/wall.html?wall=wide&display=${display}`;
     const second = await openPage(url(2), SCREEN);
     await second.page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.tiles.leads);
@@ -65,7 +65,7 @@ test('the first display leads and names what is shown, though another came first
         [true, false]);
 });
 
-test('alarms are marked behind something, and of a quantity that is not shown', options, async () => {
+test('hidden alarms, and alarms of quantities not shown, are marked on the right display', options, async () => {
     await plant.tell('set TI-2 95');
     await mark(0, 'TI-2').and(pages[0].page.locator('.behind')).waitFor();
     await plant.tell('set PI-1 95');
@@ -97,7 +97,7 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
     await pages[0].page.locator('.picture > h2', { hasText: /^All of it · Temperature/ }).waitFor();
 });
 
-test('notes and where a desk points stand where they are', options, async () => {
+test('notes and the desk\'s pointer are marked at their places', options, async () => {
     note('Manhole open', { asset: 'P-101A' });
     const { id } = await crew.text('noted');
     await pages[1].page.locator('.marks .note', { hasText: 'Manhole open' }).waitFor();

@@ -155,14 +155,14 @@ async function compare(wall, columns, rows, [across, down]) {
 }
 
 // A preview once differed while other programs ran, so only make test-long runs this case.
-test('six tiles are the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
+test('six tiles equal the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
     () => compare('seamless', 3, 2, [0, 0]));
-test('behind bezels the picture goes on', options, async () => {
+test('the picture continues behind the bezels', options, async () => {
     assert.ok(BEZEL[0] > 20 && BEZEL[1] > 10);
     await compare('framed', 2, 2, BEZEL);
 });
 
-test('every 3 minutes all tiles are moved at one instant', { ...options, timeout: 400000,
+test('every 3 minutes all tiles shift at the same instant', { ...options, timeout: 400000,
     skip: options.skip || (process.env.PLANTCAST_LONG === '1' ? false : 'PLANTCAST_LONG=1') }, async () => {
     const clients = await tilesOf('seamless', 6), leader = await leaderOf(clients);
     const refined = () => presents(leader).some(({ seq }) => leader.frames.find((frame) => frame.seq === seq)?.flags & STILL);
@@ -189,7 +189,7 @@ test('every 3 minutes all tiles are moved at one instant', { ...options, timeout
 
 const metric = async (name) => Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\S+)`, 'm'))[1]);
 
-test('a moving picture is drawn once for all tiles, and each is told to show it at one instant', options, async (t) => {
+test('a moving picture is drawn once for all tiles, and all tiles show it at the same instant', options, async (t) => {
     const clients = await tilesOf('seamless', 6, { codecs: ['jpeg'] }), leader = await leaderOf(clients);
     await picture(clients);
     const before = await metric('plantcast_renders_total'), first = presents(leader).at(-1).picture;
@@ -209,7 +209,7 @@ test('a moving picture is drawn once for all tiles, and each is told to show it 
     close(clients);
 });
 
-test('a tile that is gone is named, and the others go on; the lead passes on with its view', options, async () => {
+test('a lost tile is named, and the others continue; the lead passes on with its view', options, async () => {
     const clients = await tilesOf('seamless', 6, { codecs: ['jpeg'] }), leader = await leaderOf(clients);
     leader.say(camera(5, 2));
     await leader.until('its camera', () => presents(leader).some(({ seq }) => leader.frames.some((frame) => frame.seq === seq &&
@@ -233,7 +233,7 @@ test('a tile that is gone is named, and the others go on; the lead passes on wit
     close([...rest, back]);
 });
 
-test('a slow link slows all evenly', { ...options, skip: options.skip || (relayMissing() ?? false) }, async (t) => {
+test('one tile\'s slow link slows all tiles equally', { ...options, skip: options.skip || (relayMissing() ?? false) }, async (t) => {
     const relay = await Relay.open(plant.port, { bytesPerS: 60000, delayMs: 20 });
     const clients = [...await tilesOf('framed', 3, { codecs: ['jpeg'] })];
     clients.push(await tileOf('framed', 4, { codecs: ['jpeg'], port: relay.port }));
@@ -249,7 +249,7 @@ test('a slow link slows all evenly', { ...options, skip: options.skip || (relayM
     relay.close();
 });
 
-test('one that takes nothing is left out and told so, and comes back', options, async () => {
+test('a tile that reads nothing is left out and notified, and can return', options, async () => {
     const clients = await tilesOf('framed', 3, { codecs: ['jpeg'] }), stuck = await tileOf('framed', 4, { codecs: ['jpeg'] });
     await picture([...clients, stuck]);
     stuck.acknowledge = false;
@@ -271,7 +271,7 @@ test('one that takes nothing is left out and told so, and comes back', options, 
     close([...clients, stuck]);
 });
 
-test('what is no tile is refused by name', options, async () => {
+test('an invalid tile is refused by name', options, async () => {
     for (const [tile, text] of [[{ wall: 'nowhere', display: 1 }, /unknown wall/], [{ wall: 'seamless', display: 7 }, /no such display/],
         [{ wall: 'framed', display: 5 }, /display 5 of wall framed is not one of its tiles/]]) {
         const client = await PlainClient.open(plant.port);

@@ -14,7 +14,7 @@ const RULES = resolve('deploy/prometheus'), absent = missing();
 const noPrometheus = spawnSync('promtool', ['--version']).status !== 0 && 'prometheus is not installed';
 const promtool = (...args) => spawnSync('promtool', args, { cwd: RULES, encoding: 'utf8', timeout: 60000 });
 
-test('every rule is one to promtool, fires when it should, and has its place in the runbook', { skip: noPrometheus }, () => {
+test('every alert rule passes promtool, fires when it should, and has its entry in the runbook', { skip: noPrometheus }, () => {
     for (const args of [['check', 'rules', 'rules.yml'], ['test', 'rules', 'rules.test.yml'], ['check', 'config', 'prometheus.yml'],
         ...['tls', 'cores'].map((name) => ['check', 'config', '--syntax-only', `prometheus-${name}.yml`])]) {
         const { status, stdout, stderr } = promtool(...args);
@@ -30,7 +30,7 @@ test('every rule is one to promtool, fires when it should, and has its place in 
 // Metrics that are empty for a plant with one daemon and without notifications, certificate, backup and clients.
 const EMPTY = /plantcast_core|plantcast_renderers|notify|certificate|backup|histogram_quantile|\[1d|predict_linear/;
 
-test('Prometheus reads a daemon, takes the rules, and every panel asks for what there is',
+test('Prometheus scrapes a daemon and loads the rules, and every panel\'s query finds data',
     { skip: noPrometheus || (absent.length > 0 ? `not built: ${absent.join(', ')}` : false), timeout: 200000 }, async () => {
         const folder = mkdtempSync(join(tmpdir(), 'plantcast-prometheus-')), port = await freePort(), plant = await TinyPlant.running();
         writeFileSync(join(folder, 'prometheus.yml'), readFileSync(join(RULES, 'prometheus.yml'), 'utf8').replace('15s', '1s')
@@ -76,7 +76,7 @@ scrape_configs:
       - targets: ['localhost:9090']
 `;
 
-test('prometheus-add keeps the file\'s other jobs, and scraping survives the site\'s own certificate',
+test('prometheus-add keeps the file\'s other jobs, and scraping works with a self-signed certificate',
     { skip: noPrometheus || (absent.length > 0 ? `not built: ${absent.join(', ')}` : false), timeout: 200000 }, async (t) => {
         const plant = await TinyPlant.create(), root = mkdtempSync(join(tmpdir(), 'plantcast-monitored-')), run = join(root, 'run');
         const etc = (...names) => join(root, 'etc', ...names), port = await freePort(), own = await freePort();
@@ -139,7 +139,7 @@ test('prometheus-add keeps the file\'s other jobs, and scraping survives the sit
 
 const DASHBOARDS = ['operations', 'cores', 'alarms', 'trends'];
 const TYPES = ['row', 'stat', 'timeseries', 'table', 'state-timeline', 'bargauge', 'gauge', 'piechart', 'barchart'];
-test('dashboards are what Grafana reads: panels in their grid, variables that are there', () => {
+test('dashboards are valid for Grafana: panels fit in the grid, and their variables exist', () => {
     for (const name of DASHBOARDS) {
         const { panels, templating, uid, schemaVersion } = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
         assert.deepEqual([uid, schemaVersion], [`plantcast-${name}`, 38]);
@@ -163,7 +163,7 @@ test('dashboards are what Grafana reads: panels in their grid, variables that ar
 });
 
 const noGrafana = spawnSync('grafana-server', ['-v']).status !== 0 && 'grafana-server is not installed (Debian has none)';
-test('Grafana takes the dashboards as they are', { skip: noGrafana, timeout: 120000 }, async () => {
+test('Grafana imports the dashboards unchanged', { skip: noGrafana, timeout: 120000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-grafana-')), port = await freePort();
     const grafana = spawn('grafana-server', ['--homepath', '/usr/share/grafana'], { stdio: 'ignore', env: { ...process.env,
         GF_SERVER_HTTP_PORT: String(port), GF_SERVER_HTTP_ADDR: '127.0.0.1', GF_PATHS_DATA: folder, GF_PATHS_LOGS: folder } });

@@ -143,7 +143,7 @@ const middle = async (page) => {
 // Without WebGL 2, the page shows the server's pictures as they arrive.
 const withoutWarp = () => { delete globalThis.WebGL2RenderingContext; };
 
-test('by the mouse: turned, moved and zoomed', options, async (t) => {
+test('markers and labels stay in step while the mouse turns, moves and zooms the picture', options, async (t) => {
     const { page, errors, close } = await openPage(url('h264'), { viewport: { width: 1100, height: 700 } }, withoutWarp);
     try {
         await look(page);
@@ -165,7 +165,7 @@ test('by the mouse: turned, moved and zoomed', options, async (t) => {
     }
 });
 
-sweep(test, () => {})('by fingers, on a tablet held upright', options, async (t) => {
+sweep(test, () => {})('markers and labels stay in step with fingers, on a tablet in portrait', options, async (t) => {
     const { page, errors, close } = await openPage(url('jpeg'), { ...TABLET, viewport: { width: 768, height: 1024 } }, withoutWarp);
     try {
         await look(page);

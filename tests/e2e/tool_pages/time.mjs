@@ -68,7 +68,7 @@ async function clickMarker(name) {
     await page.mouse.click(at.x, at.y);
 }
 
-test('a click on a marker leads to its trend, with unit and gap; a chart library that was lost is loaded again', options, async () => {
+test('a click on a marker opens its trend, with unit and gap; a chart library that failed to load is loaded again', options, async () => {
     await settle(page);
     let requests = 0;
     await page.route('**/vendor/uPlot.js', (route) => (requests++ === 0 ? route.abort() : route.continue()));
@@ -106,7 +106,7 @@ test('a click on a marker leads to its trend, with unit and gap; a chart library
     await shoot(page, 'trend');
 });
 
-test('several tags are compared, each by its unit, and exported', options, async () => {
+test('several tags are compared, each with its unit, and exported', options, async () => {
     assert.ok(await page.locator('#card .add-trend').isHidden(), 'it is there already');
     for (const name of ['TI-2', 'PI-1']) {
         await page.evaluate((tag) => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag(tag)), name);
@@ -144,7 +144,7 @@ const drawn = ([from, to]) => page.waitForFunction((span) => { // Waits until th
     return !isAsking && now.every((us, i) => Math.abs(us - span[i]) < 3e6);
 }, [from, to]);
 
-test('a drag zooms, the wheel zooms about the pointer, a drag of the axis pans, and each is undone', options, async () => {
+test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, and each can be undone', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3 && globalThis.plantcast.trends.chart);
     await drawn(await rangeOf());
     await settle(page); // waits until the axes of all three tags have their final widths
@@ -182,7 +182,7 @@ test('a drag zooms, the wheel zooms about the pointer, a drag of the axis pans, 
     await page.waitForFunction(() => globalThis.plantcast.trends.fixed === null);
 });
 
-test('a range is typed, statistics are of it, and the crosshair is shared with the time bar', options, async () => {
+test('a typed time range is shown, with its statistics, and the crosshair is shared with the time bar', options, async () => {
     const date = (s) => new Date(s * 1000).toISOString().slice(0, 19).replace('T', ' ');
     await page.locator('#trend-range').fill(`${date(BEGIN_S + 1100)} to ${date(BEGIN_S + 1600)}`);
     await page.keyboard.press('Enter');
@@ -250,7 +250,7 @@ test('keys move the crosshair, zoom and pan, and the camera stays', options, asy
     await page.locator('#time-toggle').click();
 });
 
-test('tags come by typing, and by dragging a marker or a row of the list', options, async () => {
+test('tags are added by typing, and by dragging a marker or a row of the list', options, async () => {
     const names = () => page.locator('#trend-tags tbody b').allTextContents();
     for (const name of ['TI-2', 'PI-1'])
         await page.locator('#trend-tags tr', { hasText: name }).locator('.drop').click();
@@ -281,7 +281,7 @@ test('tags come by typing, and by dragging a marker or a row of the list', optio
     await page.evaluate(() => globalThis.plantcast.addTrend(globalThis.plantcast.session.model.tag('PI-1')));
 });
 
-test('until the answer for its tags is there, a chart draws and reads no series', options, async () => {
+test('a chart draws no series until the answer for its tags has arrived', options, async () => {
     const state = () => page.evaluate(() => {
         const { chart, crosshairUs } = globalThis.plantcast.trends;
         const cells = [...document.querySelectorAll('#trend-tags tbody .at')].map(({ textContent }) => textContent);
@@ -311,7 +311,7 @@ test('until the answer for its tags is there, a chart draws and reads no series'
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3);
 });
 
-test('in the dark theme the chart is dark, and its lines and limits are read', options, async () => {
+test('in the dark theme the chart is dark, and its lines and limits are legible', options, async () => {
     await page.locator('#theme').click();
     await page.waitForFunction(() => globalThis.plantcast.trends.shownTheme === 'dark');
     const rgbOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -327,7 +327,7 @@ test('in the dark theme the chart is dark, and its lines and limits are read', o
     await page.waitForFunction(() => globalThis.plantcast.trends.shownTheme === 'light');
 });
 
-test('the slider goes to an instant, which nobody can mistake for the present', options, async () => {
+test('the slider goes to a past instant, which is clearly marked as the past', options, async () => {
     await page.locator('#time-toggle').click();
     assert.equal(await page.locator('#time-live').isDisabled(), true);
     const slider = page.locator('#time-slider');
@@ -351,7 +351,7 @@ test('the slider goes to an instant, which nobody can mistake for the present', 
     await shoot(page, 'past');
 });
 
-test('a gap is a gap in the picture too', options, async () => {
+test('a recorded gap is shown as a gap in the picture, too', options, async () => {
     await travel(page, (BEGIN_S + 1350) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs === us, (BEGIN_S + 1350) * 1e6);
     await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].quality === 'bad');
@@ -359,7 +359,7 @@ test('a gap is a gap in the picture too', options, async () => {
     await shoot(page, 'past-gap');
 });
 
-test('it plays, pauses, and goes back to live', options, async () => {
+test('playback plays, pauses, and returns to live', options, async () => {
     await travel(page, (BEGIN_S + 100) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
     // at this speed playback reaches the present after 48 s; on a busy machine before another picture arrives
@@ -387,7 +387,7 @@ test('it plays, pauses, and goes back to live', options, async () => {
     assert.equal(await page.locator('#timeline').isVisible(), false);
 });
 
-test('a click into a trend goes there; a link to an instant opens there; a reload stays', options, async () => {
+test('a click in a trend goes to that instant; a link opens an instant; a reload keeps it', options, async () => {
     const box = await page.locator('#trend-chart .u-over').boundingBox();
     await page.mouse.click(box.x + box.width * 0.6, box.y + box.height / 2);
     await waitForHealth(page, 'past');
@@ -406,7 +406,7 @@ test('a click into a trend goes there; a link to an instant opens there; a reloa
     await waitForHealth(page, 'live');
 });
 
-test('alarms are marked where they were raised', options, async () => {
+test('alarms are marked on the time bar where they were raised', options, async () => {
     await plant.tell('set TI-2 92');
     await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().some(({ kind }) => kind === 'HH'));
     await page.waitForFunction(async () => { // the journal is written with a delay
@@ -430,7 +430,7 @@ const timeText = (us) => new Date(us / 1000).toISOString().slice(0, 19);
 // of :00 from a date field.
 const afterBegin = (s) => (BEGIN_S + s + ((BEGIN_S + s) % 60 === 0)) * 1e6;
 
-test('marks lead to their instant, from alarm to alarm, and to a date', options, async () => {
+test('marks and buttons lead to an alarm\'s instant, from alarm to alarm, and to a date', options, async () => {
     const raises = await page.evaluate(async () => {
         const { rows } = await (await fetch('/api/v1/alarms/journal')).json();
         return rows.filter(({ event }) => event === 'raise').map(({ time_us: us }) => us).reverse();
@@ -497,7 +497,7 @@ test('two times are compared side by side, with one camera', options, async () =
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
 });
 
-test('times without a running daemon do not look recorded: hatched, without data, without earlier rings', options, async () => {
+test('times without a running daemon are hatched, without data and without earlier alarm rings', options, async () => {
     assert.ok(await page.evaluate(() => globalThis.plantcast.session.model.alarms.list().length > 0), 'there is one that could linger');
     const stopping = Date.now() * 1e3;
     await plant.daemon.stop();
@@ -526,7 +526,7 @@ test('times without a running daemon do not look recorded: hatched, without data
     await other.close();
 });
 
-test('while a PLC was lost the bar is hatched, and says whose; not while one of its sensors failed', options, async () => {
+test('the time bar is hatched while a PLC was lost, and names the PLC; not while a single sensor failed', options, async () => {
     await plant.sim.stop();
     await until('no good reading', async () => {
         const { tags } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json();
@@ -563,7 +563,7 @@ test('while a PLC was lost the bar is hatched, and says whose; not while one of 
     await close();
 });
 
-test('on a phone the bar fits', options, async () => {
+test('the time bar fits on a phone', options, async () => {
     const phone = await openPage(`http://127.0.0.1:${plant.port}/#at=${new Date((BEGIN_S + 600) * 1000).toISOString()}`, PHONE);
     await waitForPicture(phone.page);
     await phone.page.locator('#timeline').waitFor();

@@ -38,7 +38,7 @@ afterEach(() => page?.evaluate(() => document.querySelectorAll('dialog[open]').f
 // Returns the position on the page, in CSS pixels, of a point of the plant.
 const placeOf = (point) => drawnAt(page, point);
 
-test('values stand still, and go on again', options, async () => {
+test('a button freezes the values, and lets them go on', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].value === 80);
     const since = await page.evaluate(() => globalThis.plantcast.session.clockUs());
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 5e6, since); // waits until TI-1 has been 80 for 5 s
@@ -59,7 +59,7 @@ test('values stand still, and go on again', options, async () => {
     await plant.tell('set TI-1 80');
 });
 
-test('a distance between two places', options, async () => {
+test('the distance between two points is measured', options, async () => {
     await page.keyboard.press('r');
     const ends = [[0, -0.5, 0.2], [0, -0.5, -0.2]];
     await page.evaluate(() => globalThis.plantcast.session.setCamera({ eye: [0.8, -4, 1], target: [0, 0, 0], up: [0, 0, 1], fov: 30 }));
@@ -87,7 +87,7 @@ test('a distance between two places', options, async () => {
     assert.equal(await page.locator('#card').isVisible(), false, 'a click that measures selects nothing');
 });
 
-test('on a tablet held upright: what is behind More, by taps', options, async () => {
+test('on a tablet in portrait, the tools behind More work by taps', options, async () => {
     const tablet = await openPage(url, { ...TABLET, viewport: { width: 768, height: 1024 } }), on = tablet.page;
     const tool = async (id) => {
         await on.locator('#more-toggle').tap();
@@ -131,7 +131,7 @@ test('on a tablet held upright: what is behind More, by taps', options, async ()
     }
 });
 
-test('a pen turns the picture, and the measurements say how soon it did', options, async () => {
+test('a pen turns the picture, and the timings panel shows how soon', options, async () => {
     await page.keyboard.press('m');
     await page.locator('#timings').waitFor();
     const kinds = page.evaluate(() => new Promise((done) => {
@@ -154,7 +154,7 @@ test('a pen turns the picture, and the measurements say how soon it did', option
     assert.equal(await page.locator('#timings').isVisible(), false);
 });
 
-test('the picture that is kept is the one that is seen', options, async () => {
+test('the saved picture equals the picture on the screen', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ colormap: 'cividis', range: [0, 120], ghost: ['P-101A'] }));
     await settle(page, 1000);
     const shown = await grab(page), download = page.waitForEvent('download');
@@ -171,7 +171,7 @@ test('the picture that is kept is the one that is seen', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'value', ghost: [] }));
 });
 
-test('a saved picture has the page\'s theme, and below it the active notes', options, async () => {
+test('a saved picture has the page\'s theme, and the active notes below', options, async () => {
     const noteIds = () => page.evaluate(() => globalThis.plantcast.session.notes.map(({ id }) => id));
     const post = (message) => page.evaluate((one) => {
         const { session } = globalThis.plantcast;
@@ -215,7 +215,7 @@ test('a saved picture has the page\'s theme, and below it the active notes', opt
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);
 });
 
-test('the legend says that values are not to be read from a glossy look', options, async () => {
+test('the legend warns that values cannot be read from a glossy look', options, async () => {
     const notes = () => page.locator('#legend .note').allTextContents();
     assert.deepEqual(await notes(), []);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'glossy' }));
@@ -232,7 +232,7 @@ async function scan(where) {
     return jsqr.default ? jsqr.default(rgba, width, height)?.data : jsqr(rgba, width, height)?.data;
 }
 
-test('an engineer sets range, factors and one sensor\'s own, and has them as configured again', options, async () => {
+test('an engineer sets range, factors and one sensor\'s own values, and resets them to the configured ones', options, async () => {
     const params = () => page.evaluate(() => globalThis.plantcast.session.confirmed);
     const waitForParam = (name, value) => page.waitForFunction(([n, v]) =>
         JSON.stringify(globalThis.plantcast.session.confirmed[n]) === v, [name, JSON.stringify(value)]);
@@ -277,7 +277,7 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
     await page.keyboard.press('Escape');
 });
 
-test('links to the view, the tag and the equipment, each with a code that a camera reads', options, async () => {
+test('links to the view, the tag and the equipment, each with a QR code that a camera reads', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101', colormap: 'cividis', range: [0, 120] }));
     await page.evaluate(() => globalThis.plantcast.showTag(globalThis.plantcast.session.model.tag('TI-1')));
     await page.locator('#share-open').click();
@@ -324,7 +324,7 @@ test('links to the view, the tag and the equipment, each with a code that a came
     await late.close();
 });
 
-test('a code at the equipment opens there, on a phone', options, async () => {
+test('a QR code at the equipment opens that equipment, on a phone', options, async () => {
     const phone = await openPage(`${url}#tag=PI-1`, PHONE);
     await waitForPicture(phone.page);
     await phone.page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
@@ -338,7 +338,7 @@ test('a code at the equipment opens there, on a phone', options, async () => {
     await phone.close();
 });
 
-test('what of a link is not in this plant is said, in the reader\'s language; the rest of it holds', options, async () => {
+test('parts of a link that this plant lacks are reported in the reader\'s language; the rest applies', options, async () => {
     const opened = async (address, screen, said, f) => {
         const other = await openPage(address, screen), note = other.page.locator('#toast');
         await waitForPicture(other.page);
@@ -360,7 +360,7 @@ test('what of a link is not in this plant is said, in the reader\'s language; th
         });
 });
 
-test('what the server refuses is said in the reader\'s language', options, async () => {
+test('a refusal by the server is shown in the reader\'s language', options, async () => {
     const other = await openPage(`${url}?lang=ko`, SCREEN);
     await waitForPicture(other.page);
     await other.page.evaluate(() => globalThis.plantcast.session.setParams({ strength: 500 }));
@@ -374,7 +374,7 @@ test('what the server refuses is said in the reader\'s language', options, async
     await other.close();
 });
 
-test('a leader may reload the page: those who follow stay, and go on', options, async () => {
+test('a leader may reload the page: the followers stay, and continue', options, async () => {
     const leader = await openPage(url, { viewport: { width: 900, height: 600 } });
     try {
         await waitForPicture(leader.page);
@@ -412,7 +412,7 @@ test('a leader may reload the page: those who follow stay, and go on', options, 
     }
 });
 
-test('others follow; the lead is handed over, and what is shown stays', options, async () => {
+test('others follow; handing over the lead keeps the shown view', options, async () => {
     const id = await page.evaluate(() => globalThis.plantcast.session.id);
     const second = await openPage(`${url}#follow=${id}`, { viewport: { width: 1000, height: 700 } });
     try {
@@ -448,7 +448,7 @@ test('others follow; the lead is handed over, and what is shown stays', options,
     }
 });
 
-test('dark, and light again; it stays as it was left', options, async () => {
+test('the theme switches to dark and back to light, and survives a reload', options, async () => {
     await page.evaluate(() => {
         const { session } = globalThis.plantcast, { width, height } = session.size;
         session.setParams({ group: 'temperature' });
