@@ -25,7 +25,7 @@ before(async () => {
 after(() => plant?.destroy());
 
 for (const [name, screen] of Object.entries(SCREENS))
-    test(name, options, async (t) => {
+    test(`the first view fills the picture, and nothing lies under the legend: ${name}`, options, async (t) => {
         const { page, close, errors } = await openPage(`${url}?lang=en`, screen);
         try {
             await waitForPicture(page);

@@ -9,7 +9,7 @@ const alarm = (index, priority, agoS = 60, more = {}) => ({ tag: { index, name: 
     kind: 'HH', priority, state: 'unacknowledged', waiting: true, raisedUs: NOW_US - agoS * 1e6, ...more });
 const shown = (call, alarms, ms) => call.next(alarms, ms, NOW_US)?.tag.index ?? null;
 
-test('the gravest comes first, then the oldest; each has its turn', () => {
+test('a wall shows the most urgent alarm first, then the oldest; each has its turn', () => {
     const call = new AlarmCall(), all = [alarm(1, 2), alarm(2, 1, 10), alarm(3, 1, 90)];
     const seen = [];
     for (let turn = 0; turn < 4; turn++)
@@ -17,7 +17,7 @@ test('the gravest comes first, then the oldest; each has its turn', () => {
     assert.deepEqual(seen, [3, 2, 1, 3]);
 });
 
-test('nothing changes sooner than after a turn', () => {
+test('the shown alarm changes only after a full turn', () => {
     const call = new AlarmCall(), first = alarm(1, 3), graver = alarm(2, 1);
     assert.equal(shown(call, [first], 0), 1);
     assert.equal(shown(call, [graver, first], TURN_MS - 1), 1);
@@ -31,7 +31,7 @@ test('nothing changes sooner than after a turn', () => {
     assert.ok(changes >= 4 && changes <= 10, `${changes} changes`);
 });
 
-test('one that is acknowledged or stands nowhere is not shown; one that has gone unacknowledged comes last', () => {
+test('an acknowledged alarm or one without a place is not shown; a returned, unacknowledged one comes last', () => {
     const call = new AlarmCall();
     assert.equal(shown(call, [alarm(1, 1, 60, { waiting: false })], 0), null);
     const gone = alarm(2, 1, 60, { state: 'returned' });
@@ -42,7 +42,7 @@ test('one that is acknowledged or stands nowhere is not shown; one that has gone
     assert.equal(shown(call, [], 1), null, 'an alarm that is there no more is not shown on');
 });
 
-test('in a flood no place is shown, and alarms are counted by equipment', () => {
+test('in an alarm flood no alarm\'s place is shown, and alarms are counted by equipment', () => {
     const call = new AlarmCall(), many = Array.from({ length: FLOOD + 1 }, (_, i) => alarm(i, i === 4 ? 1 : 2));
     assert.equal(shown(call, many, 0), null);
     assert.equal(shown(call, many.map((one) => ({ ...one, raisedUs: NOW_US - 700e6 })), 0), 4, 'old ones are no flood');

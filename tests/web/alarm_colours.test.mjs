@@ -58,13 +58,13 @@ function coloursOf(name) {
 
 const maps = Object.fromEntries(readdirSync(new URL('shaders/maps/', ROOT)).map((name) => [name.slice(0, -4), coloursOf(name)]));
 
-test('the distance formula gives the published values', () => {
+test('the CIEDE2000 colour distance equals the published values', () => {
     for (const [a, b, published] of [[[50, 2.6772, -79.7751], [50, 0, -82.7485], 2.0425], [[50, 2.5, 0], [73, 25, -18], 27.1492],
         [[6.7747, -0.2908, -2.4247], [5.8714, -0.0985, -2.2286], 0.6377], [[50, 2.49, -0.001], [50, -2.49, 0.0011], 7.2195]])
         assert.ok(Math.abs(distance(a, b) - published) < 1e-4, `${distance(a, b)}, not ${published}`);
 });
 
-test('alarm colours stay apart from every colour map, for each sight', (t) => {
+test('alarm colours differ enough from every colour map, for each type of colour vision', (t) => {
     for (const [map, colours] of Object.entries(maps)) {
         const row = Object.keys(SIGHTS).map((sight) => ALARM_COLOURS.map(([alarm]) => {
             const own = labOf(hex(alarm), sight), least = Math.min(...colours.map((colour) => distance(own, labOf(colour, sight))));
@@ -75,7 +75,7 @@ test('alarm colours stay apart from every colour map, for each sight', (t) => {
     }
 });
 
-test('one rim of a ring is seen on each colour of each map', () => {
+test('one rim of an alarm ring is visible on each colour of each map', () => {
     for (const sight of Object.keys(SIGHTS)) {
         const rims = RIMS.map((rim) => labOf(hex(rim), sight));
         for (const [map, colours] of Object.entries(maps))
@@ -86,7 +86,7 @@ test('one rim of a ring is seen on each colour of each map', () => {
     }
 });
 
-test('priorities stay apart from each other', (t) => {
+test('the colours of alarm priorities differ enough from each other', (t) => {
     const all = Object.keys(SIGHTS).flatMap((sight) => ALARM_COLOURS.flatMap(([a], i) => ALARM_COLOURS.slice(i + 1)
         .map(([b]) => ({ sight, a, b, apart: distance(labOf(hex(a), sight), labOf(hex(b), sight)) }))));
     const [least] = all.sort((a, b) => a.apart - b.apart);
@@ -94,7 +94,7 @@ test('priorities stay apart from each other', (t) => {
     assert.ok(least.apart >= LEAST_MUTUAL, JSON.stringify(least));
 });
 
-test('page, walls and daemon use the same colours', () => {
+test('page, walls and daemon use the same alarm colours', () => {
     const colours = ALARM_COLOURS.map(([colour]) => colour), variables = colours.map((colour, i) => `--p${i + 1}: ${colour};`).join(' ');
     for (const file of ['clients/web/app/state.css', 'clients/web/wall/wall.css'])
         assert.ok(read(file).includes(variables), file);

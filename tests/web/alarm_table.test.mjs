@@ -9,7 +9,7 @@ const row = (name, more = {}) => ({ tag: { name, unit: '°C' }, kind: 'H', state
     value: 1, limit: 2, who: '', reason: '', ...more });
 const names = (rows) => rows.map(({ tag }) => tag.name).join(' ');
 
-test('rows are sorted by any column, and equal ones keep their order', () => {
+test('alarm rows sort by any column, and equal rows keep their order', () => {
     const rows = [row('TE-10', { priority: 3, us: 5, area: 'B' }), row('TE-9', { priority: 1, us: 7, area: 'A', state: 'returned' }),
         row('TE-2', { priority: 3, us: 6, area: 'B', state: 'unacknowledged' })];
     const by = (name, down = false) => names(sortRows(rows, { by: name, down }));
@@ -22,7 +22,7 @@ test('rows are sorted by any column, and equal ones keep their order', () => {
     assert.equal(by(null), names(rows));
 });
 
-test('a click on a title sorts, a second reverses, a third gives the first order back', () => {
+test('one click on a title sorts, a second reverses, a third restores the first order', () => {
     const order = [{ by: null, down: false }];
     for (let i = 0; i < 3; i++)
         order.push(nextSort(order.at(-1), 'tag'));
@@ -33,7 +33,7 @@ test('a click on a title sorts, a second reverses, a third gives the first order
 const model = { asset: (id) => ({ P: { id: 'P', tag: 'P-101', area: 'North' }, Q: { id: 'Q', tag: '', area: '' } })[id],
     tag: (name) => (name === 'TI-1' ? { name, index: 0, asset: 'P', description: 'Pump', unit: '°C' } : null) };
 
-test('an area is the one of the equipment, else the equipment itself', () => {
+test('an alarm\'s area is its equipment\'s area, or the equipment if that has none', () => {
     assert.deepEqual(['P', 'Q', null].map((asset) => areaOf(model, { asset })), ['North', 'Q', '']);
     assert.deepEqual(areasOf([{ area: 'U10' }, { area: 'U9' }, { area: '' }, { area: 'U10' }]), ['U9', 'U10']);
     const north = row('TI-1', { area: 'North', priority: 1 });
@@ -41,7 +41,7 @@ test('an area is the one of the equipment, else the equipment itself', () => {
         [true, true, false, true, false]);
 });
 
-test('rows of the journal, also of tags that the plant no longer has; their export', () => {
+test('the journal has rows also for tags that the plant no longer has, and exports them as CSV', () => {
     const from = { id: 7, time_us: 1e15, tag: 'TI-1', kind: 'HH', event: 'raise', state: 'unacknowledged', priority: 1, value: 95.5,
         limit: 90, unit: '°C', who: '', reason: '' };
     const other = { ...from, tag: 'TI-9', unit: null, event: 'shelve', who: '=kim', reason: 'a, "b"' };
@@ -55,7 +55,7 @@ test('rows of the journal, also of tags that the plant no longer has; their expo
         '2001-09-09T01:46:40.000Z,unacknowledged,raise,1,TI-1,HH,North,Pump,95.5,90,bar,,', '']);
 });
 
-test('yesterday is from midnight to midnight of the plant, also where a day has 23 hours', () => {
+test('yesterday is from midnight to midnight in the plant\'s zone, also on a day of 23 hours', () => {
     const us = (text) => Date.parse(text) * 1000;
     const yesterday = (now, zone) => journalSpan('yesterday', us(now), zone);
     assert.deepEqual(yesterday('2026-11-26T10:00Z', 'Asia/Seoul'), [us('2026-11-24T15:00Z'), us('2026-11-25T15:00Z')]);

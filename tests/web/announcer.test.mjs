@@ -6,7 +6,7 @@ import { Announcer } from '../../clients/web/app/alarms/announcer.js';
 import { learnWords, say } from '../../clients/web/core/words.js';
 import { mockTimeouts } from './older_node.mjs';
 
-test('in a flood each alarm is announced once, and no text is replaced before it can be read', async () => {
+test('in an alarm flood each alarm is announced once, and no text is replaced before it can be read', async () => {
     await learnWords();
     const said = [], region = { set textContent(text) { said.push(text); } };
     const rows = new Map(), session = { model: { readings: [], alarms: { rows } }, time: { atUs: 1 }, now: () => 0, clockUs: () => null };

@@ -12,7 +12,7 @@ const scaled = ({ min, max }, by) => ({ min: min.map((m) => m * by), max: max.ma
 const usual = { camera: CAMERA, aspect: ASPECT, whole: WHOLE, solid: false };
 const SHAPES = [box(0.84, 2.24, 1.04), box(1, 1, 1), box(2, 2, 30), box(8, 8, 9), box(60, 40, 6), box(1.4, 6.9, 1.8), box(0.3, 0.3, 0.4)];
 
-test('at most as far off as equipment is recognised, however long it is', () => {
+test('the camera stops at most as far away as equipment is recognisable, however long the equipment is', () => {
     const bounds = distanceBounds(WHOLE);
     assert.ok(Math.abs(approachDistance(box(1, 1, 1), bounds) - 1.1) < 1e-9, 'a pump');
     assert.equal(approachDistance(box(2, 2, 30), bounds), 16, 'a column');
@@ -32,7 +32,7 @@ test('the box of the equipment fills at least 35 % of the picture from every sid
     }
 });
 
-test('a plant of a few millimetres and one of many kilometres are looked at alike', () => {
+test('the camera approaches tags alike in a plant of a few millimetres and in one of many kilometres', () => {
     for (const by of [1e-3, 1e3]) {
         for (const shape of SHAPES) {
             const there = scaled(shape, by), point = shape.max.map((m) => (m * by) / 2);
@@ -42,14 +42,14 @@ test('a plant of a few millimetres and one of many kilometres are looked at alik
     }
 });
 
-test('an orthographic camera is as near as one with perspective', () => {
+test('an orthographic camera comes as near as a perspective one', () => {
     const parallel = { ...CAMERA, height_m: 30 }, shape = box(1.4, 6.9, 1.8);
     for (const camera of approaches({ ...usual, camera: parallel, point: [0.7, 0, 1], box: shape }))
         assert.ok(fillOf(camera, shape, ASPECT) >= 0.35 && camera.height_m > 1);
     assert.equal(atDistance(parallel, distance(parallel) / 2).height_m, 15);
 });
 
-test('all sides look at the tag, the first from its own side, none twice', () => {
+test('every candidate view looks at the tag, from its own side first, and no two are equal', () => {
     const all = approaches({ ...usual, point: [1, 0.5, 0.5], box: box(1, 1, 1) });
     assert.ok(all[0].eye[0] > 1.5 && Math.abs(all[0].eye[1] - 0.5) < 1e-6);
     for (const one of all) {
@@ -60,14 +60,14 @@ test('all sides look at the tag, the first from its own side, none twice', () =>
         assert.ok(all.slice(0, i).every(({ eye }) => Math.hypot(...eye.map((m, k) => m - one.eye[k])) > 0.1), `side ${i}`);
 });
 
-test('no eye is within the bounds of solid equipment', () => {
+test('no candidate camera position is inside solid equipment', () => {
     for (const shape of SHAPES) {
         for (const camera of approaches({ ...usual, solid: true, point: [shape.max[0], shape.max[1] / 2, shape.max[2] / 2], box: shape }))
             assert.ok(camera.eye.some((m, i) => m <= 0 || m >= shape.max[i]), `${shape.max}: ${camera.eye}`);
     }
 });
 
-test('a thin plate is looked at from its faces first, wherever its sensor is and from wherever the user looks', () => {
+test('a thin plate is viewed from its faces first, wherever its sensor is and wherever the user looks from', () => {
     for (const thin of [0, 1, 2]) {
         const shape = box(...[10, 5, 8].map((m, i) => (i === thin ? 0.02 : m)));
         for (const eye of [[30, 0, 1], [0, 30, 1], [30, 30, 20], [-1, 30, 0], [0.1, 0, 30]]) {
@@ -83,7 +83,7 @@ test('a thin plate is looked at from its faces first, wherever its sensor is and
     }
 });
 
-test('the silhouette of a box is its projected area', () => {
+test('a box\'s silhouette is as large as its projected area', () => {
     const from = (eye) => silhouetteOf({ eye, target: [0, 0, 0] }, box(2, 3, 4)), most = Math.hypot(12, 8, 6);
     assert.ok(Math.abs(from([9, 0, 0]) - 12 / most) < 1e-9 && Math.abs(from([0, 0, -9]) - 6 / most) < 1e-9);
     assert.ok(Math.abs(from([12, 8, 6]) - 1) < 1e-9, 'the largest');

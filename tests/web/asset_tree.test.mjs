@@ -17,7 +17,7 @@ function plant() {
 }
 const shown = (rows) => rows.map(({ kind, level, id, text, item }) => `${level} ${kind} ${text ?? item.name ?? item.tag ?? id}`);
 
-test('areas in the order of their numbers, then what has none, then tags of nothing', () => {
+test('areas are in numeric order, then equipment without area, then tags without equipment', () => {
     const tree = new Tree(plant(), 'Loose');
     assert.deepEqual(shown(tree.rows()), ['1 area Unit 9', '2 asset P-2', '1 area Unit 10', '2 asset E-1', '2 asset V-3', '1 asset Z-4',
         '1 asset Loose']);
@@ -32,7 +32,7 @@ test('areas in the order of their numbers, then what has none, then tags of noth
     assert.deepEqual(tree.rows()[0].open, true);
 });
 
-test('a search finds assets by all that is said of them, and tags, which open what they belong to', () => {
+test('a search finds assets by all their texts, and tags, and opens their parents', () => {
     const tree = new Tree(plant(), 'Loose');
     assert.deepEqual(shown(tree.rows(search('DRUM'))), ['1 area Unit 10', '2 asset V-3']);
     const both = ['1 area Unit 9', '2 asset P-2', '3 tag PI-9', '1 area Unit 10', '2 asset E-1', '3 tag TI-1'];
@@ -43,7 +43,7 @@ test('a search finds assets by all that is said of them, and tags, which open wh
     assert.equal(search(' '), null);
 });
 
-test('rows of unequal height: which are visible, and where to scroll', () => {
+test('with rows of unequal height, the visible rows and the scroll position are right', () => {
     const tops = stack([10, 20, 30, 40]);
     assert.deepEqual([...tops], [0, 10, 30, 60, 100]);
     assert.deepEqual([0, 9, 10, 29.5, 60, 99, 1000, -5].map((y) => rowAt(tops, y)), [0, 0, 1, 1, 3, 3, 3, 0]);
@@ -53,7 +53,7 @@ test('rows of unequal height: which are visible, and where to scroll', () => {
     assert.deepEqual([[0, 20], [1, 0], [3, 0], [2, 30]].map(([row, at]) => scrollTo(tops, row, at, 50)), [0, 0, 50, 30]);
 });
 
-test('links: what is put in is escaped, and only the web is followed', () => {
+test('values in link templates are escaped, and only web links are allowed', () => {
     const asset = { id: 'E-1/a', tag: 'E 1&2', area: 'Ü' };
     const made = linkUrl({ of: 'asset', url: 'https://a.example/{id}?t={tag}#{area}' }, asset);
     assert.equal(made, 'https://a.example/E-1%2Fa?t=E%201%262#%C3%9C');

@@ -17,7 +17,7 @@ const camera = { eye: [35, -42, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45
 const close = (a, b, tolerance = 1e-9) => assert.ok(Math.abs(a - b) <= tolerance, `${a} is not ${b}`);
 const closeTo = (a, b, tolerance = 1e-9) => a.forEach((x, i) => close(x, b[i], tolerance));
 
-test('projection: target in the middle, a point above it above, one behind the eye nowhere', () => {
+test('projection: the target is in the middle, a point above it above, a point behind the eye nowhere', () => {
     const project = projector(camera, 1600, 1000);
     closeTo(project(camera.target), [800, 500, distance(camera)], 1e-9);
     const above = project([1, 0.5, 8]);
@@ -26,14 +26,14 @@ test('projection: target in the middle, a point above it above, one behind the e
     assert.equal(project(along(camera.eye, basis(camera).forward, -1)), null);
 });
 
-test('projection agrees with the field of view: its edge is at the edge of the picture', () => {
+test('projection agrees with the field of view: the field\'s edge is at the picture\'s edge', () => {
     const looking = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 90 };
     const project = projector(looking, 2000, 1000);
     closeTo(project([0, 0, 10]), [1000, 0, 10]);
     closeTo(project([20, 0, 0]), [2000, 500, 10]);
 });
 
-test('a ray through a place of the picture comes back to that place at every depth', () => {
+test('a ray through a pixel projects back to that pixel at every depth', () => {
     const project = projector(camera, 1608, 996);
     for (let n = 0; n < 200; n++) {
         const x = random(0, 1608), y = random(0, 996), depth = random(0.1, 500);
@@ -41,7 +41,7 @@ test('a ray through a place of the picture comes back to that place at every dep
     }
 });
 
-test('orbit keeps the distance, the target and a level horizon, whatever was done before', () => {
+test('orbit keeps the distance, the target and a level horizon, after any earlier moves', () => {
     let c = camera;
     for (let n = 0; n < 2000; n++)
         c = orbit(c, random(-90, 90), random(-60, 60));
@@ -59,14 +59,14 @@ test('orbit stops short of straight down, and comes straight back', () => {
     closeTo(basis(down).right, basis(camera).right, 1e-9);
 });
 
-test('orbit to the right by quarter turns comes home after four', () => {
+test('orbit by four quarter turns returns to the start', () => {
     let c = camera;
     for (let n = 0; n < 4; n++)
         c = orbit(c, 90, 0);
     closeTo(c.eye, camera.eye, 1e-9);
 });
 
-test('orbit about another point keeps that point where it is in the picture, and the horizon level', () => {
+test('orbit about another point keeps that point fixed in the picture, and the horizon level', () => {
     for (const start of [camera, toParallel(camera)]) {
         for (let n = 0; n < 200; n++) {
             const pivot = [random(-5, 15), random(-5, 10), random(0, 9)];
@@ -79,7 +79,7 @@ test('orbit about another point keeps that point where it is in the picture, and
     close(elevation(orbit(camera, 30, 10, [4, 3, 2])), elevation(camera) + 10, 1e-6);
 });
 
-test('looking around: the eye stays, and what was in the middle follows the pointer', () => {
+test('looking around: the eye stays, and the point in the middle follows the pointer', () => {
     const [dx, dy] = [60, 25], looked = lookAround(camera, dx, dy, 996);
     closeTo(looked.eye, camera.eye, 1e-9);
     const [x, y] = projector(looked, 1608, 996)(camera.target);
@@ -94,7 +94,7 @@ test('orbit works with Y up', () => {
     close(elevation(orbit(lying, 0, 200)), MAX_ELEVATION_DEG, 1e-6);
 });
 
-test('pan: what is at the target follows the pointer by the pixel', () => {
+test('pan: the point at the target follows the pointer by the pixel', () => {
     const moved = pan(camera, 120, -75, 996);
     const [x, y] = projector(moved, 1608, 996)(camera.target);
     closeTo([x, y], [804 + 120, 498 - 75], 1e-9);
@@ -102,7 +102,7 @@ test('pan: what is at the target follows the pointer by the pixel', () => {
     closeTo(projector(pan(camera, 120, -75, 996, 7), 1608, 996)(near), [420, 125, 7], 1e-6);
 });
 
-test('zoom keeps what is under the cursor there, at any depth, and goes back exactly', () => {
+test('zoom keeps the point under the cursor fixed, at any depth, and is exactly reversible', () => {
     for (let n = 0; n < 200; n++) {
         const x = random(0, 1608), y = random(0, 996), depth = random(5, 80);
         const point = along(camera.eye, sight(camera, x, y, 1608, 996).direction, depth);
@@ -122,7 +122,7 @@ test('zoom never passes through the target', () => {
     assert.ok(valid(c));
 });
 
-test('a plant of 5 mm is zoomed to and framed; one with a stray piece 5,300 km away can be seen whole', () => {
+test('zoom and fit work for a plant of 5 mm, and for one with a stray part 5,300 km away', () => {
     const box = (...size) => ({ min: [0, 0, 0], max: size }), plant = (bounds, ...assets) => ({ plant: { bounds },
         assets: [bounds, ...assets].map((one) => ({ bounds: one })) });
     const small = plant(box(0.005, 0.004, 0.003)), limits = zoomLimits(small);
@@ -143,7 +143,7 @@ test('a plant of 5 mm is zoomed to and framed; one with a stray piece 5,300 km a
     assert.ok(zoomLimits(strays).far_m > 9e6);
 });
 
-test('boxes: entered from outside, missed, started inside, parallel to a face', () => {
+test('rays hit boxes from outside, miss, start inside, and run parallel to a face', () => {
     const box = { min: [-1, -1, -1], max: [1, 1, 1] };
     assert.equal(enterBox([-5, 0, 0], [1, 0, 0], box), 4);
     assert.equal(enterBox([-5, 0, 0], [2, 0, 0], box), 2);
@@ -153,7 +153,7 @@ test('boxes: entered from outside, missed, started inside, parallel to a face', 
     assert.equal(enterBox([-5, 1, 0], [1, 0, 0], box), 4);
 });
 
-test('depth under the cursor: the nearest box, else none', () => {
+test('the depth under the cursor is the nearest box\'s, or none', () => {
     const looking = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 60 };
     const near = { min: [-1, -4, -1], max: [1, -2, 1] }, far = { min: [-5, 4, -5], max: [5, 6, 5] };
     close(depthAt(looking, 500, 500, 1000, 1000, [far, near]), 6);
@@ -161,7 +161,7 @@ test('depth under the cursor: the nearest box, else none', () => {
     assert.equal(depthAt(looking, 5, 5, 1000, 1000, [near]), null);
 });
 
-test('fit: all eight corners inside, one side touching the margin, the direction kept', () => {
+test('fit: all eight corners are inside, one side touches the margin, the direction is kept', () => {
     for (let n = 0; n < 200; n++) {
         const min = [random(-50, 0), random(-50, 0), random(-5, 0)];
         const box = { min, max: min.map((x) => x + random(0.5, 40)) };
@@ -179,7 +179,7 @@ test('fit: all eight corners inside, one side touching the margin, the direction
     }
 });
 
-test('a point is faced from its own side, level, a little from above', () => {
+test('a tag is viewed from its own side, level, a little from above', () => {
     const box = { min: [-8, -1, 0], max: [12, 9, 10] };
     const north = face(camera, [2, 9, 3], box, 4);
     closeTo(north.eye, [2, 9 + 4 * Math.cos(Math.PI / 9), 3 + 4 * Math.sin(Math.PI / 9)]);
@@ -200,7 +200,7 @@ function filled(view, points, [width, height], { left = -1, right = 1, bottom = 
     }).sort((a, b) => b.fills - a.fills)[0];
 }
 
-test('the first view: what there is fills what the legend leaves free, on any screen', () => {
+test('the first view: the plant fills the area that the legend leaves free, on any screen', () => {
     for (let round = 0; round < 200; round++) {
         const size = [0, 1, 2].map(() => 2 + 60 * Math.random()), outline = Array.from({ length: 40 }, () =>
             size.map((m) => 5e5 + m * Math.random()));
@@ -211,7 +211,7 @@ test('the first view: what there is fills what the legend leaves free, on any sc
     }
 });
 
-test('a view of the plant file stays as it is where all it was made for is seen, and steps back where a legend is in the way', () => {
+test('a configured view is unchanged if everything fits, and steps back where a legend covers part of it', () => {
     // the last point of the outline is not visible in the given view
     const outline = [[-10, -10, 0], [10, -10, 0], [-10, 10, 0], [10, 10, 6], [0, 0, 9], [400, 0, 0]];
     const given = { eye: [-20, -30, 15], target: [0, 0, 2], up: [0, 0, 1], fov: 50, given: true }, { given: _, ...view } = given;
@@ -225,7 +225,7 @@ test('a view of the plant file stays as it is where all it was made for is seen,
     }
 });
 
-test('valid refuses what the server refuses', () => {
+test('valid() refuses the cameras that the server refuses', () => {
     assert.ok(valid(camera));
     assert.ok(valid({ ...camera, eye: [412345, 5512345, 120], target: [412355, 5512345, 118] }), 'a survey’s coordinates');
     for (const bad of [
@@ -235,7 +235,7 @@ test('valid refuses what the server refuses', () => {
         assert.ok(!valid(bad), JSON.stringify(bad));
 });
 
-test('a flight starts and ends where it should, level all the way, and turns by the shorter side', () => {
+test('a flight starts and ends as requested, stays level, and turns by the shorter way', () => {
     const to = { eye: [30, 40, 10], target: [5, 5, 2], up: [0, 0, 1], fov: 45 };
     const path = flight(camera, to);
     closeTo(path(0).eye, camera.eye, 1e-9);
@@ -251,7 +251,7 @@ test('a flight starts and ends where it should, level all the way, and turns by 
     assert.ok(eastMost > 40, 'by the east, not around by the west');
 });
 
-test('orthographic: every metre has its pixels, wherever it lies', () => {
+test('orthographic: every metre has its pixels, at any distance', () => {
     const c = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 45, height_m: 8 };
     const project = projector(c, 1600, 800);
     for (const y of [-50, 0, 300])
@@ -262,7 +262,7 @@ test('orthographic: every metre has its pixels, wherever it lies', () => {
     assert.ok(valid(c) && !valid({ ...c, height_m: 0 }) && !valid({ ...c, height_m: Infinity }));
 });
 
-test('orthographic: zooming keeps what is under the pointer, panning follows it', () => {
+test('orthographic: zoom keeps the point under the pointer fixed, pan follows the pointer', () => {
     let c = toParallel(camera);
     for (let n = 0; n < 200; n++) {
         const x = random(0, 1600), y = random(0, 900), at = sight(c, x, y, 1600, 900).origin;
@@ -275,7 +275,7 @@ test('orthographic: zooming keeps what is under the pointer, panning follows it'
     }
 });
 
-test('the other projection shows as much at the target', () => {
+test('switching the projection shows as much at the target', () => {
     const parallel = toParallel(camera), back = toPerspective(parallel);
     const above = [camera.target[0], camera.target[1], camera.target[2] + 1];
     closeTo(projector(parallel, 1600, 900)(camera.target).slice(0, 2), [800, 450]);
@@ -284,7 +284,7 @@ test('the other projection shows as much at the target', () => {
     assert.ok(Math.abs(projector(parallel, 1600, 900)(above)[1] - projector(camera, 1600, 900)(above)[1]) < 2);
 });
 
-test('a flight to the other projection ends there, and every camera on the way can be requested', () => {
+test('a flight to the other projection ends there, and the server would accept every camera on the way', () => {
     const to = fit(toParallel(camera), { min: [-3, -1, 0], max: [3, 1, 2] }, 1.6);
     for (const [a, b] of [[camera, to], [to, camera], [to, toParallel(camera)]]) {
         const path = flight(a, b);

@@ -8,7 +8,7 @@ import { randomNumbers } from './random.mjs';
 
 const random = randomNumbers();
 
-test('a card opens on the side with more room', () => {
+test('a card opens on the side with more space', () => {
     const free = { left: 8, top: 8, right: 900, bottom: 600 };
     assert.ok(cardPlace({ wide: 280, tall: 200 }, free, [700, 300]).left + 280 < 700);
     assert.ok(cardPlace({ wide: 280, tall: 200 }, free, [200, 300]).left > 200);
@@ -27,7 +27,7 @@ test('a card is inside the picture, never over its point, and at most 280 pixels
     }
 });
 
-test('a card covers no other marker if any place beside its point is free', () => {
+test('a card covers no other marker if any position beside its point is free', () => {
     const free = { left: 8, top: 8, right: 900, bottom: 600 }, card = { wide: 280, tall: 200 };
     const covered = ({ left, top }, marks) => marks.filter(([x, y]) => x > left - 12 && x < left + 292 && y > top - 12 && y < top + 212);
     const right = [[500, 300, false], [600, 250, false]], left = [[200, 300, true]];
@@ -37,7 +37,7 @@ test('a card covers no other marker if any place beside its point is free', () =
     assert.deepEqual(covered(cardPlace(card, free, [400, 300], all), all), [all[1]], 'a marker rather than an alarm ring');
 });
 
-test('a card changes its side only to cover less', () => {
+test('a card changes its side only to cover fewer markers', () => {
     const free = { left: 8, top: 8, right: 900, bottom: 600 }, card = { wide: 280, tall: 200 };
     const first = cardPlace(card, free, [440, 300]), next = cardPlace(card, free, [470, 300], [], first);
     assert.equal(next.side, first.side);

@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 
-test('what is not added to git yet is checked', () => {
+test('tests/style, tests/layers and tests/maps also check files that git does not track yet', () => {
     const tree = mkdtempSync(join(tmpdir(), 'plantcast-checks-'));
     const write = (path, text) => {
         mkdirSync(join(tree, path, '..'), { recursive: true });

@@ -9,7 +9,7 @@ import { cut } from '../../clients/web/core/section.js';
 const BOUNDS = { min: [0, 0, 0], max: [10, 20, 4] };
 const near = (a, b, least = 1e-9) => assert.ok(Math.abs(a - b) < least, `${a} is not ${b}`);
 
-test('a plane has one grip in its middle, whichever side stays', () => {
+test('a section plane has one handle in its middle, whichever side is cut off', () => {
     for (const turned of [false, true]) {
         const clip = cut('x', 3, turned), [grip] = gripsOf(clip, BOUNDS);
         assert.deepEqual([grip.axis, grip.turned, grip.direction], ['x', turned, [1, 0, 0]]);
@@ -22,7 +22,7 @@ test('a plane has one grip in its middle, whichever side stays', () => {
     }
 });
 
-test('an oblique plane moves along its own normal, of whatever length, and the other planes stay', () => {
+test('an oblique plane moves along its own normal of any length, and the other planes stay', () => {
     const clip = { planes: [[0, 0, 1, -1], [3, 4, 0, -25]] }, [, grip] = gripsOf(clip, BOUNDS);
     assert.equal(grip.axis, null);
     near(grip.at, 5);
@@ -36,7 +36,7 @@ test('an oblique plane moves along its own normal, of whatever length, and the o
     assert.equal(three.turned, true);
 });
 
-test('no grip is lost: a plane stays inside the plant, and a box keeps a width', () => {
+test('a plane stays inside the plant, and a box keeps a minimum width, so no handle is lost', () => {
     for (const to of [-1e9, 1e9, -5, 10.01]) {
         const clip = cut('x', 3, false), moved = moveGrip(clip, gripsOf(clip, BOUNDS)[0], to);
         assert.ok(gripsOf(moved, BOUNDS)[0].corners.length >= 3, `${to}`);
@@ -50,7 +50,7 @@ test('no grip is lost: a plane stays inside the plant, and a box keeps a width',
     }
 });
 
-test('a box has six grips, each for its own side', () => {
+test('a section box has six handles, one for each side', () => {
     const clip = { box: { min: [2, 2, 1], max: [4, 6, 3] } }, grips = gripsOf(clip, BOUNDS);
     assert.deepEqual(grips.map(({ id }) => id), ['xmin', 'xmax', 'ymin', 'ymax', 'zmin', 'zmax']);
     assert.deepEqual(spotsOf(grips[3])[0], [3, 6, 2]);
@@ -60,7 +60,7 @@ test('a box has six grips, each for its own side', () => {
     assert.deepEqual(gripsOf(null, BOUNDS), []);
 });
 
-test('a hand that points at a place of the way takes the grip there, in both projections', () => {
+test('a pointer on an arrow\'s line grabs the handle there, in both projections', () => {
     for (const lens of [{}, { height_m: 8 }]) {
         const camera = { eye: [5, -12, 6], target: [5, 5, 0], up: [0, 0, 1], fov: 45, ...lens };
         for (const [x, y] of [[100, 100], [400, 300], [700, 500]]) {
@@ -78,7 +78,7 @@ test('a hand that points at a place of the way takes the grip there, in both pro
     assert.equal(alongSight([5, 2, 1], [0, 1, 0], sight(along, 400, 300, 800, 600)), null, 'a way towards the eye');
 });
 
-test('lines end before the eye', () => {
+test('lines that reach behind the eye are cut off in front of it', () => {
     const camera = { eye: [0, 0, 0], target: [1, 0, 0], up: [0, 0, 1], fov: 45 };
     assert.equal(beforeEye(camera, [-1, 0, 0], [-2, 1, 0]), null);
     const [a, b] = beforeEye(camera, [-1, 1, 0], [1, 1, 0]);
@@ -86,7 +86,7 @@ test('lines end before the eye', () => {
     assert.deepEqual(b, [1, 1, 0]);
 });
 
-test('a box is moved as a whole, as far as its middle stays in the plant', () => {
+test('a box is moved as a whole, while its middle stays in the plant', () => {
     const clip = { box: { min: [1, 2, 1], max: [3, 6, 2] } };
     assert.deepEqual(spotsOf(wholeOf(clip))[0], [2, 4, 1.5]);
     assert.equal(wholeOf(cut('x', 3, false)), null);
@@ -96,7 +96,7 @@ test('a box is moved as a whole, as far as its middle stays in the plant', () =>
     assert.deepEqual([box.min, box.max], [[9, -2, 1], [11, 2, 2]]);
 });
 
-test('a hand moves it in the plane that faces the camera', () => {
+test('the pointer moves a handle in the plane that faces the camera', () => {
     const camera = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 60 };
     const [x, y, z] = facing(camera, [2, 3, 1], sight(camera, 400, 100, 800, 600));
     near(x, 0);

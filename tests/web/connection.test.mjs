@@ -10,7 +10,7 @@ import { makeConnection } from './fixtures.mjs';
 
 const waitOf = ({ connection, clock }) => connection.retryAt - clock.now();
 
-test('asks for the subprotocol and says what state it is in', () => {
+test('the connection requests the subprotocol and reports its state', () => {
     const { connection, sockets } = makeConnection();
     const states = [];
     connection.onState = ({ state }) => states.push(state);
@@ -25,7 +25,7 @@ test('asks for the subprotocol and says what state it is in', () => {
     assert.equal(connection.reason, 'The server shut down');
 });
 
-test('waits 0.5, 1, 2, 4, 8, 8 seconds between tries', () => {
+test('the connection waits 0.5, 1, 2, 4, 8, 8 seconds between attempts', () => {
     const bench = makeConnection();
     const { connection, sockets, clock } = bench;
     const waits = [];
@@ -41,7 +41,7 @@ test('waits 0.5, 1, 2, 4, 8, 8 seconds between tries', () => {
     assert.deepEqual(waits, [500, 1000, 2000, 4000, 8000, 8000]);
 });
 
-test('after a loss it waits at most 2 seconds between tries for 15 seconds, then longer', () => {
+test('after a loss the connection waits at most 2 seconds between attempts for 15 seconds, then longer', () => {
     for (const dice of [0, 0.5, 1]) {
         const bench = makeConnection({ random: () => dice }), { connection, sockets, clock } = bench;
         connection.start();
@@ -61,7 +61,7 @@ test('after a loss it waits at most 2 seconds between tries for 15 seconds, then
     }
 });
 
-test('jitter spreads the tries of many clients, within bounds', () => {
+test('jitter spreads the attempts of many clients, within limits', () => {
     for (const [dice, factor] of [[0, 1 - JITTER], [1, 1 + JITTER]]) {
         const bench = makeConnection({ random: () => dice });
         bench.connection.start();
@@ -73,7 +73,7 @@ test('jitter spreads the tries of many clients, within bounds', () => {
     }
 });
 
-test('an open socket alone does not shorten the waits; a greeting does', () => {
+test('an open socket alone does not shorten the waits; the server\'s greeting does', () => {
     const bench = makeConnection();
     const { connection, sockets, clock } = bench;
     connection.start();
@@ -90,7 +90,7 @@ test('an open socket alone does not shorten the waits; a greeting does', () => {
     assert.equal(waitOf(bench), 500);
 });
 
-test('a server that goes down says when to come back', () => {
+test('a server that shuts down says when clients may reconnect', () => {
     const bench = makeConnection(), { connection, sockets } = bench;
     connection.start();
     sockets[0].accept();
@@ -110,7 +110,7 @@ test('retryNow cuts a wait short, and does nothing else', () => {
     assert.equal(sockets.length, 2, 'the old timer is gone');
 });
 
-test('a server that falls silent is noticed, then given up without waiting for its goodbye', () => {
+test('a silent server is noticed, then given up without waiting for its close frame', () => {
     const { connection, sockets, clock } = makeConnection();
     connection.start();
     sockets[0].accept();
@@ -127,7 +127,7 @@ test('a server that falls silent is noticed, then given up without waiting for i
     assert.equal(sockets[0].onmessage, null, 'what still comes is not heard');
 });
 
-test('a server that stops is noticed and left within 8.2 s, at whatever moment and with the longest wait; 1.8 s of 10 s remain', () => {
+test('a stopped server is noticed and left within 8.2 s, at any moment and with the longest wait; 1.8 s of 10 s remain', () => {
     const most = DEAD_MS + CHECK_MS + FIRST_WAIT_MS * (1 + JITTER);
     assert.ok(most <= 8200, `${most} ms`);
     for (let spoke = 0; spoke < 4000; spoke += 50) {
@@ -149,7 +149,7 @@ test('a server that stops is noticed and left within 8.2 s, at whatever moment a
     }
 });
 
-test('lists that take long over a slow link get more time before the first message', () => {
+test('long lists over a slow link get more time before the first message', () => {
     const { connection, sockets, clock } = makeConnection();
     connection.start();
     sockets[0].accept();
@@ -162,7 +162,7 @@ test('lists that take long over a slow link get more time before the first messa
     assert.ok(sockets[0].closed);
 });
 
-test('a page that hung for longer than the limit hears first what arrived meanwhile', () => {
+test('a page that hung longer than the limit processes the messages that arrived meanwhile first', () => {
     for (const answers of [true, false]) {
         const { connection, sockets, clock } = makeConnection();
         connection.start();
@@ -181,7 +181,7 @@ test('a page that hung for longer than the limit hears first what arrived meanwh
     }
 });
 
-test('a server that speaks every two seconds is never given up', () => {
+test('a server that sends every two seconds is never given up', () => {
     const { connection, sockets, clock } = makeConnection();
     connection.start();
     sockets[0].accept();
@@ -193,7 +193,7 @@ test('a server that speaks every two seconds is never given up', () => {
     assert.equal(sockets.length, 1);
 });
 
-test('a server that never opens is given up', () => {
+test('a server that never opens the connection is given up', () => {
     const { connection, clock, sockets } = makeConnection();
     connection.start();
     clock.advance(10001);
@@ -201,7 +201,7 @@ test('a server that never opens is given up', () => {
     assert.ok(sockets[0].closed);
 });
 
-test('a full server is left alone for as long as it asks, or ten seconds', () => {
+test('a full server is retried only after the time that it names, or after ten seconds', () => {
     const { clock, sockets, connection } = makeConnection();
     connection.start();
     sockets[0].accept();
@@ -218,7 +218,7 @@ test('a full server is left alone for as long as it asks, or ten seconds', () =>
     assert.equal(sockets.length, 3);
 });
 
-test('who is not let in tries no more, until there is something new to say', () => {
+test('after a refused sign-in the connection retries only with new credentials', () => {
     const { clock, sockets, connection } = makeConnection();
     connection.start();
     sockets[0].accept();
@@ -244,7 +244,7 @@ test('nothing is sent while the connection is not open, and stop is final', () =
     assert.equal(clock.timers.size, 0);
 });
 
-test('forty displays that lose the server at one moment come back staggered', () => {
+test('forty displays that lose the server at one moment reconnect at different times', () => {
     for (const close of [[1006], [1001, 'the server is stopping; retry after 1 s']]) {
         const waits = Array.from({ length: 40 }, () => {
             const bench = makeConnection({ random: Math.random });
@@ -261,7 +261,7 @@ test('forty displays that lose the server at one moment come back staggered', ()
     }
 });
 
-test('a display comes back after each of 200 losses, the last as soon as the first', () => {
+test('a display reconnects after each of 200 losses, the last as soon as the first', () => {
     const bench = makeConnection(), { connection, sockets, clock } = bench;
     connection.spreadMs = SPREAD_MS;
     connection.start();

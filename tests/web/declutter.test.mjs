@@ -24,7 +24,7 @@ const crowd = (count, wide = 640, high = 360) => Array.from({ length: count }, (
     random(1, 90), random(0, 1) < 0.3, random(0, 1) < 0.05, random(0, 1) < 0.3], id));
 const within = (items, { x, y }, least) => items.filter((other) => Math.hypot(other.x - x, other.y - y) < least).length;
 
-test('nothing is left out that must be drawn or stands free; nowhere is there a crowd', () => {
+test('markers that must be drawn or stand free are never left out, and no crowd is drawn', () => {
     for (let round = 0; round < 20; round++) {
         const items = crowd(40 * (1 + round)), drawn = thinOut(items), shown = new Set(drawn), others = drawn.filter(({ kept }) => !kept);
         assert.deepEqual(ids(drawn), ids(drawn).sort((a, b) => a - b), 'in their order');
@@ -37,7 +37,7 @@ test('nothing is left out that must be drawn or stands free; nowhere is there a 
     }
 });
 
-test('a second picture of the same has the same', () => {
+test('a second picture of the same view draws the same markers', () => {
     const items = crowd(600).map((item) => ({ ...item, held: false })), drawn = ids(thinOut(items));
     const again = items.map((item) => ({ ...item, held: drawn.includes(item.id) }));
     assert.deepEqual(ids(thinOut(again)), drawn);
@@ -48,7 +48,7 @@ test('hidden markers displace no visible ones', () => {
     assert.deepEqual(ids(thinOut(items.filter(({ occluded, kept }) => !occluded || kept))).filter((id) => !items[id].occluded), drawn);
 });
 
-test('from near by all are drawn', () => {
+test('when zoomed in, all markers are drawn', () => {
     const items = crowd(900), near = items.map((item) => ({ ...item, x: 20 * item.x, y: 20 * item.y }));
     assert.ok(thinOut(items).length < 750);
     assert.equal(thinOut(near).length, 900);
@@ -66,7 +66,7 @@ function drawnFrom(angle, before) {
     }))));
 }
 
-test('while the camera turns markers stay, and do not come and go', () => {
+test('while the camera turns, markers do not flicker', () => {
     let before = drawnFrom(0, new Set()), changes = 0, flickers = 0, shown = 0;
     const since = new Map();
     for (let n = 1; n <= 120; n++) {
@@ -88,7 +88,7 @@ test('while the camera turns markers stay, and do not come and go', () => {
 
 // A marker at the edge of a crowd may appear with a picture, but then stays: once shown, it needs only 0.8 of the minimum
 // distance.
-test('while the camera trembles no marker comes and goes', () => {
+test('while the camera trembles, no marker appears or disappears', () => {
     const changed = new Set();
     for (let angle = 1; angle <= 5; angle++) {
         let before = drawnFrom(angle, drawnFrom(angle, new Set()));

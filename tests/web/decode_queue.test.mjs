@@ -27,7 +27,7 @@ function bench() {
 }
 const seqs = (jobs) => jobs.map((job) => job.seq);
 
-test('while one is decoded, only the newest of the others is kept', async () => {
+test('while one frame is decoded, only the newest of the others is kept', async () => {
     const { slot, started, shown, finish } = bench();
     for (const seq of [1, 2, 3, 4])
         slot.push(whole(seq));
@@ -39,7 +39,7 @@ test('while one is decoded, only the newest of the others is kept', async () => 
     assert.equal(slot.dropped, 2);
 });
 
-test('the last one is always decoded in the end', async () => {
+test('the last frame is always decoded', async () => {
     const { slot, started, shown, finish } = bench();
     slot.push(whole(1));
     await finish(1);
@@ -50,7 +50,7 @@ test('the last one is always decoded in the end', async () => {
     assert.deepEqual(shown.map(([seq]) => seq), [1, 2]);
 });
 
-test('parts are never skipped, unless one that stands alone comes after them', async () => {
+test('parts of a picture are never skipped, unless a complete picture comes after them', async () => {
     const { slot, started, shown, finish } = bench();
     slot.push(whole(1));
     slot.push(part(2));
@@ -67,7 +67,7 @@ test('parts are never skipped, unless one that stands alone comes after them', a
     assert.deepEqual(shown.map(([seq]) => seq), [1, 2, 3, 5, 6]);
 });
 
-test('a broken picture is reported, and the next one goes on', async () => {
+test('a broken frame is reported, and decoding continues with the next one', async () => {
     const { slot, started, shown, failed, finish } = bench();
     slot.push(whole(1));
     slot.push(whole(2));
@@ -78,7 +78,7 @@ test('a broken picture is reported, and the next one goes on', async () => {
     assert.deepEqual(shown.map(([seq]) => seq), [2]);
 });
 
-test('after clear, what was being decoded is closed and never shown', async () => {
+test('after clear, the frame being decoded is closed and never shown', async () => {
     const { slot, shown, closed, finish } = bench();
     slot.push(whole(1));
     slot.push(whole(2));

@@ -77,14 +77,14 @@ function bench({ api = fakeApi(), store = fakeStore(), agent = 'browser 1', wron
     return { decoding, api, store, told, tried, wait: (ms) => { now += ms; } };
 }
 
-test('the codec is called by what its parameter set says', () => {
+test('the codec string is built from the stream\'s parameter set', () => {
     assert.equal(codecName(findSps(KEY.payload)), 'avc1.42c01f');
     assert.deepEqual([...findSps(KEY.payload)], [0x67, 0x42, 0xc0, 0x1f, 9]);
     assert.equal(findSps(DELTA.payload), null);
     assert.equal(findSps(new Uint8Array(3)), null);
 });
 
-test('a page without WebCodecs asks for JPEG, and tries nothing', async () => {
+test('a page without WebCodecs requests JPEG, and tries no decoder', async () => {
     const { decoding, tried, store } = bench({ api: {} });
     await decoding.probe();
     assert.deepEqual([decoding.codecs, tried, store.kept.size], [PLAIN, [], 0]);
@@ -92,7 +92,7 @@ test('a page without WebCodecs asks for JPEG, and tries nothing', async () => {
     await assert.rejects(decoding.decode(KEY), /not asked for/);
 });
 
-test('what works is used and remembered for this browser; what does not, for it alone', async () => {
+test('a working decoder is remembered for this browser, and a failing one is not tried in this browser again', async () => {
     const store = fakeStore(), wrong = { 'no-preference': 'green', 'prefer-software': 'late' };
     const first = bench({ store, wrong: { 'no-preference': 'green' } });
     await first.decoding.probe();
@@ -109,14 +109,14 @@ test('what works is used and remembered for this browser; what does not, for it 
     assert.deepEqual([never.tried, never.decoding.codecs], [[], PLAIN]);
 });
 
-test('a store that may not be used does no harm', async () => {
+test('blocked browser storage does no harm', async () => {
     const refuse = () => { throw new Error('denied'); };
     const { decoding } = bench({ store: { getItem: refuse, setItem: refuse } });
     await decoding.probe();
     assert.ok(decoding.codecs.includes('h264'));
 });
 
-test('one in, one out; a new parameter set makes a new decoder', async () => {
+test('each chunk gives one picture; a new parameter set makes a new decoder', async () => {
     const api = fakeApi(), decoder = new H264Decoder({ api });
     assert.equal((await decoder.decode(KEY)).of.type, 'key');
     assert.equal((await decoder.decode(DELTA)).of.type, 'delta');
@@ -157,7 +157,7 @@ test('without a GPU, the pixels of a video frame are copied, unless the browser 
     }
 });
 
-test('a decoder that keeps pictures back is no decoder', async () => {
+test('a decoder that keeps pictures back is rejected', async () => {
     const timers = [];
     const clock = { setTimeout: (f) => timers.push(f), clearTimeout: (id) => { timers[id - 1] = () => {}; } };
     const decoder = new H264Decoder({ api: fakeApi({ keepsBack: (_, chunk) => chunk.type === 'delta' }), clock });
@@ -168,7 +168,7 @@ test('a decoder that keeps pictures back is no decoder', async () => {
     await assert.rejects(decoder.decode(DELTA), /without a key frame/);
 });
 
-test('the proof sees colours that are wrong', async () => {
+test('the decoder\'s trial detects wrong colours', async () => {
     const canvas = (colours) => () => ({
         getContext: () => ({
             drawImage() {},
@@ -188,7 +188,7 @@ test('the proof sees colours that are wrong', async () => {
     assert.equal(await whatIsWrong(new H264Decoder({ api: broken }), canvas(right)), 'broken');
 });
 
-test('a lost place asks for a key frame once, and nothing is shown before it', async () => {
+test('after a lost chunk a key frame is requested once, and nothing is shown before it', async () => {
     let breaks = false;
     const { decoding, told } = bench({ api: fakeApi({ breaks: () => breaks }) });
     await decoding.probe();

@@ -7,7 +7,7 @@ import { Model } from '../../clients/web/core/model.js';
 
 const row = (id, event, more = {}) => ({ id, event, tag: 'TI-1', kind: 'H', priority: 2, time_us: id * 10, ...more });
 
-test('alarms are counted by tag and kind, what people did is in its order', () => {
+test('alarms are counted by tag and kind, and users\' actions are in order', () => {
     const { raised, acknowledged, shelved, aside } = sortJournal([row(5, 'raise'), row(4, 'clear'), row(3, 'acknowledge'), row(1, 'raise'),
         row(6, 'raise', { tag: 'TI-2', priority: 1 }), row(8, 'shelve'), row(7, 'unshelve'), row(9, 'out_of_service')]);
     assert.deepEqual(raised.map(({ tag, count, first, last }) => [tag, count, first, last]), [['TI-1', 2, 10, 50], ['TI-2', 1, 60, 60]]);
@@ -23,7 +23,7 @@ test('one alarm of a tag, and one action on it, count once', () => {
     assert.deepEqual(acknowledged.map(({ tag, kinds }) => [tag, kinds]), [['TI-1', ['H', 'HH']], ['TI-2', ['H']]]);
 });
 
-test('standing alarms are those of the page: one for each tag, counted by its worst', () => {
+test('active alarms equal the page\'s: one for each tag, the most urgent', () => {
     const model = new Model({ plant: {}, groups: [], colormaps: [], assets: [], tags: ['TI-1', 'TI-2'].map((name) => ({ name })) });
     const alarm = (tag, kind, state, priority) => ({ tag, kind, state, priority, raised_us: 1, value: 1, limit: 1, active: true,
         held: false, until_us: null, who: '', reason: '' });
@@ -34,7 +34,7 @@ test('standing alarms are those of the page: one for each tag, counted by its wo
     assert.deepEqual([active, waiting], [2, 2]);
 });
 
-test('the journal is read page by page, and no further than there is room', async () => {
+test('the journal is read page by page, up to a limit', async () => {
     const asked = [];
     const get = async (query) => {
         asked.push(query.before ?? null);

@@ -43,7 +43,7 @@ function gridOf(camera, width, height, cellPx) {
 }
 const CAMERA = { eye: [0, 0, 1.6], target: [0, 2, 1.6], up: UP, fov: 100 };
 
-test('a rig is level, right-handed, and looks where it should', () => {
+test('a headset\'s camera rig is level, right-handed, and looks in the given direction', () => {
     const { at, axes: [x, y, z] } = rigAt([1, 2, 3], [0, 5, -4], UP);
     assert.deepEqual(at, [1, 2, 3]);
     isClose(x, [1, 0, 0]);
@@ -54,7 +54,7 @@ test('a rig is level, right-handed, and looks where it should', () => {
     assert.ok(upright.axes.every((axis) => Math.abs(length(axis) - 1) < 1e-9) && Math.abs(dot(upright.axes[0], UP)) < 1e-9);
 });
 
-test('the clip coordinates of a point are those of the device, whatever is beyond or behind', () => {
+test('a point has the device\'s clip coordinates, even beyond or behind the view', () => {
     const rig = rigAt([100000, 200000, 50], [1, 0, 0], UP), [left] = viewsAt(0, [0, 1.6, 0]), eye = eyeOf(rig, left);
     isClose(eye.at, [100000, 200000.0315, 51.6]);
     const clip = clipOf(eye, [subtract([100004, 200001, 52], eye.at), 1], 0.05), camera = [-0.9685, 0.4, -4, 1]; // in the eye's axes
@@ -67,14 +67,14 @@ test('the clip coordinates of a point are those of the device, whatever is beyon
     assert.ok(endless < far && far > 0, 'infinitely far is not cut off');
 });
 
-test('a picture drawn for an eye at its own place and projection is the picture itself', () => {
+test('a picture drawn for an eye at its own position and projection is unchanged', () => {
     const grid = gridOf(CAMERA, 400, 400, 8), tan = Math.tan(50 * DEGREE), own = projection(-tan, tan, -tan, tan);
     const eye = { at: CAMERA.eye, axes: [[1, 0, 0], UP, [0, -1, 0]], projection: own };
     for (const [x, y, depth] of [[10, 20, 0.2], [390, 200, 1], [200, 200, 0]])
         isClose([...moveBy(eyeMatrix(grid, CAMERA, eye, 0.05), grid, [x, y, depth]), 0], [x, y, 0]);
 });
 
-test('both eyes see a point of the picture where it is: the disparity is that of true eyes', () => {
+test('both eyes see a picture\'s point at its true position, with the disparity of real eyes', () => {
     const grid = gridOf(CAMERA, 1000, 1000, 8), rig = rigAt([0, 0, 0], [0, 1, 0], UP);
     const eyes = viewsAt(0, [0, 1.6, 0]).map((view) => eyeOf(rig, view));
     for (const away of [2, 20]) {
@@ -87,7 +87,7 @@ test('both eyes see a point of the picture where it is: the disparity is that of
     }
 });
 
-test('the wide picture covers all that both eyes see, with a margin, also where the eyes look apart', () => {
+test('the wide picture covers what both eyes see, with a margin, even if the eyes diverge', () => {
     for (const turn of [0, 5, -5]) {
         const views = viewsAt(30, [1, 1.6, 2], turn), head = matrix(30, [1, 1.6, 2]), { fov, width, height } = wideView(head, views, 1760);
         const camera = headCamera(rigAt([0, 0, 0], [0, 1, 0], UP), head, fov), project = projector(camera, width, height);
@@ -117,7 +117,7 @@ test('a new picture is requested after a step or a turn of the head, not for a t
     assert.equal(isApart(start, { ...start, up: unit([0.1, 0, 1]) }), true, 'a tilted head');
 });
 
-test('a user begins on the floor in front of the plant, or below a camera within it', () => {
+test('a user starts on the floor in front of the plant, or below a camera within it', () => {
     const bounds = { min: [0, 0, -1], max: [20, 10, 8] }, camera = { eye: [10, -40, 30], target: [10, 5, 3], up: UP, fov: 45 };
     const front = rigFor(camera, bounds, UP);
     isClose(front.at, [10, -2.5, -1]);
@@ -132,7 +132,7 @@ test('a user begins on the floor in front of the plant, or below a camera within
     isClose(inY.at, [0, 0, 4.5]);
 });
 
-test('a ray hits the surface that the picture shows, wherever it starts', () => {
+test('a ray hits the surface that the picture shows, wherever the ray starts', () => {
     const grid = gridOf(CAMERA, 1000, 1000, 8);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([0, 1, 0])).point, [0.2, 3, 1.2], 0.03);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([1, 2, 0.1])).point, [2.55, 5, 1.435], 0.05);
@@ -142,7 +142,7 @@ test('a ray hits the surface that the picture shows, wherever it starts', () => 
     assert.ok(hitOf(grid, CAMERA, [0, 0.3, 1.2], unit([1, -0.0001, 0])) === null, 'never an endless search');
 });
 
-test('numbers of a broken device: every search ends, and nothing is hit', () => {
+test('invalid numbers from a broken device: every search ends, and nothing is hit', () => {
     const grid = gridOf(CAMERA, 1000, 1000, 8), bad = [NaN, Infinity, -Infinity, 1e300, 0];
     for (const one of bad)
         for (const other of bad)
@@ -160,7 +160,7 @@ test('numbers of a broken device: every search ends, and nothing is hit', () => 
             }
 });
 
-test('the floor, standing there, and the panel at the wrist', () => {
+test('the floor, the user\'s position on it, and the wrist panel are placed correctly', () => {
     isClose(floorHit([0, 0, 1.5], unit([0, 1, -1]), [9, 9, 0], UP), [0, 1.5, 0]);
     assert.equal(floorHit([0, 0, 1.5], unit([0, 1, 0.1]), [0, 0, 0], UP), null, 'upwards');
     assert.equal(floorHit([0, 0, 3], unit([0, 15, -1]), [0, 0, 0], UP), null, 'too far');
@@ -172,7 +172,7 @@ test('the floor, standing there, and the panel at the wrist', () => {
     assert.equal(panelHit(panel, [0.3, 0, 1], [0, 1, 0]), null, 'beside');
 });
 
-test('the card of a place asks again where its request was not answered, or replaced by that of another module', () => {
+test('the card repeats its request if there is no answer, or if another module\'s request replaced it', () => {
     let now = 10000;
     const { mock: calls } = mock.method(performance, 'now', () => now);
     const sent = [], session = { welcomed: true, picture: {}, pickSeq: 0, size: { width: 800, height: 600 },

@@ -14,7 +14,7 @@ import { alarmSpans, bands, statistics, valueAt, withNewest } from '../../client
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
 const points = (...list) => ({ step: false, bucket_us: 0, points: list });
 
-test('a line holds its last value until now, and breaks where there is none', () => {
+test('a line holds its last value until now, and breaks at gaps', () => {
     const series = points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE], [4e6, 7, GOOD_CODE]);
     assert.deepEqual(line(series, 0, 6e6), [[1, 1.999999, 2, 4, 6], [5, 5, null, 7, 7]]);
     assert.deepEqual(line(points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE]), 0, 6e6), [[1, 1.999999, 2], [5, 5, null]]);
@@ -30,13 +30,13 @@ test('a value holds until the quality changes, in the line, its values and its s
     assert.deepEqual([mean, known], [(20 * 8 + 60 * 4 + 70 * 8) / 20, 1]);
 });
 
-test('steps are steps', () => {
+test('a step value is drawn with steps', () => {
     const [xs, ys] = line({ ...points([1e6, 0, GOOD_CODE], [3e6, 1, GOOD_CODE]), step: true }, 0, 4e6);
     assert.deepEqual(ys, [0, 0, 1, 1]);
     assert.ok(xs[1] < 3 && xs[1] > 2.99);
 });
 
-test('the line of intervals is that of their means, the band keeps spikes, and a gap breaks both', () => {
+test('the line of intervals shows their means, the band keeps spikes, and a gap breaks both', () => {
     const none = [20e6, null, null, null, null, null, 10e6, BAD_CODE];
     const series = { step: false, bucket_us: 10e6, points: [[0, 1, 99, 5, 2, 3, 0, GOOD_CODE], [10e6, 2, 4, 3, 3, 4, 0, GOOD_CODE], none] };
     assert.deepEqual(line(series, 0, 40e6), [[0, 5, 15, 19.999998, 20], [2, 5, 3, 4, null]]);
@@ -54,7 +54,7 @@ test('the line of intervals is that of their means, the band keeps spikes, and a
     assert.deepEqual(line(apart, 0, 40e6)[1], [1, 2, 3, 5, 5, 5, 5], 'straight from the last value to the next first one');
 });
 
-test('statistics are means over time, and say for which part of it they are', () => {
+test('statistics are means over time, and state the share of the time that they cover', () => {
     const of = (...given) => statistics(...given);
     assert.deepEqual(of(points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE]), 0, 20e6), { min: 0, max: 10, mean: 7.5, known: 1 });
     const holed = points([0, 4, GOOD_CODE], [5e6, null, BAD_CODE], [15e6, 8, UNCERTAIN_CODE]);
@@ -77,7 +77,7 @@ test('minimum and maximum include a value that is newer than the series', () => 
     assert.deepEqual(withNewest(null, 4), { min: 4, max: 4 }, 'nothing is recorded yet');
 });
 
-test('the value at an instant is that of the drawn line', () => {
+test('the value at an instant equals the drawn line', () => {
     const series = points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE], [20e6, null, BAD_CODE], [30e6, 7, GOOD_CODE]);
     assert.deepEqual([-1, 5e6, 15e6, 25e6, 35e6].map((us) => valueAt(series, us)), [null, 5, 10, null, 7]);
     assert.equal(valueAt({ ...series, step: true }, 9e6), 0);
@@ -85,7 +85,7 @@ test('the value at an instant is that of the drawn line', () => {
     assert.deepEqual([3e6, 20e6, 31e6].map((us) => valueAt(intervals, us)), [5, 5, 8]);
 });
 
-test('alarms last from when they were raised until they returned, were shelved, or still do', () => {
+test('alarms last from being raised until they return or are shelved, or until now', () => {
     const row = (us, event, before, state, tag = 'A') => ({ time_us: us, event, before, state, tag, kind: 'H', priority: 2, value: 9,
         limit: 8, unit: tag === 'A' ? 'bar' : null });
     const rows = [row(9, 'raise', 'normal', 'unacknowledged'), row(7, 'clear', 'acknowledged', 'normal'),
@@ -96,7 +96,7 @@ test('alarms last from when they were raised until they returned, were shelved, 
     assert.deepEqual(alarmSpans(rows, '°C').map(({ value, limit }) => [value, limit]), [[null, null], [null, null]], 'another unit');
 });
 
-test('ranges are read as people write them, in three languages', () => {
+test('time ranges are read as people write them, in three languages', () => {
     const now = Date.parse('2026-11-26T03:00:00Z') * 1000, iso = (us) => new Date(us / 1000).toISOString().slice(0, 16);
     const read = (text, zone = 'UTC', at = now) => {
         const range = readRange(text, at, zone);
@@ -120,11 +120,11 @@ test('ranges are read as people write them, in three languages', () => {
         assert.equal(read(text), null, text);
 });
 
-test('a new trend shows all that is recorded, at most the last eight hours', () => {
+test('a new trend shows the recorded time, at most the last eight hours', () => {
     assert.deepEqual([0, 600, 901, 3600, 3601, 28800, 1e7, null].map(newSpanS), [900, 900, 3600, 3600, 28800, 28800, 28800, 28800]);
 });
 
-test('zoom keeps the instant under the pointer, pan the length, and neither goes beyond the present', () => {
+test('zoom keeps the instant under the pointer, pan keeps the length, and neither goes beyond the present', () => {
     assert.deepEqual(zoomed([0, 100e6], 0.5, 25e6, 1e12), [12.5e6, 62.5e6]);
     assert.deepEqual(zoomed([900e6, 1000e6], 2, 950e6, 1000e6), [800e6, 1000e6]);
     assert.equal(zoomed([0, 100e6], 1e-9, 50e6, 1e12)[1] - zoomed([0, 100e6], 1e-9, 50e6, 1e12)[0], LEAST_US);
@@ -132,14 +132,14 @@ test('zoom keeps the instant under the pointer, pan the length, and neither goes
     assert.deepEqual(panned([100e6, 200e6], 5, 250e6), [150e6, 250e6]);
 });
 
-test('gaps are when there was no value; uncertain ones are told apart', () => {
+test('gaps are times without a value; uncertain values are told apart', () => {
     const series = points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE], [3e6, null, BAD_CODE], [4e6, 7, UNCERTAIN_CODE], [5e6, 7, GOOD_CODE]);
     const found = gaps(series, 0, 6e6).map(({ from, to, severity }) => [from, to, severity]);
     assert.deepEqual(found, [[0, 1, BAD], [2, 4, BAD], [4, 5, UNCERTAIN]]);
     assert.deepEqual(gaps(points(), 0, 6e6), [{ from: 0, to: 6, severity: BAD }]);
 });
 
-test('a source is lost while none of those that speak for it has a value', () => {
+test('a source counts as lost while none of its watched tags has a value', () => {
     const tags = ['A', 'B', 'C'].map((name) => ({ name, source: 'plc1' }));
     assert.deepEqual(witnesses([...tags, { name: 'X', source: null }, { name: 'D', source: 'plc2' }]),
         [{ source: 'plc1', tags: ['A', 'C'] }, { source: 'plc2', tags: ['D'] }]);
@@ -157,13 +157,13 @@ test('alarms are marked when they were raised', () => {
     assert.deepEqual(raised(rows).map(({ us }) => us), [3, 9]);
 });
 
-test('ticks are round, in the plant’s own zone', () => {
+test('time ticks are round in the plant’s time zone', () => {
     assert.deepEqual(ticks(1e6, 3599e6, 6), [600e6, 1200e6, 1800e6, 2400e6, 3000e6]);
     assert.ok(ticks(0, 30 * 86400e6, 6).length <= 6);
     assert.equal(ticks(0, 86400e6, 2, 3600e6)[0] % 3600e6, 0);
 });
 
-test('requests carry the token, and failures are said in the server’s words', async () => {
+test('history requests carry the token, and errors show the server’s words', async () => {
     let seen;
     const fetcher = async (url, options) => { seen = [url, options.headers.Authorization]; return { ok: true }; };
     await ask('api/x', { tags: 'A,B' }, 'secret', fetcher);
@@ -174,14 +174,14 @@ test('requests carry the token, and failures are said in the server’s words', 
     await assert.rejects(ask('api/x', {}, null, gone), /^Error: The server cannot be reached$/);
 });
 
-test('the address names the instant', () => {
+test('the address contains the shown instant', () => {
     const hash = writeAddress({ time: { atUs: 1793491200250000 } });
     assert.equal(readAddress(hash).time.atUs, 1793491200250000);
     assert.deepEqual(readAddress('#at=never').time, {});
     assert.doesNotMatch(writeAddress({ time: { atUs: null } }), /at=/);
 });
 
-test('limits of several tags: each once, by its axis, with whose it is unless it is everybody\'s', () => {
+test('limits of several tags: each appears once per axis, with its tags\' names unless all share it', () => {
     const tag = (name, unit, limits) => ({ name, unit, limits });
     const tags = [
         tag('a', 'degC', { L: null, H: 60, HH: 90 }), tag('b', 'degC', { L: 5, H: 60, HH: 80 }), tag('c', 'bar', { H: 60 }),
@@ -196,7 +196,7 @@ test('limits of several tags: each once, by its axis, with whose it is unless it
     assert.deepEqual(limitLines([], () => ''), []);
 });
 
-test('jumps from alarm to alarm, and marks in one place shown as one', () => {
+test('the user jumps from alarm to alarm, and marks in one place are merged', () => {
     const marks = [[10, 3], [20, 1], [21, 2], [50, 4]].map(([us, priority]) => ({ us, priority }));
     assert.deepEqual([nextTo(marks, 20, true).us, nextTo(marks, 20, false).us], [10, 21], 'never the one where it stands');
     assert.deepEqual([nextTo(marks, 10, true), nextTo(marks, 50, false)], [null, null]);
@@ -205,13 +205,13 @@ test('jumps from alarm to alarm, and marks in one place shown as one', () => {
     assert.deepEqual([900, 3600, 86400, 2592000].map(arrowS), [1, 4, 60, 60], 'a minute at most, also of 30 days');
 });
 
-test('the density counts alarms in equal parts of a span, by the most urgent', () => {
+test('the density counts alarms in equal parts of a time span, by the most urgent', () => {
     const marks = [[-5, 1], [0, 3], [1, 2], [99, 4], [100, 1]].map(([us, priority]) => ({ us, priority }));
     const { bins, most } = density(marks, 0, 100, 10);
     assert.deepEqual([bins.length, most, bins[0], bins[9]], [10, 2, { count: 2, priority: 2 }, { count: 1, priority: 4 }]);
 });
 
-test('a date field is by the clock of the plant', () => {
+test('a date field follows the plant\'s clock', () => {
     const at = (text, zone) => { const us = fieldInstant(text, zone); return us && new Date(us / 1000).toISOString(); };
     assert.equal(at('2026-11-22T07:27:02', 'Asia/Seoul'), '2026-11-21T22:27:02.000Z');
     assert.equal(at('2026-11-22 07:27', 'America/New_York'), '2026-11-22T12:27:00.000Z');
@@ -224,7 +224,7 @@ test('a date field is by the clock of the plant', () => {
     assert.equal(fieldInstant('2026-11-22T07:27:02', 'UTC'), Date.parse('2026-11-22T07:27:02Z') * 1000);
 });
 
-test('a week of residuals: a line for each stretch, as high as it is against sigma', () => {
+test('a week of residuals is drawn as a line for each stretch, scaled by sigma', () => {
     assert.deepEqual(residuals([[0, 5, 3], [1, null, 3], [2, 5, null], [3, 4, 4]]), [2, null, null, 0]);
     assert.deepEqual(stretches([0, 1, null, 1, 1, null, 5], 0.5), ['0.5,26.0 1.5,21.2', '3.5,21.2 4.5,21.2']);
     assert.deepEqual(stretches([2, 2], 1), ['0.5,14.0 1.5,14.0']);

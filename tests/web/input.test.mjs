@@ -8,7 +8,7 @@ import { HeldKeys, HOLD_S, keyMeaning, TAP_S } from '../../clients/web/core/keys
 
 const touch = (id, x, y, time = 0) => ({ id, x, y, time, kind: 'touch' });
 
-test('left drag turns; right, middle and shift drags move', () => {
+test('left drag orbits; right, middle and shift drags pan', () => {
     const pens = [[{ kind: 'pen' }, 'orbit'], [{ kind: 'pen', button: 2 }, 'pan']];
     const moves = [[{ button: 2 }, 'pan'], [{ button: 1 }, 'pan'], [{ shift: true }, 'pan']];
     for (const [options, name] of [[{}, 'orbit'], [{ ctrl: true }, 'look'], ...moves, ...pens]) {
@@ -21,7 +21,7 @@ test('left drag turns; right, middle and shift drags move', () => {
     }
 });
 
-test('a short press without motion is a click; a long, a moved or a right one is not', () => {
+test('a short press without motion is a click; a long press, a drag or a right press is not', () => {
     const press = (options, x, time) => {
         const g = new Gestures();
         g.down({ id: 1, x: 5, y: 5, time: 0, ...options });
@@ -42,7 +42,7 @@ test('a trembling finger does not move the picture', () => {
     assert.deepEqual(g.move(touch(1, 120, 100)), [{ orbit: [20, 0] }]);
 });
 
-test('two fingers: both move on average, and zoom about the middle between them', () => {
+test('two fingers pan by their average, and zoom about the middle between them', () => {
     const g = new Gestures();
     g.down(touch(1, 100, 100));
     g.down(touch(2, 200, 100));
@@ -54,7 +54,7 @@ test('two fingers: both move on average, and zoom about the middle between them'
     assert.deepEqual(g.up(touch(1, 110, 100)), [], 'and is no click');
 });
 
-test('three fingers look around; of the fourth nothing is taken', () => {
+test('three fingers look around; a fourth finger is ignored', () => {
     const g = new Gestures();
     for (let id = 1; id <= 4; id++)
         g.down(touch(id, 100 * id, 50));
@@ -66,7 +66,7 @@ test('three fingers look around; of the fourth nothing is taken', () => {
     assert.deepEqual(g.up(touch(2, 230, 80)), [], 'and are no click');
 });
 
-test('a lost pointer ends its gesture, a stranger is ignored', () => {
+test('a lost pointer ends its gesture, an unknown pointer is ignored', () => {
     const g = new Gestures();
     g.down(touch(1, 0, 0));
     g.down(touch(2, 100, 0));
@@ -76,7 +76,7 @@ test('a lost pointer ends its gesture, a stranger is ignored', () => {
     assert.deepEqual(g.move(touch(1, 50, 50)), []);
 });
 
-test('wheel: there and back is the same, lines count as pixels, one turn is never wild', () => {
+test('wheel: forth and back cancel out, lines count as pixels, and one turn is limited', () => {
     assert.ok(Math.abs(wheelZoom({ deltaY: 100 }) * wheelZoom({ deltaY: -100 }) - 1) < 1e-12);
     assert.ok(wheelZoom({ deltaY: -100 }) < 1);
     assert.equal(wheelZoom({ deltaY: 3, deltaMode: 1 }), wheelZoom({ deltaY: 48 }));
@@ -84,7 +84,7 @@ test('wheel: there and back is the same, lines count as pixels, one turn is neve
     assert.ok(wheelZoom({ deltaY: 10, ctrlKey: true }) > wheelZoom({ deltaY: 10 }));
 });
 
-test('keys and their meanings', () => {
+test('each key maps to its motion or command', () => {
     const plain = { ctrlKey: false, altKey: false, metaKey: false, shiftKey: false };
     const key = (k, code = '', more = {}) => keyMeaning({ key: k, code, ...plain, ...more });
     assert.deepEqual(key('ArrowLeft', 'ArrowLeft'), { motion: 'ArrowLeft' });
@@ -99,7 +99,7 @@ test('keys and their meanings', () => {
     assert.equal(key('q', 'KeyQ'), null);
 });
 
-test('a tap moves by one step, holding goes on steadily, repeat of the keyboard counts nothing', () => {
+test('a tap moves by one step, holding moves steadily, and keyboard repeat is ignored', () => {
     const keys = new HeldKeys();
     assert.deepEqual(keys.press('ArrowRight'), [{ orbitDeg: [45 * TAP_S, 0] }]);
     assert.deepEqual(keys.press('ArrowRight'), []);
@@ -113,14 +113,14 @@ test('a tap moves by one step, holding goes on steadily, repeat of the keyboard 
     assert.deepEqual(keys.step(1), []);
 });
 
-test('a key whose shift was let go first does not stay down', () => {
+test('a key whose shift was released first does not stay down', () => {
     const keys = new HeldKeys();
     keys.press('KeyA');
     keys.release({ key: 'ArrowLeft', code: 'ArrowLeft', shiftKey: false });
     assert.equal(keys.moving, false);
 });
 
-test('what hands did before the camera controller came: of what is old only a drag is told that has not ended, or has just', async () => {
+test('input from before the camera controller loaded: only a drag that lasts or has just ended is replayed', async () => {
     const on = new Map(), now = performance.now();
     globalThis.document = { addEventListener: () => {} };
     const element = { addEventListener: (name, f) => on.set(name, f), setPointerCapture: () => {}, focus: () => {} };

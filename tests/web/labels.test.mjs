@@ -33,7 +33,7 @@ for (const name of readdirSync(folder)) {
 
 const area = { left: 0, top: 0, right: 1280, bottom: 720 };
 
-test('none over another, none over a mark, all inside; important ones are not crowded out', () => {
+test('labels cover no other label and no mark, lie inside, and important ones are placed more often', () => {
     for (let round = 0; round < 30; round++) {
         const items = Array.from({ length: 300 }, (_, id) => ({
             id, x: random(0, 1280), y: random(0, 720), width: random(50, 130), height: 20,
@@ -71,7 +71,7 @@ function checkLeaders(members, placed) {
 }
 
 // Random pictures from the size of a phone to that of a wall, with few or many rings, and with a legend in the way.
-test('every ring is in a label or a call-out, within the picture and over no legend', () => {
+test('every alarm ring has a label or a call-out, within the picture and over no legend', () => {
     for (let round = 0; round < 300; round++) {
         const [right, bottom] = [random(170, 1300), random(110, 700)], legend = { left: right - 90, right, top: 0, bottom: bottom * 0.8 };
         const near = random(0, 1) < 0.5 ? 40 : 2000, centre = [random(0, right), random(0, bottom)];
@@ -137,7 +137,7 @@ test('labels stay while the camera turns, and do not flicker', () => {
     assert.ok(perLabelAndPicture < 0.02 && flickers < changes / 10);
 });
 
-test('while the camera trembles nothing changes', () => {
+test('while the camera trembles, no label changes', () => {
     const steady = labelsFrom(1, labelsFrom(1, new Map()));
     let places = steady;
     for (let n = 0; n < 200; n++)

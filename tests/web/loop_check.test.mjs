@@ -15,7 +15,7 @@ function watched() {
     return loopCheck;
 }
 
-test('nothing has moved while all do as they did before', () => {
+test('no tag has moved while all vary as before', () => {
     const loopCheck = watched();
     for (let i = 30; i < 60; i++) {
         loopCheck.observe(noisy(i));
@@ -23,7 +23,7 @@ test('nothing has moved while all do as they did before', () => {
     }
 });
 
-test('the forced tag is found even if another moves farther by itself', () => {
+test('the forced tag is found even if another varies more by itself', () => {
     const loopCheck = watched();
     const [a, , c] = noisy(31);
     loopCheck.observe([a, 23, c, null]);
@@ -33,13 +33,13 @@ test('the forced tag is found even if another moves farther by itself', () => {
     assert.equal(new LoopCheckSession().stirred(span), null, 'nor before it is armed');
 });
 
-test('steps less than a scale can show are none', () => {
+test('steps smaller than the transmitter\'s resolution do not count', () => {
     const loopCheck = watched();
     loopCheck.observe([null, 20.1, null, 3]);
     assert.equal(loopCheck.stirred(span), null);
 });
 
-test('expected values: any separator, quotes, columns in any order; what is no number is left out', () => {
+test('expected values: any separator, quotes and column order are read; cells that are no number are skipped', () => {
     const list = readExpected('\uFEFFTolerance;Remark;"Tag Name";Expected\r\n0.5;"a;""b""";TT-1;42\r\n;x;TT-2;1\r\n1;;"TT;3";-2.5\r\n');
     assert.deepEqual([...list], [['TT-1', { expected: 42, tolerance: 0.5 }], ['TT;3', { expected: -2.5, tolerance: 1 }]]);
     assert.deepEqual([...readExpected('Tag Name,Expected,Tolerance\nA,1,0\n')], [['A', { expected: 1, tolerance: 0 }]]);

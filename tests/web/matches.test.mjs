@@ -19,19 +19,19 @@ const read = (placed) => {
 };
 const tags = (rows) => rows.map(({ tag }) => tag);
 
-test('cells: quotes, commas and line feeds in them, carriage returns at the ends of lines', () => {
+test('CSV cells: quotes, commas and line feeds in them, and carriage returns at line ends, are read', () => {
     assert.deepEqual(readCsv('a,"b, ""c""\n"\r\n,\nlast'), [['a', 'b, "c"\n'], ['', ''], ['last']]);
     assert.deepEqual(readCsv(''), []);
     assert.deepEqual(readMatches(''), []);
 });
 
-test('candidates: the proposed one first, each once', () => {
+test('candidates: the proposed one is first, and each appears once', () => {
     const { all } = read();
     assert.deepEqual(all.map(({ candidates }) => candidates), [['E-101'], ['P-201', 'V-201'], ['P-201'], ['E-301', 'P-301'], []]);
     assert.equal(all[4].tag, '열교환기/TT "1"');
 });
 
-test('filters: what could be several is doubtful until it is decided, unplaced is what has equipment but no place', () => {
+test('filters: a match with several candidates is doubtful until decided; unplaced means equipment without position', () => {
     const matches = read((tag) => tag !== 'TT-1011');
     assert.deepEqual(matches.counts(), { all: 5, sure: 1, likely: 3, none: 1, unplaced: 1 });
     assert.deepEqual(tags(matches.rows('likely', '301 e-')), ['FT-3011']);
@@ -42,7 +42,7 @@ test('filters: what could be several is doubtful until it is decided, unplaced i
     assert.deepEqual([matches.counts().sure, matches.counts().likely], [2, 2]);
 });
 
-test('all of a pattern: the doubtful ones that have a proposal', () => {
+test('accepting a pattern decides its doubtful tags that have a proposal', () => {
     const matches = read(), [sure, first] = matches.all;
     assert.equal(patternOf('10-TT-1012.PV'), '##-TT-####.PV');
     assert.deepEqual(matches.alike(first).map(([{ tag }, asset]) => [tag, asset]), [['TT-2011', 'P-201'], ['TT-2012', 'P-201']]);
@@ -60,7 +60,7 @@ test('all of a pattern: the doubtful ones that have a proposal', () => {
     assert.deepEqual([...matches.decisions.keys()], ['TT-2011'], 'what is no longer there is not decided');
 });
 
-test('all of a pattern: as one of it was decided, where the others may be that too', () => {
+test('a decision for one tag extends to tags of its pattern with the same candidate', () => {
     const matches = new Matches();
     matches.set(readMatches('Tag,Status,Asset,Reason,Candidates\nT-1,none,,x,A|B\nT-2,none,,x,A|B\nT-3,none,,x,B|C\nT-44,none,,x,A|B\n'));
     const [first, second] = matches.all;
@@ -80,7 +80,7 @@ test('saved decisions are removed, but not those made since', () => {
     assert.deepEqual([...matches.decisions], [['TT-2012', { status: 'none', asset: '' }], ['FT-3011', { status: 'sure', asset: 'E-301' }]]);
 });
 
-test('sizes in other units', () => {
+test('sizes are converted to other units', () => {
     const box = { min: [1, 2, 3], max: [2001, 4002, 6003] };
     assert.deepEqual(sizeOf(box), [2000, 4000, 6000]);
     assert.deepEqual(sizeOf(box, timesOf('m', 'mm')), [2, 4, 6]);

@@ -15,7 +15,7 @@ function greeted(role) {
     return { session, say: (message) => sockets[0].say(message) };
 }
 
-test('what is left out is what the group, or the plant, has by itself', () => {
+test('parameters missing from a saved view are those of its group, or of the plant', () => {
     const { session: one } = greeted('engineer'), [group, other] = one.model.groups;
     one.setParams({ clip: { planes: [[0, 0, 1, 0]] }, strength: 2, hidden: ['x'], group: other.id });
     const { params, camera } = viewOf(one, `group=${group.id}&look=flat`);
@@ -28,7 +28,7 @@ test('what is left out is what the group, or the plant, has by itself', () => {
     assert.ok(camera.eye.every(Number.isFinite), 'without a camera it is seen from home');
 });
 
-test('colour bands of a view are the numbers of its group, because the legend draws them before the server answers', () => {
+test('a view\'s colour bands become its group\'s numbers, because the legend draws them before the server answers', () => {
     const { session } = greeted('engineer'), [group] = session.model.groups;
     const breaksOf = () => viewOf(session, `group=${group.id}`).params.breaks;
     group.breaks = [20, 50];
@@ -44,7 +44,7 @@ test('a viewer takes the parameters of the field from the saved view', () => {
     assert.equal(viewOf(greeted('engineer').session, 'strength=2', 'own').params.strength, 2);
 });
 
-test('after a reload or a reconnect, a viewer takes these parameters from the view again', () => {
+test('after a reload or a reconnect, a viewer takes the field\'s parameters from the saved view again', () => {
     const { session } = greeted('viewer'), group = session.model.groups[1];
     session.setParams({ named: 'own', group: group.id, look: 'flat', strength: 2, selected: 'E-101' });
     // contains everything that the session shows, because the server starts from the named view's parameters
@@ -57,7 +57,7 @@ test('after a reload or a reconnect, a viewer takes these parameters from the vi
     assert.deepEqual([isEngineers('strength=2'), isEngineers('look=flat')], [true, false]);
 });
 
-test('a plant that is loaded again may have none any more', () => {
+test('the list of views is empty after a reload into a plant without views', () => {
     const { session, say } = greeted('viewer');
     say(vector('server/views.json'));
     assert.ok(session.views.length > 0);
@@ -65,7 +65,7 @@ test('a plant that is loaded again may have none any more', () => {
     assert.deepEqual(session.views, []);
 });
 
-test('an id is plain, short, and no other view has it', () => {
+test('an id made from a title is plain, short and unique', () => {
     assert.equal(idFor('Kessel 2, Süd', []), 'kessel-2-sud');
     assert.equal(idFor('보일러', []), 'view');
     assert.equal(idFor('A', [{ id: 'a' }, { id: 'a-2' }]), 'a-3');

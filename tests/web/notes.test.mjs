@@ -11,7 +11,7 @@ connection.start();
 sockets[0].accept();
 sockets[0].say(vector('server/welcome.json'));
 
-test('a note is at a place, a tag or an asset; or at nothing that is there', () => {
+test('a note is placed at a point, a tag or an asset, or nowhere if that is missing', () => {
     const { model } = session, [tag] = model.tags, [asset] = model.assets;
     assert.deepEqual(placeOf(model, { position: [1, 2, 3] }), [1, 2, 3]);
     assert.deepEqual(placeOf(model, { tag: tag.name }), tag.position);
@@ -24,21 +24,21 @@ test('a note is at a place, a tag or an asset; or at nothing that is there', () 
     assert.deepEqual([{ text: 'x' }, { position: [0, 0, 0] }, { tag: 'T' }, { asset: 'A' }].map(isOfPlant), [true, false, false, false]);
 });
 
-test('an expired note does not count, whatever the server said last', () => {
+test('an expired note is not shown, even if the server still lists it', () => {
     const notes = [{ id: 'a', until_us: 0 }, { id: 'b', until_us: 50 }];
     assert.deepEqual(inForce(notes, 49).map(({ id }) => id), ['a', 'b']);
     assert.deepEqual(inForce(notes, 50).map(({ id }) => id), ['a']);
     assert.equal(inForce(notes, null).length, 2);
 });
 
-test('a picture of the past has the notes of its instant', () => {
+test('a picture of the past shows the notes of its instant', () => {
     const notes = [{ id: 'later', time_us: 60, until_us: 0, ended_us: 0 }, { id: 'over', time_us: 10, until_us: 40, ended_us: 0 },
         { id: 'removed', time_us: 10, until_us: 0, ended_us: 50 }];
     const then = (atUs) => inForce(notes, 100, atUs).map(({ id }) => id);
     assert.deepEqual([9, 10, 39, 40, 50, 60].map(then), [[], ['over', 'removed'], ['over', 'removed'], ['removed'], [], ['later']]);
 });
 
-test('a saved picture cuts nothing off a note: lines break at blanks, and within a word that is longer than a line', () => {
+test('a saved picture cuts nothing off a note: lines break at blanks, and inside words longer than a line', () => {
     const pen = { measureText: (text) => ({ width: [...text].length }) };
     const cases = [['permit 4711 open', ['permit', '4711 open']], ['', ['']],
         ['see abcdefghijklmnopqrstu now', ['see', 'abcdefghij', 'klmnopqrst', 'u now']],
@@ -47,7 +47,7 @@ test('a saved picture cuts nothing off a note: lines break at blanks, and within
         assert.deepEqual(wrapped(pen, text, 10), lines);
 });
 
-test('notes, what was sent to walls and pointers are heard, and go with the plant', () => {
+test('notes, sent views and pointers are received, and removed with the plant', () => {
     for (const name of ['notes', 'walls', 'pointed'])
         sockets[0].say(vector(`server/${name}.json`));
     const { notes, walls, pointed } = session;

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { followerNames, leaderName } from '../../clients/web/core/people.js';
 import { learnWords } from '../../clients/web/core/words.js';
 
-test('followers have the names of their users; equal names and viewers without a name have numbers', async () => {
+test('followers are labelled with their user names; equal names and viewers without a name are numbered', async () => {
     await learnWords();
     assert.deepEqual(followerNames({ sessions: [7, 8, 9, 10, 11], names: ['kim', null, 'lee', 'kim', null] }),
         ['kim 1', 'Viewer 1', 'lee', 'kim 2', 'Viewer 2']);

@@ -10,7 +10,7 @@ const random = randomNumbers(), AREA = { left: 0, top: 0, right: 600, bottom: 40
 const pin = (x, y) => ({ x, y, wide: 120, high: 20 });
 const boxOf = (left, top) => ({ left, top, right: left + 120, bottom: top + 20 });
 
-test('a pin with room is above and to the right of its point', () =>
+test('a pin with free space is above and to the right of its point', () =>
     assert.deepEqual(placePin(pin(200, 200), AREA, [], []), boxOf(200, 200 - STEM - 20)));
 
 test('a pin at an edge is moved inside', () => {
@@ -23,10 +23,10 @@ test('a pin whose point is under a legend is beside the legend', () => {
     assert.deepEqual(box, boxOf(450 - 2 - 120, 200 - STEM - 20));
 });
 
-test('a pin below a strip along the upper edge', () =>
+test('a pin at the upper edge stays below the strip there', () =>
     assert.equal(placePin(pin(200, 20), AREA, [{ left: 0, top: 0, right: 600, bottom: 28 }], []).top, 30));
 
-test('pins cover rings only if the picture has no other room', () => {
+test('pins cover alarm rings only if the picture has no other space', () => {
     const rings = [];
     for (let x = 0; x < 600; x += 20)
         for (let y = 60; y < 400; y += 20)
@@ -36,13 +36,13 @@ test('pins cover rings only if the picture has no other room', () => {
     assert.ok(!meets(placePin(pin(200, 300), AREA, fixed, all), fixed[0]), 'even then not another pin');
 });
 
-test('a pin leaves room between itself and the alarm ring of its own point, so that its stem is seen', () => {
+test('a pin keeps a distance from its own point\'s alarm ring, so that its stem is visible', () => {
     const ring = { left: 187, top: 187, right: 213, bottom: 213 }, box = placePin(pin(200, 200), AREA, [], [ring]);
     assert.ok(box.left > ring.right + STEM - 1 || box.bottom < ring.top - STEM + 1, JSON.stringify(box));
     assert.ok(Math.hypot(box.left - 200, box.bottom - 200) < 60, 'and it is near');
 });
 
-test('a pin without free room covers as few markers as it can', () => {
+test('a pin without free space covers as few markers as it can', () => {
     const half = { left: 0, top: 0, right: 150, bottom: 200 }, marks = [];
     for (let y = 0; y < 200; y += 18)
         // two rows have fewer markers, but still no room for a pin between them
@@ -53,7 +53,7 @@ test('a pin without free room covers as few markers as it can', () => {
     assert.equal(covered(box), 1, JSON.stringify(box));
 });
 
-test('random pins are whole and cover neither each other nor the legend', () => {
+test('random pins are complete and cover neither each other nor the legend', () => {
     for (let round = 0; round < 200; round++) {
         const legend = { left: 480, top: 10, right: 590, bottom: 300 }, fixed = [legend];
         for (let n = 0; n < 8; n++) {

@@ -47,7 +47,7 @@ test('a curve gets the colour of its row again when a row above it is removed', 
     assert.equal(show([b], [b]).options.series[1].stroke, 'red');
 });
 
-test('names of limits that are close together are side by side within the chart, or left out', () => {
+test('names of limits that are close together are placed side by side within the chart, or left out', () => {
     const { plot } = plotOf('bar'), written = [];
     const ctx = { save() {}, restore() {}, fillRect() {}, measureText: ({ length }) => ({ width: 10 * length }),
         fillText: (text, x) => written.push([text, x]) };
@@ -73,7 +73,7 @@ function namesBeside(points, limits) {
     return drawn;
 }
 
-test('the name of a limit is at its line beside the curve, shorter or above the line if need be, or left out', () => {
+test('a limit\'s name is on its line beside the curve, shortened or above the line if necessary, or left out', () => {
     const limit = { words: 'TE-101 H 170', short: 'H 170', colour: 'red', y: 20 };
     const [first] = namesBeside([[0, 20], [100, 20], [130, 50], [300, 50]], [limit]);
     assert.equal(first.text, 'TE-101 H 170');

@@ -29,7 +29,7 @@ test('outer', (t) => t.test('inner', () => { throw new Error('no answer\\nwithin
 test('late', { timeout: 50 }, () => new Promise((done) => setTimeout(done, 300)));
 `;
 
-test('of node: the error, and the places of helper and test', () => {
+test('reasons.py extracts from node\'s output the error and the positions of helper and test', () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-reasons-')), file = join(folder, 'failing.mjs');
     writeFileSync(file, FAILING);
     // the inner test run must not inherit NODE_TEST_CONTEXT: it would report to the outer test runner
@@ -44,7 +44,7 @@ test('of node: the error, and the places of helper and test', () => {
     assert.match(late, /^test timed out after 50ms/);
 });
 
-test('of a C test: what did not hold, what it said, the seed, the place; and nothing of the next one', () => {
+test('reasons.py extracts from a C test the failed check, its message, seed and position, and nothing of the next test', () => {
     const texts = reasonsOf(`1..3
 # seed 12
 ok 1 - good
@@ -64,7 +64,7 @@ not ok 3 - told
     ]);
 });
 
-test('of a program that ended badly: what a sanitizer found, else its last words, cut short', () => {
+test('reasons.py extracts from a crashed program the sanitizer\'s report, or its last words, shortened', () => {
     const found = reasonsOf(`1..2
 ok 1 - a
 ==7==ERROR: AddressSanitizer: heap-use-after-free

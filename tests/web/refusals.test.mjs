@@ -20,7 +20,7 @@ const source = ['server', 'preprocess'].flatMap((folder) => readdirSync(new URL(
 const refused = [...source.matchAll(/\bREFUSAL_([A-Z]\w*)\b(?:,\s*"([^"]*)")?/g)].filter(([, code]) => !/^(?:NONE|TEXT_BYTES)$/.test(code))
     .map(([, code, args]) => [code.toLowerCase(), args?.includes('=') ? args.split('\\n').map((arg) => arg.split('=')[0]).sort() : null]);
 
-test('every language has words for all of it, with the same arguments', () => {
+test('every language has a text for each refusal code, with the same arguments', () => {
     for (const [language, table] of Object.entries(tables)) {
         assert.deepEqual(Object.keys(table), Object.keys(tables.en));
         for (const [key, text] of Object.entries(table))
@@ -28,7 +28,7 @@ test('every language has words for all of it, with the same arguments', () => {
     }
 });
 
-test('the server uses every code, and gives the arguments of its words', () => {
+test('the server uses every refusal code, and provides the arguments of its text', () => {
     assert.deepEqual(codes.filter((code) => !refused.some(([one]) => one === code)), []);
     for (const [code, args] of refused) {
         const wanted = blanks(tables.en[code] ?? assert.fail(`no words for ${code}`));
@@ -45,7 +45,7 @@ test('PROTOCOL.md names every code with its arguments', () => {
     assert.deepEqual(rows.map(([, code]) => code).sort(), [...codes].sort());
 });
 
-test('a sentence is formed from the code and the arguments, whatever the English text says', () => {
+test('a refusal\'s sentence is formed from code and arguments, whatever the English text says', () => {
     for (const code of codes) {
         const args = Object.fromEntries(blanks(tables.en[code]).map((name) => [name, `<${name}>`]));
         assert.equal(refusalText('reworded', { code, args }, 'bad_field'), phrase(tables.en, null, code, args));
@@ -55,7 +55,7 @@ test('a sentence is formed from the code and the arguments, whatever the English
     assert.equal(refusalText('of tomorrow', { code: 'tomorrow', args: {} }), 'of tomorrow');
 });
 
-test('over HTTP, and of a tag list', async () => {
+test('refusals over HTTP, and of a tag list, are worded in the page\'s language', async () => {
     const refusal = { code: 'no_tag', args: { name: 'Ü-1' } };
     const ascii = JSON.stringify(refusal).replace('Ü', '\\u00dc');
     assert.equal(await answerText(new Response('reworded', { status: 400, headers: { 'plantcast-refusal': ascii } })),
@@ -65,7 +65,7 @@ test('over HTTP, and of a tag list', async () => {
     assert.equal(whyNotSaved({ errors: ['tags.csv:2:1: a', 'b'] }), 'tags.csv:2:1: a; b');
 });
 
-test('no words of the page are unused', () => {
+test('no text for refusals on the page is unused', () => {
     const page = ['core/refusals.js', 'core/blocked.js', 'app/sharing/arrival.js', 'app/alarms/alarms.js', 'app/main.js']
         .map((name) => read(`clients/web/${name}`)).join('\n');
     assert.deepEqual(Object.keys(tables.en).filter((key) => key.startsWith('page.') && !page.includes(`'${key}'`)), []);

@@ -17,7 +17,7 @@ import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patt
 import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
 import { learnWords } from '../../clients/web/core/words.js';
 
-test('decimals follow the range, zero has no minus, what is missing is a dash', () => {
+test('decimals follow the range, zero has no minus sign, and a missing value is a dash', () => {
     assert.deepEqual([1000, 160, 16, 5, 0.02, 0, NaN].map(decimalsFor), [0, 1, 2, 2, 5, 2, 2]);
     assert.equal(numberText(-0.04, 1), '0.0');
     assert.equal(numberText(-12.34, 1), '−12.3');
@@ -29,17 +29,17 @@ test('decimals follow the range, zero has no minus, what is missing is a dash', 
     assert.deepEqual(short, ['20', '0.05', '−1.5', '0', '–', '100']);
 });
 
-test('units as engineers write them', () => {
+test('units are written as engineers write them', () => {
     assert.deepEqual(['degC', '°C', 'bar', 'mm/s', 'm3/h', 'kg/cm2', 'um'].map(unitText),
         ['°C', '°C', 'bar', 'mm/s', 'm³/h', 'kg/cm²', 'µm']);
 });
 
-test('ages', () => {
+test('ages are written with fitting units', () => {
     assert.deepEqual([0, 940, 9940, 9960, 119000, 121000, 7.3e6, 1.8e8, null].map(ageText),
         ['0.0 s', '0.9 s', '9.9 s', '10 s', '119 s', '2 min', '2 h', '2 d', '–']);
 });
 
-test('the plant clock is in the plant\'s zone and says the offset, winter and summer', () => {
+test('the plant clock is in the plant\'s zone and states the offset, in winter and summer', () => {
     const oslo = zoneClock('Europe/Oslo');
     assert.deepEqual(oslo(Date.UTC(2026, 0, 1, 0, 0, 7)), { date: 'Jan 1, 2026', day: 'Jan 1', time: '01:00:07', offset: 'UTC+01:00' });
     assert.deepEqual(oslo(Date.UTC(2026, 6, 1, 22, 30)), { date: 'Jul 2, 2026', day: 'Jul 2', time: '00:30:00', offset: 'UTC+02:00' });
@@ -48,7 +48,7 @@ test('the plant clock is in the plant\'s zone and says the offset, winter and su
     assert.deepEqual(nowhere, { date: 'Jan 1, 2026', day: 'Jan 1', time: '00:00:00', offset: 'UTC' });
 });
 
-test('qualities in words', async () => {
+test('qualities are written in words', async () => {
     await learnWords();
     assert.equal(statusText('good', 'Good'), 'Good');
     assert.equal(statusText('bad', 'Bad_WaitingForInitialData'), 'Bad: waiting for initial data');
@@ -57,7 +57,7 @@ test('qualities in words', async () => {
     assert.equal(worst([]), null);
 });
 
-test('ticks: round, both ends, none crowding an end', () => {
+test('ticks are round, include both ends, and none crowds an end', () => {
     assert.deepEqual(ticks(0, 100), [0, 20, 40, 60, 80, 100]);
     assert.deepEqual(ticks(20, 180), [20, 50, 100, 150, 180]);
     assert.deepEqual(ticks(0, 16), [0, 5, 10, 16]);
@@ -79,7 +79,7 @@ test('marks that are close are moved apart, and stay on the bar', () => {
     assert.deepEqual(spread([], 0.1), []);
 });
 
-test('nice steps, and ramps to choose from', () => {
+test('step sizes are round, and the ramp offers fitting choices', () => {
     assert.equal(niceStep(100, 6), 20);
     assert.equal(niceStep(0.3, 6), 0.05);
     assert.deepEqual(rampChoices(20, 180), [10, 20, 50]);
@@ -90,7 +90,7 @@ const grey = { rgb: Uint8Array.from({ length: 768 }, (_, i) => Math.floor(i / 3)
 
 const scale = (more = {}) => ({ map: grey, min: 0, max: 100, ...more });
 
-test('colours: the map inside, its own colours outside, one per ramp step', () => {
+test('colours: values in range take the map\'s colours, others the two end colours, and each ramp step has one colour', () => {
     assert.deepEqual(colourOf(scale(), 0), [0, 0, 0]);
     assert.deepEqual(colourOf(scale(), 100), [255, 255, 255]);
     assert.deepEqual(colourOf(scale(), -0.1), [0, 0, 255]);
@@ -105,7 +105,7 @@ test('colours: the map inside, its own colours outside, one per ramp step', () =
     assert.deepEqual(colourOf(scale({ interval: 30 }), 95), [243, 243, 243], 'a last step that is cut short');
 });
 
-test('colours: bands at breaks are spread evenly over the map', () => {
+test('colours: bands between breaks are spread evenly over the map', () => {
     const bands = scale({ breaks: [-5, 60, 80, 95, 100], interval: 10 });
     assert.deepEqual([0, 59.9, 60, 80, 100].map((value) => colourOf(bands, value)[0]), [32, 32, 96, 160, 224]);
     assert.deepEqual(edges(bands), [60, 80, 95]);
@@ -113,7 +113,7 @@ test('colours: bands at breaks are spread evenly over the map', () => {
     assert.deepEqual(edges(scale({ interval: 1e-6 })), [], 'more than anybody sees');
 });
 
-test('logarithmic scales', () => {
+test('logarithmic scales have logarithmic ticks and colours', () => {
     const log = scale({ min: 0.1, max: 1000, log: true });
     assert.equal(placeOf(log, 10), 0.5);
     assert.ok(Math.abs(valueAt(log, placeOf(log, 42)) - 42) < 1e-9);
@@ -123,12 +123,12 @@ test('logarithmic scales', () => {
     assert.deepEqual(scaleTicks(scale({ min: 20, max: 180, log: true }), []), [20, 50, 100, 180]);
 });
 
-test('ticks: what has a line, if it can be read', () => {
+test('ticks include breaks and isolines, unless these are too many to read', () => {
     assert.deepEqual(scaleTicks(scale({ breaks: [30, 70] }), [50]), [0, 30, 50, 70, 100]);
     assert.deepEqual(scaleTicks(scale(), Array.from({ length: 30 }, (_, i) => 3 * i + 1)), ticks(0, 100));
 });
 
-test('halves of a split view', () => {
+test('a split view has a left and a right half, each with its parameters and its width', () => {
     assert.deepEqual(halves({ group: 'a', split: null }, 641), [{ params: { group: 'a', split: null }, left: 0, width: 641 }]);
     const [left, right] = halves({ group: 'a', look: 'flat', split: { group: 'b' } }, 641);
     assert.deepEqual([left.left, left.width, right.left, right.width], [0, 320, 320, 321]);
@@ -136,7 +136,7 @@ test('halves of a split view', () => {
     assert.deepEqual([0, 319, 320, 640, 900].map((x) => halfAt({ split: {} }, 641, x).left), [0, 0, 320, 320, 320]);
 });
 
-test('patterns: half of the hatching is dark, a fifth of the stipple is dots, both as large as the picture asks', () => {
+test('patterns: half of the hatching is dark, a fifth of the stipple is dots, and both scale with the picture', () => {
     const darkness = (colourAt, light, dark) => {
         let sum = 0;
         for (let y = 0; y < 300; y++) {
@@ -154,13 +154,13 @@ test('patterns: half of the hatching is dark, a fifth of the stipple is dots, bo
     assert.deepEqual(hatchAt(40, 50, 300, 12), hatchAt(41, 51, 300, 12), 'and fall from left to right');
 });
 
-test('the nearest marker, in sight before hidden ones, within reach only', () => {
+test('the nearest marker within reach is chosen, visible ones before hidden ones', () => {
     const markers = [{ x: 10, y: 10, occluded: true }, { x: 16, y: 10, occluded: false }, { x: 90, y: 90 }];
     assert.equal(nearestMarker(markers, 10, 10, 14), markers[1]);
     assert.equal(nearestMarker(markers, 50, 50, 14), null);
 });
 
-test('frame rate counts the last second', () => {
+test('the frame rate counts the last second', () => {
     const rate = new RateMeter();
     for (let t = 0; t < 2000; t += 40)
         rate.count(t);
@@ -168,7 +168,7 @@ test('frame rate counts the last second', () => {
     assert.equal(rate.perSecond(4000), 0);
 });
 
-test('latency: from the input to the picture that shows it, once; the median of the last moments', () => {
+test('latency is measured from an input to the first picture that shows it, as the median of recent inputs', () => {
     const latency = new LatencyMeter();
     assert.equal(latency.median(0), null);
     latency.sent(1, 100);
@@ -184,7 +184,7 @@ test('latency: from the input to the picture that shows it, once; the median of 
     assert.equal(latency.behindMs(9000), 0);
 });
 
-test('the address carries the view there and back', () => {
+test('a view written to the address is read back unchanged', () => {
     const view = {
         camera: { eye: [35, -42.1234, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45 },
         params: {
@@ -196,7 +196,7 @@ test('the address carries the view there and back', () => {
     assert.deepEqual(readAddress(writeAddress(view)), { ...view, time: {} });
 });
 
-test('so it does with all that a view can have', () => {
+test('a view with every parameter is read back from the address unchanged', () => {
     const params = {
         group: 'temperature', show: 'difference', baseline: { name: 'before, 10:00' }, scale: 'linear', fill: 'neighbours', range: [-5, 5],
         breaks: [-2, 0, 2.5], isolines: [1, 2], strength: 2, decay: 0.5, power: 3, radius_m: 4, reach_m: 2.5, light: [0, 0.6, 0.8],
@@ -214,7 +214,7 @@ test('so it does with all that a view can have', () => {
     assert.deepEqual(readAddress(writeAddress({ params: { look: 'flat', split: { look: 'flat' } } })).params, { look: 'flat', split: {} });
 });
 
-test('a snapshot is asked for as the view is', () => {
+test('a snapshot request has the parameters of the view', () => {
     const view = {
         carried: {
             group: 'g', range: [0, 50], isolines: [], hidden: [], ghost: ['A', 'B'], selected: null, split: { group: 'h', range: [1, 2] },
@@ -230,7 +230,7 @@ test('a snapshot is asked for as the view is', () => {
     assert.deepEqual([camera, projection, height_m, at], ['1,2,3,0,0,0', 'orthographic', 7, '2001-09-09T01:46:40.000Z']);
 });
 
-test('an address that makes no sense is as good as none', () => {
+test('an invalid address counts as none', () => {
     const senseless = [
         '', '#', '#camera=1,2,3', '#camera=NaN,0,0,0,0,0,0,0,1,45', '#ramp=-3', '#ramp=x', '#look=psychedelic', '#%%%',
         '#camera=1,1,1,1,1,1,0,0,1,45', '#range=5,1', '#light=0,0,0', '#sensors=A', '#sensors=A=x',

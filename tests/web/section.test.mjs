@@ -13,7 +13,7 @@ function assetLook({ hidden = [], ghost = [], isolate = [] }, id) {
     return isolate.length > 0 && !isolate.includes(id) ? 'hidden' : 'shown';
 }
 
-test('a cut comes back as it was made', () => {
+test('a section plane written as parameters is read back unchanged', () => {
     for (const axis of AXES) {
         for (const turned of [false, true])
             assert.deepEqual(readCut(cut(axis, 3.5, turned)), { axis, at: 3.5, turned });
@@ -22,7 +22,7 @@ test('a cut comes back as it was made', () => {
     assert.deepEqual(cut('z', 2, true), { planes: [[0, 0, -1, 2]] });
 });
 
-test('a box comes back as large as it was made', () => {
+test('a section box written as parameters is read back with its size', () => {
     const bounds = { min: [0, -1, 2], max: [10, 1, 3] };
     assert.deepEqual(boxAround(bounds, 0.5), { box: { min: [2.5, -0.5, 2.25], max: [7.5, 0.5, 2.75] } });
     assert.equal(readBox(boxAround(bounds, 1.5), bounds), 1.5);
@@ -32,13 +32,13 @@ test('a box comes back as large as it was made', () => {
     assert.equal(readBox(cut('x', 1, false), bounds), null);
 });
 
-test('other clips are left alone', () => {
+test('other clips are not read as a section plane', () => {
     for (const clip of [null, undefined, { box: { min: [0, 0, 0], max: [1, 1, 1] } }, { planes: [[0.6, 0.8, 0, 1]] },
         { planes: [[1, 0, 0, 0], [0, 1, 0, 0]] }])
         assert.equal(readCut(clip), null);
 });
 
-test('what is pressed once is so, pressed again it is as before', () => {
+test('pressing hide or ghost on an asset sets it, and pressing again resets it', () => {
     let params = { hidden: [], ghost: ['B'], isolate: [] };
     params = { ...params, ...showAsset(params, 'hide', 'A') };
     assert.equal(assetLook(params, 'A'), 'hidden');

@@ -9,7 +9,7 @@ import { filesIn } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 
-test('no line of a template literal begins as a comment does', () => {
+test('no line of a template literal begins like a comment', () => {
     for (const folder of ['app', 'core', 'words']) {
         for (const name of filesIn(folder).filter((one) => one.endsWith('.js'))) {
             let open = false;

@@ -24,7 +24,7 @@ function greeted(wanted) {
 }
 const last = (list) => list[list.length - 1];
 
-test('hello states size and codecs, and the view of the address', () => {
+test('hello states size, codecs and the address\'s view', () => {
     const { connection, session, sockets } = makeSession(WANTED);
     session.resize({ width: 800, height: 600 });
     connection.start();
@@ -37,7 +37,7 @@ test('hello states size and codecs, and the view of the address', () => {
     ]);
 });
 
-test('what it says has the form of the vectors that the server accepts', () => {
+test('the session\'s messages have the form of the server\'s test vectors', () => {
     const shape = (message) => Object.keys(message).sort();
     const { session, socket } = greeted(WANTED);
     const full = vector('client/accepted--hello-full.json');
@@ -55,7 +55,7 @@ test('what it says has the form of the vectors that the server accepts', () => {
     assert.deepEqual(shape(last(socket.sent)), shape(vector('client/accepted--ack.json')));
 });
 
-test('without a view of its own it takes the plant\'s', () => {
+test('without a view of its own, the session takes the plant\'s view', () => {
     const { session, socket } = greeted();
     assert.deepEqual(socket.sent[0], { type: 'hello', width: 640, height: 360, codecs: ['jpeg', 'png'] });
     assert.deepEqual(session.camera, welcome.plant.home);
@@ -65,7 +65,7 @@ test('without a view of its own it takes the plant\'s', () => {
     assert.equal(session.connection.tries, 0);
 });
 
-test('a view that is refused is given up in steps', () => {
+test('a refused view is dropped step by step', () => {
     const { connection, sockets } = makeSession(WANTED);
     connection.start();
     const refuse = () => sockets[0].say({ type: 'error', code: 'bad_field', text: 'params.group: unknown', about: 'hello' });
@@ -76,7 +76,7 @@ test('a view that is refused is given up in steps', () => {
     assert.deepEqual(sockets[0].sent.map((m) => [!!m.camera, !!m.params]), [[true, true], [true, false], [false, false]]);
 });
 
-test('a comparison that is not kept any more is given up alone', () => {
+test('only the comparison is dropped if its baseline no longer exists', () => {
     const params = { colormap: 'cividis', show: 'difference', baseline: { name: 'before' } };
     const { connection, sockets } = makeSession({ ...WANTED, params });
     connection.start();
@@ -86,7 +86,7 @@ test('a comparison that is not kept any more is given up alone', () => {
         [{ colormap: 'cividis', show: 'difference', baseline: 'before' }, { colormap: 'cividis' }]);
 });
 
-test('who may not set how the field is computed does not ask for it again', () => {
+test('a user who may not set field parameters does not request them again', () => {
     for (const role of ['viewer', 'engineer']) {
         const { session, socket, sockets, clock } = greeted();
         socket.say({ ...welcome, role });
@@ -101,7 +101,7 @@ test('who may not set how the field is computed does not ask for it again', () =
     }
 });
 
-test('who leads knows who follows, and gives the lead to one of them', () => {
+test('a leader knows the followers, and hands the lead to one of them', () => {
     const { session, socket } = greeted();
     const heard = [];
     session.on('followers', () => heard.push(session.followers));
@@ -124,7 +124,7 @@ test('strength and decay of single sensors are changed one by one, and undone', 
     assert.deepEqual(session.params.sensors, {});
 });
 
-test('at most one camera per animation frame, the newest', () => {
+test('at most one camera is sent per animation frame, the newest', () => {
     const { session, socket, clock } = greeted(WANTED);
     const before = socket.sent.length;
     for (let n = 0; n < 5; n++)
@@ -138,7 +138,7 @@ test('at most one camera per animation frame, the newest', () => {
     assert.equal(socket.sent.length, before + 1, 'the same camera is no news');
 });
 
-test('a congested line gets no camera; the newest goes out when it has cleared', () => {
+test('over a congested connection no camera is sent; the newest is sent once it clears', () => {
     const { session, socket } = greeted(WANTED);
     socket.bufferedAmount = 1e6;
     session.setCamera(orbit(session.camera, 3, 0));
@@ -150,7 +150,7 @@ test('a congested line gets no camera; the newest goes out when it has cleared',
     assert.equal(last(socket.sent).seq, 2);
 });
 
-test('after a reconnect the same camera and the same parameters are asked for', () => {
+test('after a reconnect the same camera and parameters are requested', () => {
     const { session, socket, sockets, clock } = greeted();
     session.setCamera(orbit(session.camera, 33, 5));
     session.flush();
@@ -170,7 +170,7 @@ test('after a reconnect the same camera and the same parameters are asked for', 
     assert.equal(session.params.ramp_interval, 10);
 });
 
-test('what the plant begins with need not be said; other sets are, empty ones too, and after a reconnect all', () => {
+test('the plant\'s start sets are not sent; other sets are sent, even empty, and all after a reconnect', () => {
     const { connection, session, sockets } = makeSession();
     const [first, ...rest] = welcome.assets, assets = [{ ...first, start: 'hidden' }, ...rest];
     connection.start();
@@ -192,7 +192,7 @@ test('what the plant begins with need not be said; other sets are, empty ones to
     assert.deepEqual(named.sockets[0].sent[0].params.hidden, []);
 });
 
-test('parts of our view that this plant lacks are left out and reported; the rest is requested again', () => {
+test('parts of the view that this plant lacks are dropped and reported; the rest is requested again', () => {
     const params = { group: 'pressure', selected: 'E-9', ghost: ['P-9'] };
     const { connection, sockets, events } = makeSession({ camera: WANTED.camera, params });
     connection.start();
@@ -208,7 +208,7 @@ test('parts of our view that this plant lacks are left out and reported; the res
     assert.deepEqual(sockets[0].sent.at(-1).params, undefined);
 });
 
-test('a token is asked for once, said in hello, and the view is asked for again', () => {
+test('a token is asked for once and sent in hello, and the view is requested again', () => {
     const { session, sockets, events, connection } = makeSession();
     connection.start();
     sockets[0].accept();
@@ -227,7 +227,7 @@ test('a token is asked for once, said in hello, and the view is asked for again'
     assert.deepEqual([sockets[2].sent[0].token, sockets[2].sent[0].resume], ['pc_1', welcome.resume]);
 });
 
-test('a full server is asked again when it said, not at once with less', () => {
+test('a full server is asked again after the time that it named, not at once with less', () => {
     const { sockets, clock, connection } = makeSession();
     connection.start();
     sockets[0].accept();
@@ -240,7 +240,7 @@ test('a full server is asked again when it said, not at once with less', () => {
     assert.equal(sockets.length, 2);
 });
 
-test('after a reconnect to another plant it looks from that plant\'s home', () => {
+test('after a reconnect to another plant the session starts at that plant\'s home view', () => {
     const { session, socket, sockets, clock } = greeted(WANTED);
     socket.fail();
     clock.advance(500);
@@ -249,7 +249,7 @@ test('after a reconnect to another plant it looks from that plant\'s home', () =
     assert.deepEqual(session.camera, welcome.plant.home);
 });
 
-test('parameters: shown at once, corrected by the answer, restored when refused', () => {
+test('parameters are shown at once, corrected by the answer, and restored when refused', () => {
     const { session, socket } = greeted();
     session.setParams({ group: 'pressure' });
     assert.equal(session.params.interpolation, 'paper', 'a group brings its own settings');
@@ -263,7 +263,7 @@ test('parameters: shown at once, corrected by the answer, restored when refused'
     assert.equal(session.params.colormap, 'viridis');
 });
 
-test('what lies over the picture goes by the parameters that the picture shows', () => {
+test('items drawn over the picture follow the parameters of the shown picture', () => {
     const { session, socket, sockets, clock, events } = greeted();
     const frame = { seq: 1, cameraSeq: 0, paramsSeq: 0, waitUs: 0, fieldUs: 0, renderUs: 0, encodeUs: 0, sentTimeUs: 0 };
     const draw = (paramsSeq) => session.drawn({ ...frame, paramsSeq }, 1);
@@ -293,7 +293,7 @@ test('what lies over the picture goes by the parameters that the picture shows',
     assert.equal(session.shown, session.params, 'no picture comes of what was refused');
 });
 
-test('what is chosen or resized between hello and welcome is not lost', () => {
+test('a choice or a resize between hello and welcome is not lost', () => {
     const { connection, sockets, session } = makeSession();
     connection.start();
     sockets[0].accept();
@@ -321,7 +321,7 @@ test('a drawn frame is acknowledged and measured', () => {
     assert.equal(session.picture.payload, null);
 });
 
-test('a hidden page says so, also to a new connection', () => {
+test('a hidden page tells the server so, also over a new connection', () => {
     const { session, socket, sockets, clock } = greeted();
     session.setVisible(false);
     assert.deepEqual(last(socket.sent), { type: 'visible', visible: false });
@@ -332,7 +332,7 @@ test('a hidden page says so, also to a new connection', () => {
     assert.deepEqual(sockets[1].sent[1], { type: 'visible', visible: false });
 });
 
-test('tags: values, qualities, and ages that go on by our own clock', () => {
+test('tags have values, qualities, and ages that advance by the local clock', () => {
     const { session, socket, clock } = greeted();
     const values = [[0, 87.25, 'good', 'Good', 140], [1, null, 'bad', 'Bad_SensorFailure', null], [999, 1, 'good', 'Good', 0]];
     socket.say({ type: 'tags', time_us: 1, values });
@@ -354,7 +354,7 @@ test('tags: values, qualities, and ages that go on by our own clock', () => {
     assert.equal(session.model.ageMs(0, clock.now()), 400);
 });
 
-test('markers go with their frame, not with the next', () => {
+test('markers belong to their frame, not to the next', () => {
     const { session, socket } = greeted();
     socket.say({ type: 'markers', seq: 4, markers: [[0, 1, 2, 1, 0], [0, 5, 2, 0, 1]], isolines: [[20, 3, 4, 0]] });
     socket.say({ type: 'markers', seq: 5, markers: [[0, 1, 2, 0, 0, 87.5, 1]] });
@@ -370,7 +370,7 @@ test('markers go with their frame, not with the next', () => {
     assert.deepEqual([session.markersOf(8).get('7/0').quality, session.markersOf(8).isolines], ['bad', []]);
 });
 
-test('messages of unknown types and without sense are ignored, the session lives', () => {
+test('unknown and invalid messages are ignored, and the session continues', () => {
     const { session, socket, events } = greeted();
     socket.say(vector('server/unknown-type.json'));
     socket.say('{');
@@ -382,7 +382,7 @@ test('messages of unknown types and without sense are ignored, the session lives
     assert.equal(session.model.live, true);
 });
 
-test('what comes before the welcome does no harm', () => {
+test('messages before the welcome do no harm', () => {
     const { connection, sockets, session } = makeSession();
     connection.start();
     sockets[0].accept();
@@ -391,7 +391,7 @@ test('what comes before the welcome does no harm', () => {
     assert.equal(session.model, null);
 });
 
-test('every vector of a server\'s message is understood', () => {
+test('the session understands every test vector of a server message', () => {
     for (const name of ['welcome', 'params', 'tags', 'tags-changed', 'markers', 'markers-none', 'markers-values', 'status', 'pong', 'error',
         'error-no-about']) {
         const { socket, events } = greeted();
@@ -400,13 +400,13 @@ test('every vector of a server\'s message is understood', () => {
     }
 });
 
-test('the server\'s clock goes on by ours', () => {
+test('the server\'s clock advances by the local clock', () => {
     const { session, clock } = greeted();
     clock.advance(2500);
     assert.equal(session.clockUs(), welcome.time_us + 2500000);
 });
 
-test('health: each state has its own kind and words', () => {
+test('health: each state has its own kind and text', () => {
     const bench = makeSession();
     const { connection, session, clock, sockets } = bench;
     const now = () => health(session, clock.now());
@@ -464,7 +464,7 @@ test('health: after a reconnect the page is live only with a picture of the new 
     assert.deepEqual([...new Set(kinds)], ['lost'], 'nor for a moment');
 });
 
-test('a frame that the server gave up is passed over in silence', () => {
+test('a frame that the server gave up is skipped silently', () => {
     const { socket, events } = greeted();
     socket.sayBytes(vectorBytes('frame/bad-payload-missing.bin'));
     assert.deepEqual(events, []);
@@ -474,7 +474,7 @@ test('a frame that the server gave up is passed over in silence', () => {
     assert.equal(events.at(-1)[0], 'frame');
 });
 
-test('a frame has the depth grids that it refers to, both halves or none', () => {
+test('a frame has the depth grids that it refers to, of both halves or of none', () => {
     const { session, socket, events } = greeted(), frame = vectorBytes('frame/jpeg-key.bin'), withDepth = frame.slice();
     withDepth[2] |= 128;
     const grid = (flags) => Uint8Array.from([2, 1, flags, 0, 9]).buffer, newest = () => events.at(-1)[1].depth;
@@ -500,7 +500,7 @@ test('a frame has the depth grids that it refers to, both halves or none', () =>
     assert.equal(session.depth, null, 'of another connection');
 });
 
-test('following another: its parameters and camera are shown, until a hand moves', () => {
+test('a follower shows the leader\'s parameters and camera until the follower moves', () => {
     const { session, socket, clock } = greeted();
     session.follow(12);
     assert.deepEqual(last(socket.sent), vector('client/accepted--follow.json'));
@@ -528,7 +528,7 @@ test('a leader who has left is still named', () => {
     assert.deepEqual([session.following.who, session.following.gone], ['kim', true]);
 });
 
-test('a user who begins to lead no longer follows: the shown picture\'s camera stays until another is sent', () => {
+test('a user who begins to lead no longer follows; the shown camera stays until another is sent', () => {
     const eyes = (x) => ({ camera: { eye: [x, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 }, waitUs: 0, fieldUs: 0, renderUs: 0,
         encodeUs: 0, sentTimeUs: 0 });
     // Messages of the server in order; numbers stand for pictures. The last picture shows the session's own view at that time.
@@ -562,7 +562,7 @@ test('a user who begins to lead no longer follows: the shown picture\'s camera s
     }
 });
 
-test('a user who moves while following continues from there, whatever was in flight', () => {
+test('a user who moves while following continues from there, whatever messages are under way', () => {
     const { session, socket } = greeted();
     session.follow(12);
     socket.say(vector('server/following.json'));
@@ -573,7 +573,7 @@ test('a user who moves while following continues from there, whatever was in fli
     assert.deepEqual(session.camera, own);
 });
 
-test('stages of the pictures of the last seconds', () => {
+test('timings list the stages of the last seconds\' pictures', () => {
     const picture = (ms, at, hereUs = 1e6 + 9000, more = {}) => ({
         picture: { waitUs: ms * 1000, fieldUs: 0, renderUs: 2000, encodeUs: 1000, sentTimeUs: 1e6, bytes: 1000, at, ...more },
         decodeMs: 4, hereUs,
@@ -599,7 +599,7 @@ test('only the pictures of the last seconds are kept', () => {
     assert.equal(socket.sent.filter(({ type }) => type === 'ack').length, 8);
 });
 
-test('alarms: the gravest of a tag, and what is to be done first', () => {
+test('alarms: each tag shows its most urgent alarm, and the list is in order of urgency', () => {
     const { session, socket } = greeted();
     const { model } = session, { alarms } = model;
     assert.equal(alarms.known, false);
@@ -631,7 +631,7 @@ const alarmRow = ([tag, kind, state, priority, us]) =>
     [tag, kind, state, priority, us, 1, 1, !['returned', 'latched'].includes(state), false];
 const alarmRows = (...rows) => ({ type: 'alarms', mode: 'local', all: true, time_us: 1, alarms: rows.map(alarmRow) });
 
-test('alarms: a tag counts once, by its worst that is there', () => {
+test('alarms: a tag counts once, by its most urgent alarm', () => {
     const { session, socket } = greeted();
     const { alarms } = session.model;
     socket.say(alarmRows([0, 'L', 'unacknowledged', 2, 1], [0, 'LL', 'unacknowledged', 1, 2],
@@ -662,7 +662,7 @@ test('alarms: each alarm is announced once, when it is raised', () => {
     assert.deepEqual(raised(true, [0, 'H', 'acknowledged', 3, 10], [1, 'L', 'unacknowledged', 3, 40]), ['1 L'], 'one message with all');
 });
 
-test('alarms: those raised while the connection was lost are announced once, in the same plant', () => {
+test('alarms raised while the connection was lost are announced once, in the same plant', () => {
     const { clock, session, sockets } = greeted();
     const of = { kept: [0, 'H', 'unacknowledged', 3, 10], late: [1, 'L', 'unacknowledged', 3, 20] };
     const raised = (...rows) => {
@@ -684,7 +684,7 @@ test('alarms: those raised while the connection was lost are announced once, in 
     assert.deepEqual(raised(of.kept, of.late, [1, 'HH', 'unacknowledged', 1, 30]), []);
 });
 
-test('alarms: what is done to a row is done to all of its tag that it can be done to; a filter', () => {
+test('alarms: an action on a row applies to all its tag\'s alarms that allow the action; a filter narrows the rows', () => {
     const { session, socket } = greeted();
     const { alarms } = session.model;
     socket.say(alarmRows([0, 'L', 'returned', 2, 1], [0, 'LL', 'unacknowledged', 1, 2], [1, 'H', 'latched', 3, 2]));
@@ -701,7 +701,7 @@ test('alarms: what is done to a row is done to all of its tag that it can be don
     assert.deepEqual(inMessages(Array(600).fill(0)).map(({ length }) => length), [256, 256, 88]);
 });
 
-test('alarms: a lost device is one, and of no tag', () => {
+test('alarms: a lost device is one alarm, without a tag', () => {
     const { session, socket } = greeted();
     const { alarms } = session.model;
     socket.say(vector('server/alarms-device.json'));
@@ -714,7 +714,7 @@ test('alarms: a lost device is one, and of no tag', () => {
     assert.deepEqual(alarms.list(), []);
 });
 
-test('in the past its clock stands apart, ages stand still, and a new connection goes back there', () => {
+test('in the past the session\'s clock is separate, ages stand still, and a new connection returns there', () => {
     const { session, socket, sockets, clock } = greeted();
     const time = vector('server/time.json');
     travel(session, time.at_us + 0.25, 60);
@@ -739,7 +739,7 @@ test('in the past its clock stands apart, ages stand still, and a new connection
     assert.equal(sockets.length, 1);
 });
 
-test('until its first picture of now, it is said that the picture is of then', () => {
+test('back in the present, the picture is marked as past until its first present picture', () => {
     const { session, socket, clock } = greeted();
     socket.say({ type: 'status', links: [], time_us: 1793500000000000, live: true });
     session.picture = { past: true, dataTimeUs: 1793491200250000, at: 0 };

@@ -40,7 +40,7 @@ class World {
 }
 
 for (const one of CASES) {
-    test(one.name, async () => {
+    test(`a flight to a hidden tag, case: ${one.name}`, async () => {
         const world = new World(one), viewport = { width: 1280, height: 720, pixelOf: (x, y) => [x, y] };
         const approach = new Approach({ session: world, viewport });
         let shown = null;
@@ -69,7 +69,7 @@ async function arrivals(world) {
     return cameras;
 }
 
-test('the eye goes into a room whose walls hide its tag from outside', async () => {
+test('the eye enters a room whose walls hide its tag from outside', async () => {
     const outside = away(sides[0]), pump = { id: 'pump', bounds: { min: [0.4, 0.4, 0.4], max: [0.6, 0.6, 0.6] } };
     const cameras = await arrivals(hollow(0.7 * outside, 0.2 * outside, [pump])), last = cameras.at(-1);
     assert.ok(away(cameras[0]) > 0.9 * outside);
@@ -77,7 +77,7 @@ test('the eye goes into a room whose walls hide its tag from outside', async () 
     assert.deepEqual(last.target, TAG.position);
 });
 
-test('the eye stays outside equipment that has its tag inside', async () => {
+test('the eye stays outside equipment that contains its tag', async () => {
     const outside = away(sides[0]);
     for (const camera of await arrivals(hollow(0.7 * outside, 0.2 * outside, [])))
         assert.ok(away(camera) > 0.9 * outside);

@@ -19,7 +19,7 @@ const isTheChartsOwn = (name) => name.startsWith('u-');
 const selectors = (sheet) => [...sheet.replace(/\/\*.*?\*\//gs, '').matchAll(/([^{};]+)\{/g)].map(([, text]) => text.trim())
     .filter((text) => !text.startsWith('@'));
 
-test('each class and name in a sheet is one that the page gives', () => {
+test('every class and id in a style sheet occurs in the page', () => {
     const unknown = [], known = [];
     for (const file of files.filter((name) => name.endsWith('.css'))) {
         for (const selector of selectors(read(file))) {

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { sunOf, sunText, towardsSun } from '../../clients/web/core/sun.js';
 import { learnWords } from '../../clients/web/core/words.js';
 
-test('a sun comes back as it was put, in either kind of plant frame', () => {
+test('a sun position written as parameters is read back unchanged, with Z up and with Y up', () => {
     for (const isYUp of [false, true]) {
         for (const sun of [{ turn: 0, height: 5 }, { turn: 225, height: 45 }, { turn: 359, height: 89 }])
             assert.deepEqual(sunOf(towardsSun(sun, isYUp), isYUp), sun);
@@ -20,7 +20,7 @@ test('north is y, or -z where y is up; east is x', () => {
     near(towardsSun({ turn: 180, height: 90 }, true), [0, 1, 0]);
 });
 
-test('in words', async () => {
+test('the sun\'s position is written as direction and elevation', async () => {
     await learnWords();
     assert.equal(sunText({ turn: 225, height: 45 }), 'from SW, 45° elevation');
     assert.equal(sunText({ turn: 350, height: 5 }), 'from N, 5° elevation');

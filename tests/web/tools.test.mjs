@@ -9,7 +9,7 @@ import { Wake } from '../../clients/web/core/wake.js';
 import { LEAST, MINUTES, readWall, wallFit, wallScale } from '../../clients/web/core/wall.js';
 import { makeSession, vector } from './fixtures.mjs';
 
-test('a sleep is seen by the calendar going on without the monotonic clock', () => {
+test('sleep is detected when the calendar advances without the monotonic clock', () => {
     const time = { now: 0, date: 1e12 }, slept = [];
     const wake = new Wake({ now: () => time.now, date: () => time.date, onWake: (ms) => slept.push(ms) });
     const pass = (now, date) => {
@@ -28,7 +28,7 @@ test('a sleep is seen by the calendar going on without the monotonic clock', () 
     assert.deepEqual(slept, [3600000], 'a clock that was set back is no sleep');
 });
 
-test('after a sleep the picture counts as old until the server speaks again', () => {
+test('after a sleep the picture counts as old until the server sends again', () => {
     const { session, connection, sockets, clock } = makeSession();
     connection.start();
     sockets[0].accept();
@@ -50,7 +50,7 @@ test('after a sleep the picture counts as old until the server speaks again', ()
     assert.notEqual(connection.state, 'open', 'nothing came: the line is dead');
 });
 
-test('simulated is said on the picture, but not of the past', () => {
+test('simulated values are marked on the live picture, but not on the past', () => {
     const model = { links: [{ source: 'a', up: true, simulated: true }, { source: 'b', up: true }] }, time = { atUs: null };
     assert.equal(simulatedText({ model, time, picture: {} }), 'Partly simulated');
     assert.equal(simulatedText({ model: { links: [model.links[0]] }, time, picture: {} }), 'Simulated');
@@ -65,7 +65,7 @@ function letterMinutes(fontPx, { inches, metres }, screen) {
     return (Math.atan(millimetres / (metres * 1000)) * 60 * 180) / Math.PI;
 }
 
-test('the wall: capitals of 16 minutes of arc and more, wherever the screen hangs', () => {
+test('a wall\'s capitals are at least 16 minutes of arc high, wherever the screen hangs', () => {
     assert.equal(readWall('?lang=ko'), null);
     assert.deepEqual(readWall('?wall'), { inches: 55, metres: 3 });
     assert.deepEqual(readWall('?wall=85,5'), { inches: 85, metres: 5 });
@@ -82,14 +82,14 @@ test('the wall: capitals of 16 minutes of arc and more, wherever the screen hang
     assert.deepEqual(wallFit(near, screen, screen), { scale: wallScale(near, screen), metres: 8 });
 });
 
-test('distances: straight, level and rise; as many figures as a tape has', () => {
+test('distances: straight, level and rise are measured, with as many figures as a tape has', () => {
     assert.deepEqual(measure([0, 0, 0], [3, 4, 12], [0, 0, 1]), { metres: 13, level: 5, rise: 12 });
     assert.deepEqual(measure([1, 1, 1], [1, 0, 1], [0, 1, 0]), { metres: 1, level: 0, rise: -1 });
     assert.deepEqual([1.234, 123.4, 9999, 5300123].map(farText), ['1.23 m', '123 m', '9999 m', '5300 km']);
     assert.deepEqual([0.1234, 12.345, 123.45, -3.2].map(metresText), ['0.123', '12.35', '123.5', '−3.200']);
 });
 
-test('links: what is chosen, and no more', () => {
+test('share links contain the chosen parts, and no more', () => {
     const session = { id: 7, camera: null, params: { group: 'g' }, time: { atUs: null }, ownParams: {}, following: null };
     const location = { origin: 'https://plant.example', pathname: '/' };
     assert.deepEqual(shareLinks({ location, session, tag: null }),

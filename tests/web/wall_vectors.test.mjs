@@ -11,7 +11,7 @@ import { brightness, burnShift, wallFit } from '../../clients/web/core/wall.js';
 const cases = (name) => JSON.parse(readFileSync(new URL(`../../protocol/vectors/wall/${name}.json`, import.meta.url)));
 const NOW_US = 1e15;
 
-test('which alarm takes the place of a view', () => {
+test('the test vectors choose the same alarm to replace a view', () => {
     for (const { name, alarms, steps } of cases('alarm_calls')) {
         const list = alarms.map(({ id, priority, ago_s: ago, waiting, gone, place }) => ({
             tag: { index: id, asset: place ? 'E-1' : null, position: place ? [0, 0, 0] : null }, kind: 'H', priority, waiting,
@@ -22,7 +22,7 @@ test('which alarm takes the place of a view', () => {
     }
 });
 
-test('what a view is kept as', () => {
+test('the test vectors of addresses give the same parameters and camera', () => {
     for (const { text, params, camera } of cases('addresses')) {
         const read = readAddress(text);
         if (read.params.baseline)
@@ -32,7 +32,7 @@ test('what a view is kept as', () => {
     }
 });
 
-test('how large letters are, and how bright a display', () => {
+test('the test vectors give the same letter sizes and display brightness', () => {
     const { sizes, dimming } = cases('letters');
     for (const { inches, metres, display, window, unit } of sizes) {
         const [width, height] = display, room = { width: window[0], height: window[1] };
@@ -43,7 +43,7 @@ test('how large letters are, and how bright a display', () => {
         assert.equal(brightness(dim, minute, calls), light, JSON.stringify({ ...dim, minute }));
 });
 
-test('how far the shown picture is shifted', () => {
+test('the test vectors give the same burn-in shift of the picture', () => {
     for (const { us, shift } of cases('shifts'))
         assert.deepEqual(burnShift(us), shift, `${us}`);
 });

@@ -130,7 +130,7 @@ for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PAR
         assert.equal(depthAt(grid, WIDTH + 9, 5), null);
     });
 
-    test(`a point of the picture moves to where the new camera has it: ${name}`, async () => {
+    test(`a point of the picture moves to its position in the new camera: ${name}`, async () => {
         const grid = await decodeGrid(encode(camera).bytes), to = { ...camera, eye: [6.5, -8.6, 5.2], target: [0.2, 0, 0.4] };
         const matrix = warpMatrix(grid, camera, to, 0.1), project = projector(to, WIDTH, HEIGHT);
         for (const [x, y] of [[150.5, 150.5], [200.5, 120.5], [210.5, 180.5]]) {
@@ -228,7 +228,7 @@ test('the processor draws reduced pictures, and halves of split views only in th
     assert.ok(lost.raster.pixels.every((pixel) => pixel === lost.raster.pixels[0] && isGrey(pixel)));
 });
 
-test('an invalid grid is refused, whatever its content', async () => {
+test('an invalid depth grid is refused, whatever its content', async () => {
     const { bytes } = encode(PERSPECTIVE), changed = (f) => {
         const copy = bytes.slice();
         f(copy, new DataView(copy.buffer));
@@ -251,7 +251,7 @@ test('an invalid grid is refused, whatever its content', async () => {
     assert.equal(readHeader(bytes).seq, 7);
 });
 
-test('a camera that jumps, or changes its projection, gets no picture from elsewhere', () => {
+test('after a jump or a change of projection, the camera gets no warped picture', () => {
     const turned = { ...PERSPECTIVE, eye: [-6, -9, 5] };
     assert.ok(isNear(PERSPECTIVE, { ...PERSPECTIVE, eye: [6.3, -8.7, 5] }));
     assert.ok(!isNear(PERSPECTIVE, turned));
@@ -267,7 +267,7 @@ test('a picture drawn with fewer pixels keeps its exact shape', () => {
     assert.deepEqual([canvas.width, canvas.height, canvas.style.aspectRatio], [134, 74, '322 / 178']);
 });
 
-test('a reduced picture has the shape of the viewport in spite of its rounded sides', () => {
+test('a reduced picture has the shape of the viewport despite rounding its sides', () => {
     const shape = (fullWidth, fullHeight) => hasViewportShape({ fullWidth, fullHeight, shownWidth: fullHeight * 1280 / 720 });
     assert.ok(shape(1280, 720) && shape(448, 250) && shape(448, 252) && shape(446, 252));
     assert.ok(!shape(640, 352) && !shape(512, 360));

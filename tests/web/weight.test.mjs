@@ -18,19 +18,19 @@ const weigh = (files) => files.reduce((sum, path) => sum + Buffer.byteLength(ser
 const ours = (language) => ['index.html', `words/${language}.js`, `words/lazy.${language}.js`, ...['app', 'core'].flatMap((folder) =>
     filesIn(folder))];
 
-test('what the first picture takes is asked for by the page itself, and nothing else is', () => {
+test('the page itself preloads every module that the first picture needs, and no other', () => {
     const needed = [...graph('app/startup.js')].filter((path) => !scripts.includes(path));
     assert.deepEqual(all(/<link rel="modulepreload" href="([^"]+)"/g).sort(), needed.sort());
 });
 
-test('each worker is in a file that the build bundles whole (deploy/join)', () => {
+test('each worker is in a file that the build bundles completely (deploy/join)', () => {
     const workers = ['app', 'core', 'wall'].flatMap(filesIn).filter((path) => path.endsWith('.js'))
         .flatMap((path) => [...read(path).matchAll(/new (?:Shared)?Worker\(([^)]*)\)/g)].map(([, file]) => file));
     assert.ok(workers.length >= 2);
     assert.deepEqual(workers.filter((file) => !/_worker\.js'/.test(file)), []);
 });
 
-test('it is little: page, styles, words and modules', (t) => {
+test('the page\'s first files are at most 100 kB in each language', (t) => {
     for (const language of ['en', 'de', 'ko']) {
         const files = ['index.html', ...sheets, ...graph('app/startup.js'), `words/${language}.js`];
         const bytes = weigh(files);

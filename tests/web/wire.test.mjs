@@ -62,7 +62,7 @@ test('a frame may lie anywhere in a larger buffer', () => {
     assert.equal(decodeFrame(whole.buffer.slice(whole.byteOffset, whole.byteOffset + whole.length)).codec, 'png');
 });
 
-test('any single wrong byte of the header is refused or read, never a crash of another kind', () => {
+test('any single wrong byte of the header is refused or parsed, and never causes another error', () => {
     const whole = bytes('frame/jpeg-key.bin');
     for (let at = 0; at < 112; at++) {
         for (const value of [0, 1, 0x7f, 0x80, 0xff]) {
@@ -78,18 +78,19 @@ test('any single wrong byte of the header is refused or read, never a crash of a
 });
 
 for (const name of names('server/')) {
-    test(`message ${name}`, () => assert.equal(decodeMessage(readFileSync(new URL(`server/${name}.json`, vectors), 'utf8')).type,
+    test(`the test vector of server message ${name} decodes to its type`,
+        () => assert.equal(decodeMessage(readFileSync(new URL(`server/${name}.json`, vectors), 'utf8')).type,
         json(`server/${name}.json`).type));
 }
 
-test('what is not an object with a type is refused', () => {
+test('a message that is not an object with a type is refused', () => {
     for (const text of ['', '{', '[]', 'null', '3', '"tags"', '{}', '{"type":3}'])
         assert.throws(() => decodeMessage(text), WireError, text);
 });
 
-test('base64', () => assert.deepEqual([...decodeBase64('AP8Q')], [0, 255, 16]));
+test('base64 text decodes to its bytes', () => assert.deepEqual([...decodeBase64('AP8Q')], [0, 255, 16]));
 
-test('the picture keeps the shape of the window within what the server draws', () => {
+test('the picture has the shape of the window, within the sizes that the server draws', () => {
     assert.deepEqual(pictureSize(1608, 996), { width: 1608, height: 996 });
     assert.deepEqual(pictureSize(3, 900), { width: 16, height: 900 });
     const wide = pictureSize(12000, 2000);

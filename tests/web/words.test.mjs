@@ -21,7 +21,7 @@ const page = read('index.html', ...html);
 
 const blanks = (entry) => [...new Set((typeof entry === 'string' ? entry : entry.other).match(/\{\w+\}|\[[^\]]+\]/g) ?? [])].sort();
 
-test('every language has every key, with the same things to put in', () => {
+test('every language has every text key, with the same placeholders', () => {
     for (const language of LANGUAGES) {
         assert.deepEqual(Object.keys(tables[language]), Object.keys(tables.en), language);
         for (const [key, entry] of Object.entries(tables[language])) {
@@ -31,14 +31,14 @@ test('every language has every key, with the same things to put in', () => {
     }
 });
 
-test('a file of words: sections, plurals, and lines that say nothing', () => {
+test('word files are parsed with sections and plurals, and faulty lines are refused', () => {
     assert.deepEqual(readWords('a: x:\n    y\n\n[b]\nc d.e: {n}\nf(one): 1 f\nf(other): {count} f\n'),
         { a: 'x: y', 'b.c d.e': '{n}', 'b.f': { one: '1 f', other: '{count} f' } });
     for (const bad of ['a', 'a:', '[b', 'f(): x', 'a: '])
         assert.throws(() => readWords(bad), /no words: /, bad);
 });
 
-test('words of the server and of the fleet page: every language has every key with the same values, and each is used', async () => {
+test('texts of the server and the fleet page: every language has each key with the same placeholders, and each is used', async () => {
     const sources = (folder) => readdirSync(new URL(folder, WEB)).filter((name) => /\.(c|h|js)$/.test(name))
         .map((name) => read(`${folder}${name}`));
     const inC = (prefix) => (key) => new RegExp(`\\b${prefix}${key.toUpperCase()}\\b`);
@@ -58,7 +58,7 @@ test('words of the server and of the fleet page: every language has every key wi
     }
 });
 
-test('no key is said twice in a language', () => {
+test('no text key occurs twice in a language', () => {
     for (const language of LANGUAGES) {
         const lines = read(...filesOf(language)).match(/^[\w. ]+(\(\w+\))?: /gm);
         const said = Object.values(tables[language]).flatMap((entry) => (typeof entry === 'string' ? [entry] : Object.values(entry)));
@@ -66,7 +66,7 @@ test('no key is said twice in a language', () => {
     }
 });
 
-test('plurals: each form that a language has, and no other', () => {
+test('each text has the plural forms of its language, and no others', () => {
     for (const language of LANGUAGES) {
         const { pluralCategories } = new Intl.PluralRules(language).resolvedOptions();
         for (const [key, entry] of Object.entries(tables[language]).filter(([, one]) => typeof one !== 'string'))
@@ -89,15 +89,15 @@ function asked(modules, markup) {
     return [...said, ...[...markup.matchAll(/data-(?:say|label|title|hint|name)="([^"]+)"/g)].map(([, key]) => key)].filter(Boolean);
 }
 
-test('no key is unused', () => assert.deepEqual(unused(tables.en, source, page), []));
+test('no text key is unused', () => assert.deepEqual(unused(tables.en, source, page), []));
 
-test('no key that is asked for is missing', () => {
+test('no requested text key is missing', () => {
     const all = asked(source, page);
     assert.deepEqual(all.filter((key) => tables.en[key] === undefined), []);
     assert.ok(all.length > 150, `${all.length} were found`);
 });
 
-test('what the page says before any of its parts is loaded is in the first file, and nothing else', async () => {
+test('texts shown before the first part is loaded are in the first file, and no others', async () => {
     const wordless = [...read('app/lazy_modules.js')
         .matchAll(/^    \w+: \{ file: '([^']+)'.*wordless: true/gm)].map(([, file]) => `app/${file}.js`);
     const paths = new Set(['app/main.js', ...wordless].flatMap((path) => [...graph(path)]));
@@ -110,14 +110,14 @@ test('what the page says before any of its parts is loaded is in the first file,
         assert.deepEqual(Object.keys(await tableOf(filesOf(language)[0])), Object.keys(first), language);
 });
 
-test('the page itself says nothing in any language', () => {
+test('the HTML page itself contains no text in any language', () => {
     const body = page.slice(page.indexOf('<body>')).replace(/<!--.*?-->/gs, '');
     const text = [...body.matchAll(/>([^<>]*\p{L}{2,}[^<>]*)</gu)].map(([, said]) => said.trim());
     assert.deepEqual(text, ['Plantcast']);
     assert.deepEqual([...body.matchAll(/ (?:title|placeholder|aria-label)="[^"]+"/g)].map(([all]) => all), []);
 });
 
-test('the language: asked for in the address, else preferred, else English', () => {
+test('the language is the address\'s, or else the preferred one, or else English', () => {
     const choose = (...from) => Object.values(chooseLanguage(...from));
     assert.deepEqual(choose('?lang=ko', ['de-AT']), ['ko', 'ko']);
     assert.deepEqual(choose('', ['fr', 'de-AT', 'en']), ['de', 'de-AT']);
@@ -127,7 +127,7 @@ test('the language: asked for in the address, else preferred, else English', () 
     assert.deepEqual(choose(), ['en', 'en']);
 });
 
-test('plural, things put in, unknown keys', () => {
+test('plurals and placeholders are filled in, and unknown keys are reported', () => {
     const rules = new Intl.PluralRules('en');
     const table = { a: { one: '{count} pump', other: '{count} pumps' }, b: '{x} and {y}' };
     assert.deepEqual([1, 2, 0].map((count) => phrase(table, rules, 'a', { count })), ['1 pump', '2 pumps', '0 pumps']);

@@ -150,7 +150,7 @@ test('panels and the help page are complete on every screen', options, async (t)
     const ways = Object.entries(SCREENS).filter(([name]) => sweep(true, narrow.includes(name))).flatMap((one, row) =>
         ['en', 'de', 'ko'].filter((_, i) => takes(row, i, 3)).map((language) => [...one, language]));
     for (const [name, screen, language] of ways)
-        await t.test(`${name}, ${language}`, async () => {
+        await t.test(`panels and help on ${name}, ${language}`, async () => {
             const { page, close, errors } = await openPage(`${url}?lang=${language}`, screen);
             try {
                 await waitForPicture(page);

@@ -64,7 +64,7 @@ const look = (page) => page.evaluate(() => {
 });
 
 for (const [name, { query = '', ...screen }] of Object.entries(SCREENS))
-    test(name, options, async (t) => {
+    test(`every alarm ring has a label or a call-out, and covers no legend or note: ${name}`, options, async (t) => {
         const { page, close, errors } = await openPage(`${plant.url}${query}`, screen);
         try {
             await waitForPicture(page);
