@@ -78,7 +78,7 @@ static bool counts_good(struct format_check *c)
         return wrong(c, "the number of indices, %u, is not a multiple of 3", h->index_count);
     for (int axis = 0; axis < 3; axis++)
         if (!isfinite(h->origin_m[axis]))
-            return wrong(c, "origin is not finite");
+            return wrong(c, "the origin is infinite or not a number");
     return true;
 }
 
@@ -170,12 +170,12 @@ static bool vertices_good(struct format_check *c)
     const struct asset_view *v = &c->view;
     const struct asset_header *h = v->header;
     if (!finite_all(h->bounds_min_m, 3) || !finite_all(h->bounds_max_m, 3))
-        return wrong(c, "bounds are not finite");
+        return wrong(c, "the bounds are infinite or not numbers");
     for (uint32_t i = 0; i < h->vertex_count; i++) {
         for (int axis = 0; axis < 3; axis++) {
             float x = v->positions_m[i][axis];
             if (!isfinite(x))
-                return wrong(c, "vertex %u: position is not finite", i);
+                return wrong(c, "vertex %u: the position is infinite or not a number", i);
             if (x < h->bounds_min_m[axis] || x > h->bounds_max_m[axis])
                 return wrong(c, "vertex %u: position %g m lies outside the bounds %g..%g m", i, (double)x, (double)h->bounds_min_m[axis],
                              (double)h->bounds_max_m[axis]);
@@ -183,9 +183,9 @@ static bool vertices_good(struct format_check *c)
         const float *n = v->normals[i];
         float length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
         if (!(length2 > 0.98f && length2 < 1.02f))
-            return wrong(c, "vertex %u: normal of length %g", i, sqrt((double)length2));
+            return wrong(c, "vertex %u: the normal has length %g, expected 1", i, sqrt((double)length2));
         if ((v->texcoords && !finite_all(v->texcoords[i], 2)) || (v->second_texcoords && !finite_all(v->second_texcoords[i], 2)))
-            return wrong(c, "vertex %u: texture coordinate is not finite", i);
+            return wrong(c, "vertex %u: a texture coordinate is infinite or not a number", i);
     }
     return true;
 }
@@ -195,9 +195,12 @@ static bool primitive_good(struct format_check *c, uint32_t number, uint32_t ver
     const struct asset_view *v = &c->view;
     const struct asset_primitive *p = &v->primitives[number];
     if (p->index_count % 3 != 0 || p->first_index > v->header->index_count || p->index_count > v->header->index_count - p->first_index)
-        return wrong(c, "primitive %u: indices %u+%u of %u", number, p->first_index, p->index_count, v->header->index_count);
+        return wrong(c,
+                     "primitive %u: starts at index %u and has %u indices, but the file has only %u, or the number is not a multiple of 3",
+                     number, p->first_index, p->index_count, v->header->index_count);
     if (p->material >= v->header->material_count)
-        return wrong(c, "primitive %u: material %u of %u", number, p->material, v->header->material_count);
+        return wrong(c, "primitive %u: refers to material %u, but there are only %u materials", number, p->material,
+                     v->header->material_count);
     if (!name_good(c, p->name))
         return wrong(c, "primitive %u: name at byte %u lies outside the section of names", number, p->name);
     for (uint32_t i = p->first_index; i < p->first_index + p->index_count; i++)
@@ -216,8 +219,8 @@ static bool levels_good(struct format_check *c)
     for (uint32_t i = 0; i < h->level_count; i++) {
         const struct asset_level *l = &v->levels[i];
         if (l->first_primitive != next || l->primitive_count == 0 || l->primitive_count > h->primitive_count - next)
-            return wrong(c, "level %u: primitives %u+%u, expected a start at primitive %u of %u", i, l->first_primitive, l->primitive_count,
-                         next, h->primitive_count);
+            return wrong(c, "level %u: starts at primitive %u and has %u primitives, expected a start at primitive %u of %u", i,
+                         l->first_primitive, l->primitive_count, next, h->primitive_count);
         if (l->vertex_count > vertices || (i == 0 && l->vertex_count != vertices))
             return wrong(c, "level %u uses the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);
         uint32_t coarser = i + 1 < h->level_count ? v->levels[i + 1].vertex_count : 0;
@@ -225,7 +228,8 @@ static bool levels_good(struct format_check *c)
             return wrong(c, "level %u adds %u vertices, but only %u vertices belong to this level", i, l->added_count,
                          l->vertex_count - coarser);
         if (!isfinite(l->error_m) || l->error_m < error_m || (i == 0 && l->error_m != 0))
-            return wrong(c, "level %u: error of %g m after %g m", i, (double)l->error_m, (double)error_m);
+            return wrong(c, "level %u: the error is %g m, expected at least that of the finer level, %g m", i, (double)l->error_m,
+                         (double)error_m);
         for (uint32_t p = 0; p < l->primitive_count; p++)
             if (!primitive_good(c, next + p, l->vertex_count))
                 return false;
@@ -245,7 +249,7 @@ static bool cluster_good(struct format_check *c, uint32_t number)
     const struct asset_cluster *cluster = &v->clusters[number];
     const float *axis = cluster->cone_axis, cutoff = cluster->cone_cutoff;
     if (!finite_all(cluster->low_m, 6) || !finite_all(axis, 3) || !(cutoff >= 0 && cutoff <= 1))
-        return wrong(c, "cluster %u: box or cone is not finite, or cutoff %g lies outside 0..1", number, (double)cutoff);
+        return wrong(c, "cluster %u: the box or cone is infinite or not a number, or cutoff %g lies outside 0..1", number, (double)cutoff);
     for (uint32_t i = cluster->first_index; i < cluster->first_index + cluster->index_count; i++)
         for (int a = 0; a < 3; a++) {
             float x = v->positions_m[v->indices[i]][a];
@@ -306,8 +310,11 @@ static bool material_good(struct format_check *c, uint32_t number)
                                   m->emissive_texture };
     for (int i = 0; i < 5; i++)
         if (!texture_good(c, textures[i], m->second >> i & 1))
-            return wrong(c, "material %u: texture %u of %u%s", number, textures[i], c->view.header->texture_count,
-                         textures[i] < c->view.header->texture_count ? ", without coordinates" : "");
+            return wrong(c,
+                         textures[i] < c->view.header->texture_count
+                             ? "material %u: the file has no coordinates for texture %u (of %u textures)"
+                             : "material %u: refers to texture %u, but there are only %u textures",
+                         number, textures[i], c->view.header->texture_count);
     if (m->second & ~ASSET_SECOND_MASK)
         return wrong(c, "material %u: flags of second texture coordinates 0x%x have bits outside 0x%x", number, m->second,
                      ASSET_SECOND_MASK);
@@ -315,7 +322,7 @@ static bool material_good(struct format_check *c, uint32_t number)
         !unit_range(&m->occlusion_strength, 1))
         return wrong(c, "material %u: a factor lies outside 0..1", number);
     if (!isfinite(m->normal_scale) || !finite_all(m->emissive, 3) || !isfinite(m->alpha_cutoff))
-        return wrong(c, "material %u: a factor is not finite", number);
+        return wrong(c, "material %u: a factor is infinite or not a number", number);
     if (m->alpha > ASSET_ALPHA_BLEND || m->double_sided > 1 || !name_good(c, m->name))
         return wrong(c, "material %u: alpha mode %u, double_sided %u or name at byte %u is out of range", number, m->alpha, m->double_sided,
                      m->name);
@@ -332,8 +339,8 @@ static bool materials_good(struct format_check *c)
             return wrong(c, "texture %u: %u x %u pixels, at most %u x %u", i, t->width_px, t->height_px, TEXTURE_MAX_PX, TEXTURE_MAX_PX);
         uint64_t need = 4ull * t->width_px * t->height_px;
         if (t->offset > texel_bytes || need > texel_bytes - t->offset)
-            return wrong(c, "texture %u: bytes %llu+%llu of %llu", i, (unsigned long long)t->offset, (unsigned long long)need,
-                         (unsigned long long)texel_bytes);
+            return wrong(c, "texture %u: starts at byte %llu and has %llu bytes, but the section has only %llu", i,
+                         (unsigned long long)t->offset, (unsigned long long)need, (unsigned long long)texel_bytes);
         if (t->srgb > 1 || t->wrap_repeat > 1)
             return wrong(c, "texture %u: srgb %u or wrap_repeat %u is neither 0 nor 1", i, t->srgb, t->wrap_repeat);
     }
@@ -351,9 +358,9 @@ static bool sensors_good(struct format_check *c)
     for (uint32_t i = 0; i < h->sensor_count; i++) {
         const struct asset_sensor *s = &v->sensors[i];
         if (!finite_all(s->position_m, 3) || !finite_all(s->surface_m, 3) || !isfinite(s->surface_distance_m) || s->surface_distance_m < 0)
-            return wrong(c, "sensor %u: the position is not finite", i);
+            return wrong(c, "sensor %u: the position is infinite or not a number, or its distance is below 0", i);
         if (s->nearest_vertex >= h->vertex_count)
-            return wrong(c, "sensor %u: nearest vertex %u of %u", i, s->nearest_vertex, h->vertex_count);
+            return wrong(c, "sensor %u: the nearest vertex is %u, but there are only %u vertices", i, s->nearest_vertex, h->vertex_count);
     }
     return true;
 }

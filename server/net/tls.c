@@ -93,7 +93,7 @@ static void warn(struct tls *tls)
 static bool check(struct tls *tls)
 {
     char text[200];
-    const char *at = "cannot create a context";
+    const char *at = "OpenSSL cannot create a TLS context";
     SSL_CTX *context = SSL_CTX_new(TLS_server_method());
     mark_read(&tls->cert_watch, tls->cert_path);
     mark_read(&tls->key_watch, tls->key_path);

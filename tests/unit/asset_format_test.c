@@ -268,14 +268,14 @@ TEST(sections_out_of_bounds_are_refused)
 
 TEST(wrong_vertices_are_refused)
 {
-    REFUSED(ASSET_POSITIONS, float, [7] = NAN, "vertex 2: position is not finite");
+    REFUSED(ASSET_POSITIONS, float, [7] = NAN, "vertex 2: the position is infinite or not a number");
     REFUSED(ASSET_POSITIONS, float, [7] = 9, "vertex 2: position 9 m lies outside the bounds 0..1 m");
-    REFUSED(ASSET_NORMALS, float, [2] = NAN, "vertex 0: normal");
-    REFUSED(ASSET_NORMALS, float, [5] = 0, "vertex 1: normal of length 0");
-    REFUSED(ASSET_TEXCOORDS, float, [6] = INFINITY, "vertex 3: texture coordinate");
-    REFUSED(ASSET_SECOND_TEXCOORDS, float, [3] = NAN, "vertex 1: texture coordinate");
+    REFUSED(ASSET_NORMALS, float, [2] = NAN, "vertex 0: the normal");
+    REFUSED(ASSET_NORMALS, float, [5] = 0, "vertex 1: the normal has length 0, expected 1");
+    REFUSED(ASSET_TEXCOORDS, float, [6] = INFINITY, "vertex 3: a texture coordinate");
+    REFUSED(ASSET_SECOND_TEXCOORDS, float, [3] = NAN, "vertex 1: a texture coordinate");
     REFUSED_HEADER(origin_m[1] = INFINITY, "origin");
-    REFUSED_HEADER(bounds_min_m[1] = -INFINITY, "bounds are not finite");
+    REFUSED_HEADER(bounds_min_m[1] = -INFINITY, "the bounds are infinite or not numbers");
 }
 
 TEST(wrong_primitives_and_levels_are_refused)
@@ -283,15 +283,19 @@ TEST(wrong_primitives_and_levels_are_refused)
     REFUSED(ASSET_INDICES, uint32_t, [4] = 4, "primitive 0: index 4 refers to vertex 4, but there are only 4 vertices");
     /* a valid index in the file, but outside the vertices that this level uses */
     REFUSED(ASSET_INDICES, uint32_t, [7] = 3, "primitive 1: index 7 refers to vertex 3, but there are only 3 vertices");
-    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].first_index = UINT32_MAX - 2, "primitive 1: indices");
-    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].index_count = 2, "primitive 1: indices 6+2 of 9");
-    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].material = 1, "primitive 0: material 1 of 1");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].first_index = UINT32_MAX - 2, "primitive 1: starts at index");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].index_count = 2,
+            "primitive 1: starts at index 6 and has 2 indices, but the file has only 9");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].material = 1,
+            "primitive 0: refers to material 1, but there are only 1 materials");
     REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].name = 6, "primitive 0: name at byte 6");
     REFUSED(ASSET_LEVELS, struct asset_level, [1].vertex_count = 5, "level 1 uses the first 5 vertices, expected at most 4");
     REFUSED(ASSET_LEVELS, struct asset_level, [0].vertex_count = 3, "level 0 uses the first 3 vertices, expected 4");
-    REFUSED(ASSET_LEVELS, struct asset_level, [1].first_primitive = 0, "level 1: primitives 0+1, expected a start at primitive 1 of 2");
-    REFUSED(ASSET_LEVELS, struct asset_level, [1].primitive_count = UINT32_MAX, "level 1: primitives");
-    REFUSED(ASSET_LEVELS, struct asset_level, [1].error_m = -1, "level 1: error of -1 m after 0 m");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].first_primitive = 0,
+            "level 1: starts at primitive 0 and has 1 primitives, expected a start at primitive 1 of 2");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].primitive_count = UINT32_MAX, "level 1: starts at primitive");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].error_m = -1,
+            "level 1: the error is -1 m, expected at least that of the finer level, 0 m");
     REFUSED(ASSET_LEVELS, struct asset_level, [0].added_count = 2, "level 0 adds 2 vertices, but only 1 vertices belong to this level");
     struct asset_bytes f = build(&good);
     f.header->level_count = 1;
@@ -308,7 +312,7 @@ TEST(wrong_clusters_are_refused)
     REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].index_count = 2, "cluster 2 of 3: indices 6+2");
     REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].high_m[2] = 0.4f,
             "cluster 1: index 4 at 0.5 m lies outside the cluster's box 0..0.4 m");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].low_m[0] = NAN, "cluster 2: box or cone is not finite");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].low_m[0] = NAN, "cluster 2: the box or cone is infinite or not a number");
     REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 1.5f, "cutoff 1.5 lies outside 0..1");
     REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 0.5f, "cluster 2: a normal lies outside the cluster's cone (0.8)");
     REFUSED(ASSET_CLUSTERS, struct asset_cluster, [0].cone_axis[2] = 2, "cluster 0: the cone axis has length 2");
@@ -382,9 +386,9 @@ TEST(turned_away_means_only_backs)
 
 TEST(wrong_materials_and_textures_are_refused)
 {
-    REFUSED(ASSET_MATERIALS, struct asset_material, ->normal_texture = 1, "material 0: texture 1 of 1");
-    REFUSED_HEADER(sections[ASSET_TEXCOORDS].bytes = 0, "material 0: texture 0 of 1, without coordinates");
-    REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes = 0, "material 0: texture 0 of 1, without coordinates");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->normal_texture = 1, "material 0: refers to texture 1, but there are only 1 textures");
+    REFUSED_HEADER(sections[ASSET_TEXCOORDS].bytes = 0, "material 0: the file has no coordinates for texture 0 (of 1 textures)");
+    REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes = 0, "material 0: the file has no coordinates for texture 0 (of 1 textures)");
     REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes -= 8, "section second texcoords: 24 bytes, expected 32");
     REFUSED(ASSET_MATERIALS, struct asset_material, ->second |= 1,
             "material 0: flags of second texture coordinates 0x9 have bits outside 0x1e");
@@ -392,9 +396,9 @@ TEST(wrong_materials_and_textures_are_refused)
             "material 0: flags of second texture coordinates 0x28 have bits outside 0x1e");
     REFUSED(ASSET_MATERIALS, struct asset_material, ->base_color[1] = NAN, "material 0: a factor");
     REFUSED(ASSET_MATERIALS, struct asset_material, ->metallic = 1.5f, "material 0: a factor");
-    REFUSED(ASSET_MATERIALS, struct asset_material, ->emissive[2] = INFINITY, "material 0: a factor is not finite");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->emissive[2] = INFINITY, "material 0: a factor is infinite or not a number");
     REFUSED(ASSET_MATERIALS, struct asset_material, ->alpha = 3, "material 0: alpha mode 3");
-    REFUSED(ASSET_TEXTURES, struct asset_texture, ->offset = 4, "texture 0: bytes 4+8 of 8");
+    REFUSED(ASSET_TEXTURES, struct asset_texture, ->offset = 4, "texture 0: starts at byte 4 and has 8 bytes, but the section has only 8");
     REFUSED(ASSET_TEXTURES, struct asset_texture, ->width_px = 0, "texture 0: 0 x 1 pixels");
     REFUSED(ASSET_TEXTURES, struct asset_texture, ->height_px = UINT32_MAX, "texture 0: 2 x 4294967295 pixels");
     REFUSED(ASSET_TEXTURES, struct asset_texture, ->srgb = 2, "texture 0: srgb 2");
@@ -402,9 +406,9 @@ TEST(wrong_materials_and_textures_are_refused)
 
 TEST(wrong_sensors_are_refused)
 {
-    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_m[0] = NAN, "sensor 1: the position is not finite");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_m[0] = NAN, "sensor 1: the position is infinite or not a number");
     REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_distance_m = -1, "sensor 1: the position");
-    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].nearest_vertex = 4, "sensor 1: nearest vertex 4 of 4");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].nearest_vertex = 4, "sensor 1: the nearest vertex is 4, but there are only 4 vertices");
 }
 
 /* Each code decodes to a larger distance than the code before. Each distance gets the nearest code, up to half-way to the

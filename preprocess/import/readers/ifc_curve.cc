@@ -84,7 +84,7 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
         for (const value &index : indices) {
             double number = file::number(index);
             if (number < 1 || number > static_cast<double>(points.size()))
-                throw unsupported("an index of a curve is outside the list of points");
+                throw unsupported("an IFC curve has an index outside its list of points");
             at.push_back(points[static_cast<size_t>(number) - 1]);
         }
         if (segment.text == "IFCARCINDEX" && at.size() == 3)
@@ -106,11 +106,11 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
     if (point && (by_point || !parameter)) {
         GeomAPI_ProjectPointOnCurve onto(point_of(in, *point), basis.curve);
         if (onto.NbPoints() < 1)
-            throw unsupported("a trimming point is not on the trimmed curve");
+            throw unsupported("a trimming point of an IfcTrimmedCurve is not on its curve");
         return onto.LowerDistanceParameter();
     }
     if (!parameter)
-        throw unsupported("a trimmed curve lacks its trimming points");
+        throw unsupported("an IfcTrimmedCurve lacks its trimming points");
     return file::number(*parameter) * per_unit;
 }
 
@@ -124,7 +124,7 @@ std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve,
     if (from.is("IFCPOLYLINE") || from.is("IFCCOMPOSITECURVE") || from.is("IFCINDEXEDPOLYCURVE")) {
         bool whole = false;
         if (curve[1].list.empty() || curve[2].list.empty())
-            throw unsupported("a trimmed curve lacks its trimming points");
+            throw unsupported("an IfcTrimmedCurve lacks its trimming points");
         std::vector<curve_piece> out = trimmed(pieces_within(in, from, depth + 1), curve[1].list[0], curve[2].list[0], &whole);
         if (whole || !same)
             throw unsupported("unsupported: a trimmed " + from.type);
@@ -218,7 +218,7 @@ curve_piece basis_of(const ifc_model &in, const entity &curve)
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("curves refer to each other in a circle");
+        throw unsupported("IFC curves refer to each other in a circle");
     if (curve.is("IFCPOLYLINE"))
         return polyline(in, curve[0]);
     if (curve.is("IFCINDEXEDPOLYCURVE"))
@@ -261,7 +261,7 @@ gp_Vec curve_piece::tangent(bool at_end) const
     if (along.Magnitude() < Precision::Confusion())
         along = gp_Vec(start(), end());
     if (along.Magnitude() < Precision::Confusion())
-        throw unsupported("a curve without length");
+        throw unsupported("an IFC curve without length");
     return first > last ? -along.Normalized() : along.Normalized();
 }
 
@@ -344,7 +344,7 @@ std::vector<curve_piece> pieces_of(const ifc_model &in, const entity &curve)
         if (length_of(part) > SHORTEST_MM)
             out.push_back(part);
     if (out.empty())
-        throw unsupported("a curve without length");
+        throw unsupported("an IFC curve without length");
     return out;
 }
 
@@ -409,12 +409,12 @@ TopoDS_Wire wire_of(const std::vector<curve_piece> &pieces)
         double low = std::fmin(part.first, part.last), high = std::fmax(part.first, part.last);
         BRepBuilderAPI_MakeEdge edge(part.curve, low, high);
         if (!edge.IsDone())
-            throw unsupported("a curve without length");
+            throw unsupported("an IFC curve without length");
         data->Add(part.first > part.last ? TopoDS::Edge(edge.Edge().Reversed()) : edge.Edge());
     }
     for (size_t i = 0; i + 1 < pieces.size(); i++)
         if (pieces[i].end().Distance(pieces[i + 1].start()) > JOINT_MM)
-            throw unsupported("a curve has gaps");
+            throw unsupported("an IFC curve has gaps");
     Handle(ShapeFix_Wire) fix = new ShapeFix_Wire;
     fix->Load(data);
     fix->SetPrecision(Precision::Confusion());

@@ -150,11 +150,11 @@ polygon picked(const polygon &points, const value &indices, const value &renumbe
         double at = file::number(index);
         if (!renumbered.list.empty()) {
             if (at < 1 || at > static_cast<double>(renumbered.list.size()))
-                throw unsupported("an index of a face is outside the list of points");
+                throw unsupported("an IFC face has an index outside its list of points");
             at = file::number(renumbered.list[static_cast<size_t>(at) - 1]);
         }
         if (at < 1 || at > static_cast<double>(points.size()))
-            throw unsupported("an index of a face is outside the list of points");
+            throw unsupported("an IFC face has an index outside its list of points");
         out.push_back(points[static_cast<size_t>(at) - 1]);
     }
     return out;

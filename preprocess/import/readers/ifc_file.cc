@@ -52,13 +52,13 @@ struct ifc_parser {
         value out;
         out.kind = value::LIST;
         if (depth > MAX_NESTING)
-            throw unsupported("lists are nested too deep");
+            throw unsupported("lists in the IFC file are nested too deep");
         for (at++; next() != ')';) {
             out.list.push_back(one(depth + 1));
             if (next() == ',')
                 at++;
             else if (next() != ')')
-                throw unsupported("a statement is damaged");
+                throw unsupported("a statement of the IFC file is damaged");
         }
         at++;
         return out;
@@ -86,7 +86,7 @@ struct ifc_parser {
         out.kind = value::NUMBER;
         out.number = strtod(bytes.c_str() + at, &end);
         if (end == bytes.c_str() + at || !std::isfinite(out.number))
-            throw unsupported("a number is damaged");
+            throw unsupported("a number in the IFC file is damaged");
         at = static_cast<size_t>(end - bytes.c_str());
         return out;
     }
@@ -112,7 +112,7 @@ struct ifc_parser {
         if (c == '.') {
             size_t end = bytes.find('.', at + 1);
             if (end == std::string::npos)
-                throw unsupported("a statement is damaged");
+                throw unsupported("a statement of the IFC file is damaged");
             out.kind = value::NAME;
             out.text = bytes.substr(at, end + 1 - at);
             at = end + 1;
@@ -121,7 +121,7 @@ struct ifc_parser {
         if (isalpha(static_cast<unsigned char>(c))) { /* typed value, such as IFCLABEL('P-101') */
             std::string type = word();
             if (next() != '(')
-                throw unsupported("a statement is damaged");
+                throw unsupported("a statement of the IFC file is damaged");
             out = list(depth);
             out.text = type;
             return out;
@@ -142,7 +142,7 @@ file::file(const char *path)
 {
     std::ifstream in(path, std::ios::binary);
     if (!in)
-        throw std::runtime_error("it cannot be opened");
+        throw std::runtime_error("the IFC file cannot be opened");
     bytes.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
     bool begins = true; /* true after a semicolon: the next '#' begins a statement */
     for (size_t at = 0; at < bytes.size();) {
@@ -184,7 +184,7 @@ entity file::get(int id) const
 entity file::get(const value &reference) const
 {
     if (reference.kind != value::REFERENCE)
-        throw unsupported("a reference is missing");
+        throw unsupported("a statement of the IFC file lacks a reference");
     return get(reference.id);
 }
 
@@ -193,7 +193,7 @@ double file::number(const value &from)
     if (from.kind == value::LIST && from.list.size() == 1)
         return number(from.list[0]);
     if (from.kind != value::NUMBER)
-        throw unsupported("a number is missing");
+        throw unsupported("a statement of the IFC file lacks a number");
     return from.number;
 }
 

@@ -97,7 +97,7 @@ int grid_placement(const ifc_model &in, int axis)
 {
     auto found = in.grids.find(axis);
     if (found == in.grids.end() && in.lacks_grid)
-        throw unsupported("a grid is damaged");
+        throw unsupported("an IFC grid is damaged");
     return found == in.grids.end() ? 0 : found->second;
 }
 
@@ -127,7 +127,7 @@ relative_placement in_grid(const ifc_model &in, const entity &from)
         x = gp_Vec(origin.at, crossing_of(in, from[at + 1]).at);
     x.SetZ(0);
     if (x.Magnitude() < NEAR_MM)
-        throw unsupported("a grid placement has no direction");
+        throw unsupported("an IFC grid placement has no direction");
     out.place.SetTransformation(gp_Ax3(origin.at, gp::DZ(), gp_Dir(x)), gp_Ax3(gp::XOY()));
     return out;
 }
@@ -138,7 +138,7 @@ gp_Trsf placement_within(const ifc_model &in, const value &reference, int depth)
         return gp_Trsf();
     entity from = in.statements.get(reference);
     if (depth > MAX_CHAIN)
-        throw unsupported("placements refer to each other in a circle");
+        throw unsupported("IFC placements refer to each other in a circle");
     if (from.is("IFCGRIDPLACEMENT")) {
         relative_placement grid = in_grid(in, from);
         return placement_within(in, grid.above, depth + 1) * grid.place;

@@ -216,7 +216,7 @@ std::vector<TopoDS_Face> assembled(const ifc_model &in, const entity &profile, i
 std::vector<TopoDS_Face> profile_within(const ifc_model &in, const entity &profile, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("profiles refer to each other in a circle");
+        throw unsupported("IFC profiles refer to each other in a circle");
     if (profile.is("IFCARBITRARYCLOSEDPROFILEDEF") || profile.is("IFCARBITRARYPROFILEDEFWITHVOIDS")) {
         std::vector<TopoDS_Wire> holes;
         for (const value &reference : profile[3].list)

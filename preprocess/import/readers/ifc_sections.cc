@@ -52,7 +52,7 @@ TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
     const std::vector<value> &sections = item[1].list, &places = item[2].list;
     std::vector<TopoDS_Face> faces;
     if (sections.size() < 2 || sections.size() != places.size())
-        throw unsupported("a spine without sections");
+        throw unsupported("an IfcSectionedSpine without cross-sections");
     for (size_t i = 0; i < sections.size(); i++)
         faces.push_back(moved(profile_of(in, in.statements.get(sections[i])).at(0), placement_of(in, places[i])));
     return through_faces(faces);
@@ -156,7 +156,7 @@ TopoDS_Shape horizontal_of(const ifc_model &in, const entity &item)
     std::vector<station> stations;
     std::vector<TopoDS_Face> faces;
     if (sections.size() < 2 || sections.size() != places.size())
-        throw unsupported("a directrix without sections");
+        throw unsupported("an IFC solid whose curve (Directrix) has no cross-sections");
     for (size_t i = 0; i < sections.size(); i++) {
         station next = station_of(in, places[i], sections[i]);
         if (i > 0)
@@ -231,7 +231,7 @@ std::vector<std::vector<section_frame>> frames_of(const ifc_model &in, const std
             break;
         section_frame next = frame_at(pieces[i + 1], pieces[i + 1].first, reference), &last = out.back().back();
         if (next.along.Angle(last.along) > 3)
-            throw unsupported("a curve that turns back");
+            throw unsupported("an IFC curve that turns back on itself");
         last.plane = next.plane = gp_Dir(next.along.XYZ() + last.along.XYZ());
         if (!same_section(last, next))
             out.push_back({ next });
@@ -264,7 +264,7 @@ TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces)
     for (const TopoDS_Face &face : faces) {
         outlines.push_back(wires_of(face));
         if (outlines.back().size() != outlines[0].size())
-            throw unsupported("sections with different holes");
+            throw unsupported("IFC cross-sections with different numbers of holes");
     }
     for (size_t i = 0; i < outlines[0].size(); i++) {
         std::vector<TopoDS_Wire> sections;

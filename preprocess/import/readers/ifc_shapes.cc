@@ -45,7 +45,7 @@ double unit_of(const file &in, const entity &unit, int depth)
         return si_prefix(unit[2]);
     entity factor = in.get(unit[3]); /* conversion-based unit: a factor times another unit */
     if (depth > MAX_CHAIN)
-        throw unsupported("units refer to each other in a circle");
+        throw unsupported("IFC units refer to each other in a circle");
     return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);
 }
 
@@ -133,7 +133,7 @@ template <typename function> bool attempt(ifc_writer *w, int id, const function 
     } catch (const unsupported &e) {
         why = e.what();
     } catch (const std::out_of_range &) {
-        why = "the file is truncated";
+        why = "the IFC file is truncated";
     }
     w->failed[id] = why;
     return false;
@@ -171,7 +171,7 @@ void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above,
 {
     const ifc_model &in = w->in;
     if (depth > MAX_CHAIN)
-        throw unsupported("representations refer to each other in a circle");
+        throw unsupported("IFC representations refer to each other in a circle");
     for (const value &reference : representation[3].list) {
         entity item = in.statements.get(reference);
         if (item.is("IFCMAPPEDITEM")) {

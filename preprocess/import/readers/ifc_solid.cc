@@ -101,7 +101,7 @@ trihedron on_surface(const ifc_model &in, const entity &surface, const curve_pie
         return { gp_Dir(out - gp_Vec(z) * out.Dot(gp_Vec(z))), z };
     }
     if (!surface.is("IFCSURFACEOFLINEAREXTRUSION"))
-        throw unsupported("a profile that follows " + surface.type);
+        throw unsupported("unsupported: a profile that follows " + surface.type);
     gp_Dir along = direction_of(in, surface[2], gp::DZ()).Transformed(place);
     return { gp_Dir(first.tangent(false).Crossed(gp_Vec(along))), along };
 }
@@ -162,7 +162,7 @@ TopoDS_Shape half_space(const ifc_model &in, const entity &item)
 {
     entity surface = in.statements.get(item[0]);
     if (!surface.is("IFCPLANE"))
-        throw unsupported("a half space of " + surface.type);
+        throw unsupported("unsupported: a half space bounded by " + surface.type);
     gp_Trsf place = placement_of(in, surface[0]);
     gp_Dir away = gp::DZ().Transformed(place);
     gp_Pnt at = gp::Origin().Transformed(place), inside = at.Translated(gp_Vec(away) * (item[1].is_true() ? -1 : 1));
@@ -188,7 +188,7 @@ TopoDS_Shape boolean(const ifc_model &in, const entity &item, int depth)
     else
         out = BRepAlgoAPI_Common(first, second).Shape();
     if (out.IsNull())
-        throw unsupported("a boolean operation that fails");
+        throw unsupported("Open CASCADE fails to carry out the IFC boolean operation");
     return out;
 }
 
@@ -221,7 +221,7 @@ bool is_built(const std::string &type)
 TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("solids refer to each other in a circle");
+        throw unsupported("IFC solids refer to each other in a circle");
     if (item.is("IFCSWEPTDISKSOLID") || item.is("IFCSWEPTDISKSOLIDPOLYGONAL"))
         return disk_of(in, item);
     if (item.is("IFCADVANCEDBREP") || item.is("IFCADVANCEDBREPWITHVOIDS"))

@@ -29,7 +29,7 @@ static const char *wrong_with(const char *url, bool of_tags)
         return "the address names no server";
     for (const char *at = url; *at; at++) {
         if (isspace((unsigned char)*at) || iscntrl((unsigned char)*at))
-            return "white space is not allowed";
+            return "white space is not allowed in an address";
         bool put_in = false;
         for (size_t i = 0; *at == '{' && i < 3; i++)
             put_in |= !strncmp(at, known[i], strlen(known[i]));

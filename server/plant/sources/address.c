@@ -165,7 +165,7 @@ static bool read_unit(const char **p, struct modbus_address *out, char why[200])
         return true;
     int digits = read_digits(&end, &unit);
     if (digits == 0 || *end != '!' || unit > 255 || digits > 6) {
-        snprintf(why, 200, "expected a unit from 0 to 255 before the character !");
+        snprintf(why, 200, "expected a Modbus unit number from 0 to 255 before the character !");
         return false;
     }
     out->unit = (int)unit;
@@ -181,7 +181,7 @@ static bool read_bit(const char **p, struct modbus_address *out, char why[200])
     (*p)++;
     int digits = read_digits(p, &bit);
     if (digits == 0 || digits > 6 || bit > 15) {
-        snprintf(why, 200, "expected a bit from 0 to 15 after the point");
+        snprintf(why, 200, "expected a bit number from 0 to 15 after the point");
         return false;
     }
     if (out->table == TABLE_COIL || out->table == TABLE_DISCRETE) {

@@ -35,7 +35,7 @@ static const char *wrong_with(const char *url, const char *plain, const char *se
         return "do not write a password in the plant file; write it to a file, and name the file in password_file or token_file";
     for (const char *at = url; *at; at++)
         if ((unsigned char)*at <= ' ' || *at == 127)
-            return "white space is not allowed";
+            return "white space is not allowed in an address";
     return NULL;
 }
 
