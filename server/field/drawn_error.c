@@ -16,7 +16,8 @@
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-/* largest power (exponent of the distance) of the interpolation shepard for which samples spaced by STEP find the error */
+/* STEP suffices to find the error of the interpolation shepard up to this power (exponent of the distance); larger powers get
+   proportionally shorter steps */
 #define MAX_POWER 2.0f
 /* For shepard, the error in a triangle is at most L^2 K / (6 d^2). L is its longest side, d its distance to the nearest sensor,
    and K / d^2 a bound on the second derivative of the weights. */
@@ -28,7 +29,8 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
    with smaller powers, it changed no value by a colour step */
 #define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
-/* tolerated displacement, in the picture, of the border between data and no data, in steps of the byte scalar.lacking */
+/* A drawn frame may show data where the field has none, up to this far beyond the border of the data; a larger overlap counts
+   as an error. Unit: steps of the byte scalar.lacking (encoded distance from that border) */
 #define BORDER_SLACK 4
 /* if interpolation errors affect at least this fraction of the area of a level of detail, all its vertices are given an error */
 #define MARK_ALL 0.75

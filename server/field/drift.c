@@ -22,7 +22,8 @@ static const double MEAN_PART = 0.25; /* noise of an hourly mean, relative to th
 /* A jump shows as the difference between two averages of residuals. First: number of hours in each average. Second: number of
    hours left out between the two. */
 enum { BESIDE = 3, WITHIN = 2 };
-static const double MIN_JUMP_FACTOR = 6;     /* smallest jump to be found, relative to the residuals' usual change over as many hours */
+/* smallest jump of the residuals to be found, as a multiple of the jump that is usual between two averages of BESIDE hours */
+static const double MIN_JUMP_FACTOR = 6;
 static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models the time that heat takes from the
                                                 other sensors to this one */
 static const double DEPENDENT_PART = 1. / 6; /* residuals farther apart than this fraction of the recorded time count as independent */
@@ -34,7 +35,8 @@ struct week { /* hourly data of one sensor */
        nearest sensors' readings, [nearest_count][hours] */
     const double *values, *predicted, *nearest;
     int nearest_count, hours;
-    /* noise: error and recording resolution of a reading; root: square root of each hour's weight in the fit */
+    /* noise: error of a single reading, which includes the rounding of recorded values; root: square root of each hour's weight
+       in the fit */
     double noise, root[DRIFT_HOURS];
 };
 

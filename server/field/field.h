@@ -60,7 +60,8 @@ const struct field_params *field_params_of(struct field *field, int asset, const
 /* Returns the trial (set of moved sensors) whose id is params->trial; the caller releases it with field_give_trial(). NULL: the id is 0, or
    the trial no longer exists. */
 const struct trial *field_take_trial(struct field *field, const struct field_params *params);
-/* Releases a trial. Accepts a pointer to NULL; sets the pointer to NULL. */
+/* Ends the caller's use of a trial from field_take_trial(), which may be freed afterwards. Accepts a pointer to NULL; sets the
+   pointer to NULL. */
 void field_give_trial(struct field *field, const struct trial **trial);
 /* If params show the difference from a baseline, writes that baseline to *out. Returns false if they show no difference, or if
    the baseline was forgotten. */

@@ -71,7 +71,8 @@ void kernel_add_both(double *restrict sum, double *restrict total, const float *
 struct kernel_value {
     float scale, offset, low, high, empty;
 };
-/* Applies the rule of struct kernel_value to each vertex's sum and weight. */
+/* Converts `count` sums (one per vertex), each with the sum of its weights, to field values, by the formula at struct
+   kernel_value. */
 void kernel_value(const struct kernel_value *rule, const double *restrict sum, const float *restrict weight, size_t count,
                   float *restrict value);
 /* Stores the values of vertices in their scalars. Returns the largest change of a value, and sets *changed if any value

@@ -61,7 +61,8 @@ void layout_destroy(struct field_layout **layout);
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns true if renderers evaluate the sum over the sensors at each pixel, rather than interpolate between vertices (plant/exact.h). */
 bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode);
-/* Returns true if the asset file contains the sensor's distances of this mode. */
+/* Returns true if the sensor's distances are read from the asset file, false if they are in memory or computed as straight
+   lines. mode: geodesic, straight-line or heat-method distances. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns the distances from one sensor to `count` vertices, from vertex `begin` on: a pointer to them, or to `scratch`, which
    receives them. The vertices must be in one block of KERNEL_BLOCK vertices (kernels.h). If layout->points is set, returns the

@@ -34,7 +34,9 @@ struct field_params {
     enum fill_mode fill;
     double strength, decay; /* factors applied to each sensor's configured strength and decay; 1: unchanged */
     double power;           /* power p of the distance, for interpolation shepard: weights are proportional to 1 / distance^p */
-    double radius_m;        /* radius R of interpolation paper; 0: the largest distance on the asset from any configured sensor */
+    /* radius R in metres of interpolation paper, in which the nearness of a sensor is max(0, 1 - distance / R); 0: R is the
+       largest distance on the asset from any configured sensor */
+    double radius_m;
     double reach_m;         /* INFINITY: no limit */
     size_t override_count;
     /* strengths and decays that replace those of the tag list, sorted by tag; unused elements are all zero */
@@ -54,7 +56,7 @@ bool field_params_placed(const struct plant *plant, const struct field_params *p
 const char *field_params_wrong(const struct plant *plant, const struct field_params *params);
 /* Sets one sensor's override; removes it if both values are FIELD_AS_CONFIGURED. Returns false if there is no room for another override. */
 bool field_params_override(struct field_params *params, struct field_override override);
-/* Returns the tag's override; NULL: there is none. Owned by params. */
+/* Returns the strength and decay that replace this tag's values in the tag list; NULL: nothing replaces them. Owned by params. */
 const struct field_override *field_params_override_of(const struct field_params *params, int tag);
 /* Returns true if the shown quantity depends only on which sensors are good, not on their readings. */
 bool field_params_cover(const struct field_params *params);

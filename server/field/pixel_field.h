@@ -28,7 +28,8 @@ struct pixel_field {
     int32_t paper, fill;
     enum pixel_show show;
     float power, reach_m, radius_m;        /* metres; reach_m INFINITY: no limit */
-    float scale, offset, low, high, empty; /* converts a sum to a value, like struct kernel_value */
+    /* value = sum / weight * scale + offset, limited to low..high; `empty` where the weight is 0 (struct kernel_value) */
+    float scale, offset, low, high, empty;
     float hot_spot_m, seen, most;          /* PIXEL_BLIND */
     struct pixel_sensor *sensors;          /* array of `count` sensors, owned by this struct; NULL if count is 0 */
 };

@@ -35,7 +35,9 @@ struct scalars {
     double travel;
     size_t count;   /* number of elements of `at`: one per vertex of the asset file */
     size_t ready;   /* number of vertices, from the first on, that are up to date: as many as the requested levels of detail need */
-    uint64_t grown; /* number of times that `ready` has grown, so that callers notice new vertices */
+    /* number of times that `ready` (the number of up-to-date vertices) has grown; a change tells callers to copy the added
+       vertices */
+    uint64_t grown;
     const struct scalar *at;
     /* bound on the error of interpolation within triangles, in the unit of values, if it exceeds 1/255 of the range on a large
        part of the surface; else 0. Vertices with such errors are marked uncertain in either case */

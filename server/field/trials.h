@@ -43,7 +43,8 @@ struct trials;
 struct trials *trials_create(void);
 /* Frees the registry. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trials_destroy(struct trials **trials);
-/* Adds a trial of 1..TRIAL_SENSORS sensors; copies the sensors and takes its own references. Returns the trial's id, never 0. */
+/* Adds a trial of 1..TRIAL_SENSORS sensors. Copies the sensors and takes a reference to the distances (`reach`) of each.
+   Returns the trial's id, never 0. */
 uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, size_t count);
 enum { TRIALS_KEPT = 16 };
 /* Marks a trial as dropped: its user no longer needs it. The newest TRIALS_KEPT dropped trials stay, because frames in progress
@@ -53,7 +54,8 @@ void trials_drop(struct trials *trials, uint32_t id);
 bool trials_live(struct trials *trials, uint32_t id);
 /* Returns the trial with this id, which stays valid until trials_give(); NULL: there is none. */
 const struct trial *trials_take(struct trials *trials, uint32_t id);
-/* Releases a trial. Accepts a pointer to NULL; sets the pointer to NULL. */
+/* Ends the caller's use of a trial from trials_take(), which may be freed afterwards. Accepts a pointer to NULL; sets the
+   pointer to NULL. */
 void trials_give(struct trials *trials, const struct trial **trial);
 
 #endif

@@ -18,7 +18,8 @@
 #define DRAWN_ERROR (1 / 255.0)
 /* a newly chosen error limit is stricter than necessary by this factor, so that it stays valid when readings change slightly */
 #define ERROR_MARGIN 1.1
-/* the error limit (error_limit) is replaced if it is stricter than necessary by more than this factor */
+/* state->error_limit (error above which a vertex is marked uncertain) is replaced if it is stricter than necessary by more than
+   this factor */
 #define ERROR_SLACK 1.5
 /* limit on the values of SHOW_BLIND (the height that a hot spot needs to be noticed), in multiples of the group's range */
 #define MAX_BLIND 1000.0
@@ -43,8 +44,12 @@ struct update {
     /* indices of blocks of vertices. next: block to update next; old: end of the blocks that already had values; end: end of
        the blocks that need values */
     size_t next, old, end;
-    bool sums_all; /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of readings */
-    bool flags; /* true: qualities changed, so the flags of all blocks are set; false: flags in blocks below `old` stay */
+    /* true: computes each vertex's sum over all sensors again; false: in blocks with existing sums (below `old`), adds only the
+       changes of readings to these sums */
+    bool sums_all;
+    /* true: qualities changed, so the flags (no data, uncertain) of all vertices are set; false: only those of new vertices,
+       from block `old` on */
+    bool flags;
     bool marks; /* true: at least one reading in the sum has the quality Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */

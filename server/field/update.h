@@ -17,12 +17,13 @@ bool update_is_light(const struct field_state *state);
 /* After update_begin(): runs the whole update on the calling thread, provided update_is_light() returned true. update_end()
    must follow. Call from any thread, in parallel with updates of other states. */
 void update_run(struct field_state *state);
-/* Completes the update after update_run(). Call only in the thread that owns the field. */
+/* Completes an update that update_run() has computed on any thread: gives the changed scalars a new version. Call only in the
+   thread that owns the field. */
 void update_end(struct field_state *state, uint64_t *versions);
 /* Returns true if the spread of the readings in state->now is at most the range that plantcast-prep assumed when it subdivided
    triangles. */
 bool update_is_in_range(const struct field_state *state);
-/* Abandons the state's update in progress, if any. */
+/* Frees the state's update in progress, if any, without completing it. */
 void update_forget(struct field_state *state);
 
 /* Writes the rule by which sums over sensors become field values to *rule. inputs: the sensors' readings, in the order of the

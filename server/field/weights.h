@@ -67,7 +67,9 @@ struct weights {
     struct influence_fill *fill;
     /* [sensor], for prepared interpolations with lost sensors: its value if all used sensors read 1; else NULL */
     double *ones;
-    float decay_m; /* metres; for interpolation fin: the decay length; for gp: 1/k, with k as in preprocess/influence/gaussian.h */
+    /* metres. For interpolation fin: the decay length, over which a sensor's share of the value falls by a factor of e; for gp:
+       the correlation range / sqrt(8) */
+    float decay_m;
     const float *deviations; /* [vertex], for interpolation gp: standard deviation of the field while all sensors are used; else NULL */
     const float *priors;     /* [vertex], for interpolation gp: standard deviation of the field without any sensor */
     float deviation;         /* for interpolation gp: standard deviation of the field before any reading is known (the prior) */
@@ -119,7 +121,8 @@ size_t weights_keep(struct weights *weights, size_t bytes);
 /* Frees the cached columns. */
 void weights_drop_columns(struct weights *weights);
 
-/* Returns a vertex's byte for struct scalar's `lacking`. filled: areas around lost sensors have data. The vertex must be prepared. */
+/* Returns how far a vertex is beyond the border of the data, encoded as struct scalar's `lacking`. filled: areas around lost
+   sensors have data. Call weights_prepare() for the vertex's block first. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
 /* Computes those of the arrays near_m, top and place that a block of vertices lacks (begin: a multiple of KERNEL_BLOCK; count
    <= KERNEL_BLOCK). Call from any thread; different threads need different blocks. */
@@ -133,7 +136,9 @@ void weights_deviations(const struct weights *weights, size_t begin, size_t coun
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
-    const uint8_t *marked; /* [element of the list]: 1: the column is also added to sums->marked; 0: only to sums->total */
+    /* [element of the list]: 1: the sensor's reading is Uncertain, so its weights are also summed in sums->marked; 0: they are
+       not */
+    const uint8_t *marked;
     size_t count;
 };
 /* Sums over sensors for each vertex of one block of KERNEL_BLOCK vertices, to which weights_add() adds. */

@@ -65,7 +65,8 @@ static const char *fault_of(const char *path, const struct stat *st)
     return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "the file has another hard link" : NULL;
 }
 
-/* Opens a file for copying, unless fault_of() refuses it. Returns its descriptor, or -1 on failure (logged). */
+/* Opens a file for copying. Refuses symbolic links, and files that fault_of() finds unsafe: not regular, or possibly planted by
+   the folder's owner. Returns its descriptor, or -1 on failure (logged). */
 static int open_source(struct log *log, const char *path)
 {
     struct stat st;

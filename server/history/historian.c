@@ -36,7 +36,8 @@ enum {
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
-/* when recording ends, tags whose newest sample is at least this old get one more point */
+/* when the daemon ends, Good readings whose newest sample is at least this old are recorded once more, so that their values
+   hold until then */
 static const int64_t REPEAT_US = 10 * US_PER_S;
 
 struct historian_queue {
@@ -374,7 +375,8 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
     return error;
 }
 
-/* Writes the rows of the last second: usually all of one month, in one transaction. */
+/* Writes the rows that were recorded in the last second. They usually belong to one month and are then written in one
+   transaction. */
 static int write_second(struct historian *historian)
 {
     struct recorder_rows *rows = &historian->waiting, *held = &historian->held;

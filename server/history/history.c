@@ -159,7 +159,8 @@ static void put_points(struct gather *gather, const struct history_points *point
             put_bucket(gather, &closed);
 }
 
-/* Merges the last bucket computed from points, which may be incomplete because the series continues. */
+/* Adds the last bucket that was computed from points to the output. The bucket may be incomplete, because the series goes on
+   after the last point. */
 static void put_rest(struct gather *gather)
 {
     struct history_bucket rest;

@@ -7,7 +7,9 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* age in microseconds below which points may not be in the history file yet */
+/* Points younger than this, in microseconds, need not be in the history file yet, because the historian writes only once a
+   second. */
+static const int64_t HISTORY_SETTLED_US = 3 * 1000000;
 
 /* Returns an array that describes the plant's tags for history files; free with mem_free(). The names belong to the plant. */
 struct history_tag *history_tags(const struct plant *plant);

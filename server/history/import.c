@@ -27,7 +27,9 @@
 enum {
     FLUSH_ROWS = 500000,
     MAX_ERRORS = 50,
-    MEDIANS = 10 /* a time between two samples longer than this many times the median is a gap */
+    /* If two samples are farther apart than this multiple of the series' median time between samples, the time between them is
+       a gap. */
+    MEDIANS = 10
 };
 
 /* State of importing one tag's samples from the file. */
@@ -432,8 +434,8 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-        /* recording continues here: the sample's value replaces the point without a value with which the existing history ended
-           its recording */
+        /* Existing history ends just after this sample with a point without a value, which would interrupt the imported series.
+           The sample's value replaces that point. */
     } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);

@@ -19,7 +19,8 @@ struct month_seconds {
        number of the newest row read */
     int64_t mark, stamp, slot;
     struct month_row *rows; /* recorded points */
-    struct month_row *held; /* [id of the tag in the file]: held sample, the newest of the tag; id 0: none */
+    /* [id of the tag in the file]: the tag's newest sample, which the recorder has not recorded yet (held); id 0: none */
+    struct month_row *held;
     size_t count, capacity, held_count, held_capacity;
 };
 

@@ -9,7 +9,7 @@
 struct spacing { /* zero-initialise */
     bool has_last, last_usable;
     int64_t last_us;
-    int64_t *at; /* stored times between two usable samples, in microseconds: every stride-th one */
+    int64_t *at; /* times between consecutive usable samples, in microseconds; of a long series only every stride-th time is stored */
     size_t count, capacity, stride, passed;
     size_t between; /* number of times between adjacent samples, usable or not */
 };

@@ -12,7 +12,8 @@
 /* delay after the loss of a core before the load balancer's state is used. Renderers may notice the loss of the same core half
    a second apart, and the balancer queries each renderer only once a second */
 static const int64_t SETTLE_NS = 2500 * NS_PER_MS;
-/* how long a state sent by the load balancer stays valid: three of its checks, which come once a second */
+/* The load balancer checks this node once a second and then says whether it sends users only to other nodes; its last report
+   counts for this long */
 static const int64_t CHECKED_NS = 3 * NS_PER_S;
 
 static bool is_elsewhere(const char *state)

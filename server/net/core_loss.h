@@ -18,7 +18,8 @@ struct core_loss {   /* zero-initialise; zero means that a core sends readings a
    sends users only to other nodes if this node is DOWN and the second number of `weight`, the sum of the weights of all nodes in use, is
    above 0. */
 void core_loss_on_check(struct core_loss *loss, const char *state, int64_t now_ns);
-/* Decides again whether sessions move. Call it at each tick. Returns true when sessions start to move. */
+/* Decides from the loss of the core and the load balancer's last report whether this daemon's sessions move to other nodes.
+   Call it at each tick. Returns true once when they start to move. */
 bool core_loss_on_tick(struct core_loss *loss, bool has_core, int64_t now_ns);
 
 #endif

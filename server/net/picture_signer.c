@@ -166,7 +166,9 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
-    forget_last(signer); /* accesses data of the signing thread, which is idle now */
+    /* the cache of the last signed picture belongs to the signing thread, but may be freed here, because that thread is idle
+       now */
+    forget_last(signer);
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

@@ -122,7 +122,8 @@ struct server_context {
     } logins;
     struct {
         bool hands_over; /* true: this leading core is handing the lead to its standby; users' messages are ignored meanwhile */
-        /* monotonic time since which the state owed to the standby no longer changes; 0: changes are possible */
+        /* during a handover of the lead: monotonic time when this core's state stopped changing; once the standby has received
+           this state, it can take over. 0: the state may still change */
         int64_t lead_ended_ns;
         bool goes_down;    /* true: the server shuts down; connections are closed after their answer */
         char goodbye[64];  /* reason that streams send when they are closed at shutdown */

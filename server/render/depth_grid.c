@@ -223,7 +223,8 @@ static inline int predicted_back(int left, int up, int corner)
     return corner >= most ? least : corner <= least ? most : left + up - corner;
 }
 
-/* Writes the far code (depth code of the farthest surface) of each cell, as its difference from the prediction. */
+/* Writes the far code (depth code of the farthest surface) of each cell, as its difference from a prediction from the codes of
+   the left, upper and upper left cells. */
 static uint8_t *put_back(const struct coder *coder, uint8_t *out)
 {
     int columns = coder->columns;

@@ -78,7 +78,8 @@ struct frame {
 /* Fills in values and qualities of the markers from the snapshot used to draw the frame, and removes markers behind the eye.
    Call this before other threads see the frame. baselines: for differences; NULL: there are none. */
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
-/* Returns NULL when out of memory; the caller owns the frame (frame_unref). pool: pool of pixel buffers; NULL: none */
+/* Creates a frame of this size; its pixels are undefined. Returns NULL when out of memory; the caller owns the frame
+   (frame_unref). pool: pool from which the pixel buffer is taken; NULL: none */
 struct frame *frame_create(struct frame_pool *pool, int width_px, int height_px);
 /* Returns a frame that shows a part of `whole` and shares its pixels. The part must lie inside `whole`. Markers and labels in the part or
    near its edge are copied. Never NULL. */

@@ -199,7 +199,8 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
 void session_on_placed(struct session *session, int64_t now_ns);
 /* Removes from the session a tag list that is to be activated by a reload, and returns it; the caller owns it. NULL: there is none. */
 struct tag_save *session_take_save(struct session *session);
-/* Queues the answer to the client's message `gaps`, which asks how far each place is from a sensor. */
+/* Queues the answer to the client's message `gaps`, which asks for the surface areas that are far from every sensor or have no
+   data. */
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);
 
 #endif

@@ -128,7 +128,8 @@ struct session_following {
     bool followers_changed;   /* true: the list of followers changed and must be sent to the client */
     int64_t followers_ns;     /* monotonic time when the list of followers was last built */
     char *followers_text;     /* text that lists the followers, to be sent; NULL: none */
-    uint32_t told_params_seq; /* params_seq of the leader's view in the last message sent to the client */
+    /* sequence number (params_seq) of the leader's view parameters in the last message `following` to the client */
+    uint32_t told_params_seq;
     int told_size_px[2];
 };
 

@@ -17,7 +17,9 @@ struct postgres_span {
 struct postgres_owed { /* the time spans whose points must still be read from the database */
     struct postgres_span spans[POSTGRES_SPANS];
     size_t span_count;
-    struct postgres_span led; /* time span just before this daemon became the leader; to_us is 0 if this daemon is not the leader */
+    /* The span from the end of the former leader's recording to the start of this leader's. It is kept so that it can be read
+       once more (postgres_fill_again()). to_us 0: this daemon is not the leader. */
+    struct postgres_span led;
 };
 
 struct postgres_params {

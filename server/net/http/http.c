@@ -144,7 +144,7 @@ static const struct {
     unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
-    /* /readyz works as soon as requests are served: the event loop runs only once models and GL are loaded */
+    /* /readyz needs no check of its own: the event loop serves requests only after models and GL are loaded */
     { "/readyz", ready, ROLE_NOBODY, 0 },
     { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
     { "/login", ask_login, ROLE_NOBODY, 0 },

@@ -14,7 +14,9 @@ struct occlusion_box { /* layout that shaders/occlusion.vert reads */
        draw_batches.sorted; place_count: number of commands */
     uint32_t first_place, place_count, unused[2];
 };
-struct occlusion_asset { /* occlusion state of one visible asset; one extra element at the end holds the number of all boxes */
+/* occlusion state of one visible asset. The array of these has one more element than there are assets; in that element,
+   boxes_before is the number of all boxes */
+struct occlusion_asset {
     size_t boxes_before;
     bool tested;
     int triangles;

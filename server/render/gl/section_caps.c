@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws section caps: counts the closed bodies that contain each pixel's ray at the section plane, and draws the plane there. */
+/* Draws section caps. Counts, for each pixel, how many closed bodies contain the point where the view ray meets the section
+   plane, and draws the plane where there is a body. */
 #include "render/gl/section_caps.h"
 
 #include "base/mem.h"
@@ -69,8 +70,8 @@ static void clip_entries(const struct frame_context *context)
     }
 }
 
-/* Counts, into a texture, the bodies that contain each pixel's view ray where the ray meets the section plane. Returns the number of texels
-   along a pixel's side; 0: no memory for the texture. */
+/* Counts, into a texture, the closed bodies that contain the point where each pixel's view ray meets the section plane. Returns
+   the number of texels along a pixel's side; 0: no memory for the texture. */
 static int count_bodies(struct section_caps *caps, const struct frame_context *context)
 {
     const struct target *target = context->target;

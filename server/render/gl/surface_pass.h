@@ -42,7 +42,8 @@ struct surface_pass {
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };
 
-/* Compiles the programs of SURFACE_PICTURE. On failure, logs the reason and returns false. */
+/* Compiles those programs that draw pictures from values at vertices (SURFACE_PICTURE); others are compiled on first use. On
+   failure, logs the reason and returns false. */
 bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
 /* Draw the visible assets in steps. surface_pass_draw_some() draws opaque submeshes from the visible asset `first` on, until it

@@ -11,7 +11,7 @@
 enum label_over {
     OVER_NOTHING,
     OVER_MARKS, /* markers without an alarm ring */
-    OVER_RINGS, /* markers with and without an alarm ring (the circle around the marker of a tag in alarm) */
+    OVER_RINGS, /* all markers, also those with an alarm ring (a circle around the marker of a tag in alarm) */
     OVER_ALL
 };
 

@@ -40,7 +40,8 @@ struct rings {
        labels remain */
     double least;
     struct ring_group *groups;
-    /* [ring, in the order of `order`]: position in pixels by which the ring is grouped with near rings (set_anchors) */
+    /* [ring, in the order of `order`]: position in pixels at which the ring counts when near rings are grouped: its own, or in
+       a flood of alarms the centre of its asset's rings */
     double (*anchors)[2];
     int *group_of;          /* [ring, in the order of `order`]: index in `groups` of the group to which the ring belongs */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */

@@ -8,7 +8,8 @@
 struct view_of_depth {
     const float *depth;
     int width_px, height_px, pitch_px;
-    /* orthographic frames: view_constants.depth_scale; 0: perspective, where depth is proportional to 1 / distance from the eye */
+    /* how stored depths become distances. 0: perspective, where depth is proportional to 1 / distance from the eye; else
+       orthographic: view_constants.depth_scale */
     float scale;
 };
 

@@ -129,7 +129,8 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
 /* Elevations above the horizon along a row of pixels, as columns of the backdrop table. They are interpolated linearly within a
    stretch of raster->stretch_px pixels (choose_stretch bounds the error). */
 struct heights {
-    float first, step; /* elevation above the horizon at the centre of the stretch's first pixel, and its change per pixel */
+    /* elevation above the horizon at the centre of the first of these pixels (a stretch of a row), and its change per pixel */
+    float first, step;
 };
 
 static float height_at(const struct raster *raster, float x, float y)

@@ -25,8 +25,12 @@ struct node {
     /* polynomials that replace the far sensors (those whose weights are smooth in the square of pixels). The member `sensors`
        of this list is not used */
     struct pixel_list far;
-    float least;           /* lower bound of the sum of the weights of the far sensors, which polynomials replace */
-    float left;            /* part of the error budget that is left for further polynomials, as a fraction of the sum of all weights */
+    /* lower bound of the far sensors' weights, summed, at any pixel of the square; far sensors are those that polynomials
+       replace */
+    float least;
+    /* error that further polynomials may still cause, as a fraction of the sum of all weights; decreases with each sensor that
+       a polynomial replaces */
+    float left;
 };
 
 struct building {

@@ -150,7 +150,9 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     size_t mesh_capacity;
     struct soft_pixels *pixels;
     size_t pixels_count, pixels_capacity;
-    int row_bias; /* number added to the row of the colour map in a MARK_PIXELS mark, so that it is not negative */
+    /* A pixel whose field is still to be evaluated (MARK_PIXELS) stores its row of the colour map plus this number, so that the
+       stored number is not negative. */
+    int row_bias;
     int width_px, height_px, pitch_px; /* pitch_px: number of elements from one row to the next, a multiple of LANES */
     /* largest distance between a sample and its pixel's centre, along x or y, in pixels. Bounding rectangles are enlarged by
        it. 0 in previews, which sample the centre */

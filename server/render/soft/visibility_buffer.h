@@ -80,7 +80,8 @@ struct visibility_mesh { /* an asset with a field */
     /* range of the mesh's vertices: at first indices among all vertices of the frame; after visibility_buffer_settle() among the visible
        ones */
     uint32_t first_vertex, vertex_count;
-    bool read;                 /* true: buffer->carried holds this mesh's field values of the version `content` */
+    /* true: buffer->carried holds this mesh's field values, in the version that the hash `content` identifies */
+    bool read;
     uint64_t content;          /* hash from struct fields_entry */
     struct pixel_field pixels; /* copy from struct fields_entry, owned */
     struct pixel_list every;   /* all sensors of `pixels` */

@@ -249,7 +249,8 @@ bool session_scope_allows(const struct session *session, const struct message *m
                      "key_frame and ping",
                      holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
-             /* a display with pictures may send picks, by which its page finds a free side for an alarm's label */
+             /* a display that shows pictures (not only trends of tags) may send picks: its page uses them to find a free side
+                for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
         message_fail(error, "not_allowed",
                      "this token belongs to display %d of wall %s, and permits only the messages that a display sends", holder->display,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which visible triangles among hidden ones stay visible: hides small groups (interior_islands), and resolves INTERIOR_ACROSS. */
+/* Decides for two kinds of triangles whether they are hidden: small visible groups among hidden triangles (interior_islands),
+   and triangles that stand across a thin part (interior_resolve_across). */
 #include <math.h>
 
 #include "base/math/vec.h"
