@@ -22,7 +22,7 @@ static const double MEAN_PART = 0.25; /* noise of an hourly mean, relative to th
 /* A jump shows as the difference between two averages of residuals. First: number of hours in each average. Second: number of
    hours left out between the two. */
 enum { BESIDE = 3, WITHIN = 2 };
-/* smallest jump of the residuals to be found, as a multiple of the jump that is usual between two averages of BESIDE hours */
+/* smallest jump of the residuals to be found, as a multiple of the usual difference between two such averages */
 static const double MIN_JUMP_FACTOR = 6;
 static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models the time that heat takes from the
                                                 other sensors to this one */

@@ -159,7 +159,7 @@ static void put_points(struct gather *gather, const struct history_points *point
             put_bucket(gather, &closed);
 }
 
-/* Adds the last bucket that was computed from points to the output. The bucket may be incomplete, because the series goes on
+/* Adds the last bucket that was computed from points to the output. The bucket may be incomplete, because the series continues
    after the last point. */
 static void put_rest(struct gather *gather)
 {
