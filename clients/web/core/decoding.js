@@ -28,7 +28,7 @@ export class Decoding {
     // Returns a promise of a picture that a canvas can draw and that has a method close().
     async decode(frame) {
         if (this.lost && !frame.key)
-            throw new Error('the picture that it changes is missing');
+            throw new Error('the picture before this frame is missing');
         try {
             const picture = await this.pictureOf(frame);
             this.lost = false;

@@ -23,15 +23,17 @@ export function readHeader(data) {
     };
     const { width, height, columns, rows, cellPx, maskSide, base, unit } = grid;
     need(data[0] === 2 && data[1] === ENCODING, `encoding ${data[1]} is unknown`);
-    need(u32(4) === grid.payload.length, `payload of ${u32(4)} bytes stated, ${grid.payload.length} there`);
-    need(cellPx > 0 && maskSide > 0 && cellPx % maskSide === 0, `cells of ${cellPx} px with masks of ${maskSide}`);
-    need(width > 0 && height > 0 && grid.x + width <= grid.fullWidth && grid.y + height <= grid.fullHeight, `part of ${width}x${height}`);
+    need(u32(4) === grid.payload.length, `${grid.payload.length} bytes of payload, the header says ${u32(4)}`);
+    need(cellPx > 0 && maskSide > 0 && cellPx % maskSide === 0, `masks of side ${maskSide} do not divide cells of ${cellPx} px`);
+    need(width > 0 && height > 0 && grid.x + width <= grid.fullWidth && grid.y + height <= grid.fullHeight,
+        `part of ${width}x${height} is outside the picture`);
     need(columns === Math.ceil(width / cellPx) && rows === Math.ceil(height / cellPx), `${columns}x${rows} cells`);
-    need(columns * rows <= MAX_CELLS && columns * rows * maskSide * maskSide <= MAX_MASK_PX, `masks of ${maskSide}`);
+    need(columns * rows <= MAX_CELLS && columns * rows * maskSide * maskSide <= MAX_MASK_PX, `too many cells or masks: ${columns}x${rows}`);
     need(grid.levels >= 1 && grid.levels <= MAX_LEVELS, `${grid.levels} levels`);
     // Depth codes grow towards the eye: 1/z grows in a perspective picture, z shrinks in an orthographic one.
-    need(Number.isFinite(base) && Number.isFinite(unit) && (grid.parallel ? unit < 0 : unit > 0), `depths from ${base} by ${unit}`);
-    need(Number.isFinite(base + grid.levels * unit), 'depths beyond all numbers');
+    need(Number.isFinite(base) && Number.isFinite(unit) && (grid.parallel ? unit < 0 : unit > 0),
+        `depths from ${base} in steps of ${unit}`);
+    need(Number.isFinite(base + grid.levels * unit), 'the depths are too large');
     return grid;
 }
 
@@ -79,7 +81,7 @@ function readCodes({ columns, rows, levels }, bytes) {
             const x = i % columns, beside = [x > 0 ? near[i - 1] : 0, near[i - columns] ?? 0, x > 0 ? near[i - columns - 1] ?? 0 : 0];
             far[i] = back[i];
             near[i] = symbols.next(beside.find((code) => code > back[i]) ?? back[i]);
-            need(far[i] < near[i], `a near code of ${near[i]} behind ${far[i]}`);
+            need(far[i] < near[i], `near surface (${near[i]}) not before far one (${far[i]})`);
         }
     return { near, far, back, at: symbols.at };
 }
@@ -130,18 +132,18 @@ function readMasks(grid, bytes, codes) {
         masks.read(i, bytes, at);
         at += each;
     });
-    need(at === bytes.length, `${bytes.length} bytes where ${at} are needed`);
+    need(at === bytes.length, `${bytes.length} bytes, expected ${at}`);
     return masks.bits;
 }
 
 // Parses the inflated payload of a grid. Returns the grid with `near` and `far` (depth codes by cell; far -1: the cell shows one surface)
 // and `masks`.
 export function readGrid(header, bytes) {
-    need(bytes.length === header.dataBytes, `${bytes.length} bytes, ${header.dataBytes} stated`);
+    need(bytes.length === header.dataBytes, `${bytes.length} bytes inflated, the header says ${header.dataBytes}`);
     const codes = readCodes(header, bytes), { near, far } = codes;
     // true: the grid shows no surface, so `base`, the depth of the lowest code, may have any value
     const isEmpty = near.every((code) => code === 0);
-    need(header.parallel || header.base > 0 || isEmpty, `a depth of ${header.base}`);
+    need(header.parallel || header.base > 0 || isEmpty, `depth ${header.base} is not above 0`);
     return { ...header, payload: null, near, far, masks: readMasks(header, bytes, codes) };
 }
 
@@ -152,7 +154,7 @@ async function inflate(payload, most) {
         const { done, value } = await reader.read();
         if (done)
             return bytes.subarray(0, at);
-        need(at + value.length <= most, `more than the ${most} bytes stated`);
+        need(at + value.length <= most, `more bytes inflated than the header says, ${most}`);
         bytes.set(value, at);
         at += value.length;
     }

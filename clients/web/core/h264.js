@@ -45,7 +45,7 @@ export class H264Decoder {
         if (key)
             this.open(payload);
         else if (!this.decoder)
-            throw new Error('H.264 without a key frame');
+            throw new Error('H.264: cannot start without a key frame');
         try {
             const picture = await this.next(key, payload);
             return this.copies ? await this.copyOf(picture) : picture;
@@ -58,7 +58,7 @@ export class H264Decoder {
     open(payload) {
         const sps = findSps(payload);
         if (!sps)
-            throw new Error('H.264 key frame without parameters');
+            throw new Error('H.264: the key frame has no sequence parameters (SPS)');
         if (this.decoder && hex(sps) === this.sps)
             return;
         this.close();
@@ -72,7 +72,8 @@ export class H264Decoder {
 
     next(key, data) {
         return new Promise((resolve, reject) => {
-            const timer = this.clock.setTimeout(() => this.fail(new Error('H.264: the decoder keeps a picture back')), ANSWER_MS);
+            const late = () => this.fail(new Error(`H.264: the decoder returned no picture within ${ANSWER_MS} ms`));
+            const timer = this.clock.setTimeout(late, ANSWER_MS);
             this.waiting = { resolve, reject, timer };
             const { EncodedVideoChunk } = this.api;
             this.decoder.decode(new EncodedVideoChunk({ type: key ? 'key' : 'delta', timestamp: this.count++, data }));

@@ -25,7 +25,7 @@ function need(condition, what) {
 // Reads a time as a u64 of microseconds since 1970, which a double represents exactly until the year 2255.
 function time(view, offset) {
     const us = Number(view.getBigUint64(offset, true));
-    need(Number.isSafeInteger(us), `time at byte ${offset} is beyond all dates`);
+    need(Number.isSafeInteger(us), `time at byte ${offset} is after the year 2255`);
     return us;
 }
 
@@ -35,17 +35,17 @@ const triple = (view, offset) => [0, 4, 8].map((o) => view.getFloat32(offset + o
 function lens(view) {
     const fov = view.getFloat32(104, true), height_m = view.getFloat32(108, true);
     if (fov === 0) {
-        need(Number.isFinite(height_m) && height_m > 0, `orthographic picture of ${height_m} m`);
+        need(Number.isFinite(height_m) && height_m > 0, `orthographic height of ${height_m} m`);
         return { fov: 0, height_m };
     }
-    need(fov >= 1 && fov <= 120, `field of view of ${fov} degrees`);
+    need(fov >= 1 && fov <= 120, `field of view of ${fov} degrees, expected 1 to 120`);
     return { fov };
 }
 
 // Parses a frame. Throws WireError. The payload is a view into the given bytes.
 export function decodeFrame(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
-    need(data.length >= FRAME_HEADER_BYTES, `${data.length} bytes are no frame header`);
+    need(data.length >= FRAME_HEADER_BYTES, `${data.length} bytes, too few for a frame header`);
     const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
     const u16 = (o) => view.getUint16(o, true), u32 = (o) => view.getUint32(o, true);
     need(view.getUint8(0) === 1, `message type ${view.getUint8(0)} is unknown`);
@@ -69,15 +69,15 @@ export function decodeFrame(bytes) {
         payload: data.subarray(FRAME_HEADER_BYTES),
     };
     need(frame.codec, `codec ${view.getUint8(1)} is unknown`);
-    need(frame.seq > 0, 'a frame without a number');
-    need(u32(4) >= 1 && u32(4) <= MAX_PAYLOAD_BYTES, `payload of ${u32(4)} bytes`);
-    need(u32(4) === frame.payload.length, `payload of ${u32(4)} bytes stated, ${frame.payload.length} there`);
+    need(frame.seq > 0, 'the frame has number 0');
+    need(u32(4) >= 1 && u32(4) <= MAX_PAYLOAD_BYTES, `payload of ${u32(4)} bytes, expected 1 to ${MAX_PAYLOAD_BYTES}`);
+    need(u32(4) === frame.payload.length, `${frame.payload.length} bytes of payload, the header says ${u32(4)}`);
     need(frame.fullWidth >= 1 && frame.fullWidth <= MAX_SIDE_PX && frame.fullHeight >= 1 && frame.fullHeight <= MAX_SIDE_PX,
         `picture of ${frame.fullWidth}x${frame.fullHeight}`);
     need(frame.width >= 1 && frame.height >= 1 && frame.x + frame.width <= frame.fullWidth && frame.y + frame.height <= frame.fullHeight,
         `part ${frame.width}x${frame.height}+${frame.x}+${frame.y} of ${frame.fullWidth}x${frame.fullHeight}`);
     const { eye, target, up } = frame.camera;
-    need([...eye, ...target, ...up].every(Number.isFinite), 'camera is not finite');
+    need([...eye, ...target, ...up].every(Number.isFinite), 'the camera has infinite coordinates, or not numbers');
     return frame;
 }
 

@@ -10,7 +10,7 @@ onmessage = async ({ data: { id, messages, frame: { camera, fullWidth, fullHeigh
         const grids = await Promise.all(messages.map((bytes) => decodeGrid(new Uint8Array(bytes))));
         const fits = (grid) => grid.fullWidth === fullWidth && grid.fullHeight === fullHeight && grid.parallel === (camera.fov === 0);
         if (!grids.every(fits))
-            throw new Error('depth grid: of another picture');
+            throw new Error('depth grid: it belongs to another picture');
         const parts = grids.map((grid) => ({ grid, mesh: meshOf(grid, camera) }));
         postMessage({ id, parts }, parts.flatMap(({ mesh }) => [mesh.vertices.buffer, mesh.indices.buffer]));
     } catch (error) {
