@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bakes light: computes the light that reaches each vertex, each large triangle or each texel of the ground, from depth maps of many
-// directions.
+// Bakes light, that is, computes it in advance: the light that reaches each vertex, each large triangle or each texel of the
+// ground, from depth maps of many directions.
 #include "light.glsl"
 #include "shadow.glsl"
 #include "environment.glsl"
@@ -29,7 +29,7 @@ const int TAPS = 4;
 const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // packed as in normal.glsl
-// four bytes per vertex: light, ambient, openness (visible part of the sky), cosine to the sun
+// four bytes per vertex: light, ambient light, openness (visible part of the sky), cosine of the angle between normal and sun
 layout(std430, binding = 4) buffer Light { uint baked[]; };
 layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // vertex indices of the corners of large triangles (bake_faces.h)
 // three sums per vertex over the samples that look_within() takes in the adjoining large triangles: weights, openness times

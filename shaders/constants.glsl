@@ -16,22 +16,23 @@
 // turn white.
 #define TONE_START 0.76
 #define TONE_DESATURATION 0.15
-// Assets without a field are muted: their colour is mixed with this grey, whose share is MUTED_PART.
+// Assets without values of sensors are muted: their colour is reduced to a grey, which is then mixed with the light grey
+// MUTED_GREY, whose share is MUTED_PART.
 #define MUTED_GREY 0.88
 #define MUTED_PART 0.48
-// Weights of the sRGB channels in the brightness of a colour.
+// Weights of the sRGB channels when a colour is reduced to a grey.
 #define GREY_RED 0.30
 #define GREY_GREEN 0.59
 #define GREY_BLUE 0.11
-// A normal is flipped towards the viewer if its cosine to the viewer is less than this. At smoothed rims, slightly negative cosines are
-// expected.
+// A vertex normal is flipped towards the viewer if the cosine of its angle to the direction of the viewer is less than this. At
+// smoothed rims, slightly negative cosines are expected.
 #define MOST_AWAY -0.3
 // Minimum openness (visible fraction of the sky, 0..1) of surfaces seen from behind, because the baked openness applies to the
 // front.
 #define OPEN_BEHIND 0.7
-// Light in the glossy look, softer than usual so that colours of the field stay recognisable in shadow. GLOSSY_OPEN: minimum
-// openness; GLOSSY_SKY, GLOSSY_SUN: factors on the light of sky and sun in refined frames; GLOSSY_DARKEST: added to the
-// brightness in previews.
+// Light in the glossy look (physically based shading of the value colours), softer than usual so that the colours stay
+// recognisable in shadow. GLOSSY_OPEN: minimum openness (visible fraction of the sky); GLOSSY_SKY, GLOSSY_SUN: factors on the
+// light of sky and sun in refined frames (final quality); GLOSSY_DARKEST: added to the brightness in previews.
 #define GLOSSY_OPEN 0.3
 #define GLOSSY_SKY 1.45
 #define GLOSSY_SUN 0.75
@@ -43,9 +44,9 @@
 // Columns of the colour map: column 0 is for values below MIN, columns 1 to COLORMAP_PLACES are positions on the scale, the next is for
 // values above MAX, then the colours of patterns.
 #define COLORMAP_PLACES 1024
-// Patterns over the field: diagonal stripes for no data, dots for uncertain, horizontal lines for no limits. A cell (one period of a
-// pattern) has 1/PATTERN_PERIODS of the picture's height, but at least PATTERN_LEAST_PX pixels; the following sizes are fractions of a
-// cell.
+// Patterns drawn over the colours of values: diagonal stripes for no data, dots for uncertain, horizontal lines for no alarm
+// limits. A cell (one period of a pattern) has 1/PATTERN_PERIODS of the picture's height, but at least PATTERN_LEAST_PX pixels;
+// the following sizes are fractions of a cell.
 #define PATTERN_PERIODS 90
 #define PATTERN_LEAST_PX 6
 #define HATCH_SLANT 1.4142

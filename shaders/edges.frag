@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Feature edges: thin dark lines where depth has a step, on the farther side, so that they do not cover the field in front.
-// Lines on both sides would hide shapes only a few pixels wide. Thinner shapes get fainter lines, because a pole's width varies
-// by a pixel and its line would flicker.
+// Feature edges: thin dark lines where depth has a step. A line is on the farther side, so that it does not cover the value
+// colours of the nearer surface. Lines on both sides would hide shapes only a few pixels wide. Thinner shapes get fainter
+// lines, because a pole's width varies by a pixel and its line would flicker.
 #include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2D depth;

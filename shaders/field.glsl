@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colour of the field at a pixel: a lookup in the colour map by position on the scale (column) and by brightness of the surface (row). The
-// colour map (render/shaded_colormap.h) holds sRGB colours by the legend's rule (field/scale.h): bands, colours outside MIN and MAX, and
-// patterns.
+// Colour of the field (values interpolated between sensors) at a pixel: a lookup in the colour map by position on the scale
+// (column) and by brightness of the surface (row). The colour map (render/shaded_colormap.h) holds sRGB colours by the legend's
+// rule (field/scale.h): bands, colours outside MIN and MAX, and patterns.
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
@@ -100,7 +100,8 @@ vec3 field_color(FIELD_TYPE field, float light)
 #ifdef REFINED
     vec3 color = mix(colormap_color(column, row), colormap_color(second, row), clamp(part, 0.0, 1.0));
 #else
-    vec3 color = colormap_color(part > 0.5 ? second : column, row); // previews look up one colour only: patterns are not antialiased
+    // previews (frames in lower quality) look up a single colour per pixel, so the edges of patterns are not antialiased
+    vec3 color = colormap_color(part > 0.5 ? second : column, row);
 #endif
 #ifdef RICH
     vec3 ink = dot(color, vec3(GREY_RED, GREY_GREEN, GREY_BLUE)) > ISOLINE_BRIGHT ? vec3(ISOLINE_DARK_RGB) : vec3(ISOLINE_LIGHT);

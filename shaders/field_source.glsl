@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Provides the field's value and flags at a fragment: interpolated between vertices, or computed from all sensors (reference.glsl).
+// Provides the field (value interpolated between sensors) and its flags (no data, uncertain) at a fragment. They are
+// interpolated between the triangle's vertices, or computed from all sensors (reference.glsl).
 #if defined(PER_FRAGMENT) || defined(PIXEL_FIELD)
 #include "reference.glsl"
 FIELD_TYPE field_here(FIELD_TYPE interpolated)

@@ -2,7 +2,8 @@
 // Draws the shadow on the ground: outputs a factor that blending multiplies by the backdrop's colour.
 #include "constants.glsl"
 #include "frame.glsl"
-layout(binding = 1) uniform sampler2D ground_light; // visible part of the sun, and openness; both 0..1
+// visible part of the sun, and openness (visible part of the sky), at a point of the ground; both 0..1
+layout(binding = 1) uniform sampler2D ground_light;
 layout(location = 0) in vec2 at;
 layout(location = 1) in vec3 place;
 layout(location = 0) out vec4 factor;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light at a point and the resulting colour; shared by previews, refined frames and colour ramps, so that their colours agree.
+// Light at a point and the resulting colour. Previews (lower quality), refined frames (final quality) and colour ramps share
+// this code, so that their colours agree.
 #include "constants.glsl"
 
 // Returns the brightness of a surface: 0 in a hidden corner, 1 facing the sun under the open sky. ambient: visible fraction of sky and
@@ -40,8 +41,8 @@ float grey_of(vec3 c)
     return dot(c, vec3(GREY_RED, GREY_GREEN, GREY_BLUE));
 }
 
-// Makes the colour of an asset without a field paler and removes its hue, so that no material is mistaken for a value. Takes and returns
-// sRGB.
+// Returns a paler grey version of the colour of an asset without values of sensors, so that no material is mistaken for a
+// value. Takes and returns sRGB.
 vec3 mute(vec3 c)
 {
     return mix(vec3(grey_of(c)), vec3(MUTED_GREY), MUTED_PART);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests: writes the field's numbers instead of a colour: position in the range 0..1, share of no data (-1: the asset has no field),
-// share of uncertain, and depth.
+// For tests: writes numbers instead of a colour: position of the pixel's value in the range (0..1), share of no data (-1: the
+// asset has no values of sensors), share of uncertain, and depth.
 #include "frame.glsl"
 #ifdef FIELD
 #ifdef REFINED

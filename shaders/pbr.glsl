@@ -14,7 +14,7 @@ struct Surface {
     vec3 base;
     float metallic, roughness;
     vec3 normal;
-    float open;        // unoccluded fraction of the sky that the surface faces, 0..1
+    float open;        // fraction of the sky above the surface that no asset hides, 0..1
     float sun_visible; // visible fraction of the sun, 0..1
 };
 

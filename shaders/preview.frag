@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragment shader of previews. For speed, it computes one brightness and one colour lookup per pixel; textures only cut holes.
+// Fragment shader of previews, the frames in lower quality. For speed, it computes one brightness and one colour lookup per
+// pixel; textures of the material only cut holes.
 #include "frame.glsl"
 #include "light.glsl"
 #ifdef FIELD
@@ -10,7 +11,8 @@ layout(location = 1) in FIELD_TYPE field;
 #else
 layout(location = 0) in vec2 light;
 layout(location = 1) in vec3 sun_place;
-layout(binding = 1) uniform sampler2D ramps; // colour ramps: one row per material, columns by light from 0 (left) to 1; sRGB
+// colours of assets without values: one row per material, columns by brightness of the light from 0 (left) to 1; sRGB
+layout(binding = 1) uniform sampler2D ramps;
 layout(binding = 2) uniform sampler2DShadow sun_map;
 #endif
 layout(location = 2) uniform int material;

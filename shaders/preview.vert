@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertex shader of previews: outputs position, baked light and, for assets with a field, the field's value. Keep it short, because Mesa's
-// software driver llvmpipe runs vertex shaders on one thread.
+// Vertex shader of previews, the frames in lower quality: outputs position, baked light and, for assets with sensors, the value
+// interpolated between them. Keep it short, because Mesa's software driver llvmpipe runs vertex shaders on one thread.
 #include "frame.glsl"
 #include "clip.glsl"
 #include "instance.glsl"
@@ -9,7 +9,7 @@ layout(location = 0) in vec3 position_m;
 layout(location = 0) out float light;
 layout(location = 1) out FIELD_TYPE field;
 #else
-layout(location = 0) out vec2 light; // baked at the vertex: ambient light, cosine to the sun
+layout(location = 0) out vec2 light; // light computed in advance (bake.comp) at the vertex: ambient light, cosine of the angle to the sun
 layout(location = 1) out vec3 sun_place;
 #endif
 #ifdef CLIP

@@ -3,14 +3,14 @@
 // the rules of server/field/field.h. Geodesic distances are interpolated over the triangle, straight-line ones computed from the fragment's
 // position. PIXEL_FIELD: straight-line distances only (field/pixel_field.h).
 struct Sensor {
-    vec4 place_m;  // position in file coordinates; w: strength
+    vec4 place_m;  // position of the sensor in coordinates of the asset file; w: strength (factor on the sensor's weight)
     float decay, value;
     // column: index of the sensor in `distances`; state, as bits: 1: configured, 2: usable, 4: uncertain, 8: without limits
     uint column, state;
 };
 layout(std430, binding = 5) readonly buffer Sensors {
-    // x: exponent of interpolation shepard; y: radius in metres of Algorithm 1; z: reach in metres, beyond which a sensor has
-    // no influence; w: MIN of the group's range
+    // x: exponent of interpolation shepard; y: radius in metres of Algorithm 1; z: reach in metres, the distance beyond which a
+    // sensor has no influence; w: lower end MIN of the group's range
     vec4 numbers;
     // x: factor MAX - MIN of the range, which scales Algorithm 1's sum to a value, or 0; y: vertex count of the asset; z, w
     // (only if the smallest visible hot spot is shown): size of a hot spot and the value at which it is seen

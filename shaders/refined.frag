@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragment shader of refined frames: physically based shading with all textures of the material. On the field, light changes only the
-// lightness of colours, as in previews.
+// Fragment shader of refined frames (final quality): physically based shading with all textures of the material. Where a
+// surface shows values of sensors, light changes only the lightness of their colours, as in previews.
 #include "frame.glsl"
 #include "light.glsl"
 #include "material.glsl"
@@ -12,7 +12,9 @@ layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
 layout(location = 2) centroid in vec4 uv; // first and second texture coordinates
 layout(location = 3) centroid in vec4 tint;
-layout(location = 4) centroid in vec3 sky; // x: baked ambient light; y: baked openness; z: the constant 1 as interpolated to the centroid
+// light computed in advance by bake.comp: x: ambient light; y: openness (visible fraction of the sky); z: the constant 1 as
+// interpolated to the centroid
+layout(location = 4) centroid in vec3 sky;
 layout(location = 5) centroid in FIELD_TYPE field;
 #ifdef PIXEL_FIELD
 #define CENTROID_ONE sky.z
@@ -88,7 +90,9 @@ void main()
     vec3 glow = m.emissive.rgb;
 #ifdef GLOSSY
     s.base = linear_from_srgb(color.rgb);
-    s.metallic = 0.0; // treat the surface as non-metallic, because a metal would reflect the sky instead of showing the field
+    // treats a surface that shows values as non-metallic, because a metal would reflect the sky instead of showing the values'
+    // colours
+    s.metallic = 0.0;
 #endif
 #ifdef TEXTURED
     if ((textures & 2) != 0) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertex shader of refined frames: outputs position, normal, texture coordinates, baked light and field value for shading in refined.frag.
+// Vertex shader of refined frames (final quality): outputs position, normal, texture coordinates, light baked by bake.comp and
+// the value interpolated between sensors, for shading in refined.frag.
 #include "frame.glsl"
 #include "clip.glsl"
 #include "instance.glsl"

@@ -3,7 +3,8 @@
 // colours and once for depth.
 #include "frame.glsl"
 #include "section.glsl"
-layout(binding = 0) uniform sampler2D bodies; // counts of bodies from section_cap_count.frag; a pixel has `texels` x `texels` counts
+// counts of bodies around the pixel's ray, from section_cap_count.frag; each pixel of the frame has `texels` x `texels` counts
+layout(binding = 0) uniform sampler2D bodies;
 layout(location = 0) uniform int texels;      // number of texels of `bodies` along a pixel's side
 layout(location = 0) in vec2 clip;
 #ifdef DEPTH

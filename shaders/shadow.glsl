@@ -4,7 +4,8 @@
 #include "constants.glsl"
 layout(binding = 2) uniform sampler2DShadow sun_map;
 
-// normal: direction in which the point is moved away from its surface, to prevent self-shadowing.
+// normal: the surface's normal, along which the point is moved away from the surface, so that the surface does not shadow
+// itself.
 float sun_visibility(mat4 sun_from_here, vec3 place, vec3 normal, float texel_m)
 {
     vec3 p = (sun_from_here * vec4(place + normal * (texel_m * (1.0 + SUN_SPREAD)), 1.0)).xyz;

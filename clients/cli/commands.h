@@ -36,7 +36,8 @@ int cmd_restore(int argc, char **argv);
 int cmd_fleet(int argc, char **argv);
 /* Verifies that a daemon's audit trail is complete. */
 int cmd_audit(int argc, char **argv);
-/* Proposes locations for more sensors, lists drifting sensors, and accepts assumed positions. */
+/* Proposes locations for more sensors, lists drifting sensors, and accepts assumed positions (positions that `plantcast match`
+   chose for sensors on their equipment). */
 int cmd_sensors(int argc, char **argv);
 int cmd_sensors_accept(int argc, char **argv);
 int cmd_sensors_drift(int argc, char **argv);

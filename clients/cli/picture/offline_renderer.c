@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws pictures of a prepared plant without a daemon, with values from a file or from recorded history. */
+/* Draws pictures of a plant without a daemon, from files made by plantcast-prep, with values from a file or from recorded
+   history. */
 #include "offline_renderer.h"
 #include "saved_view.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Offline renderer: everything that is needed to draw pictures of a prepared plant without a daemon. Call from one thread only. */
+/* Offline renderer: everything that is needed to draw pictures of a plant without a daemon, from files made by plantcast-prep.
+   Call from one thread only. */
 #ifndef CLI_PICTURE_OFFLINE_RENDERER_H
 #define CLI_PICTURE_OFFLINE_RENDERER_H
 #include "history/history.h"
@@ -15,7 +16,7 @@ struct offline_renderer {
     struct scene *scene;
     struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
-    /* sequence number of the readings in `snapshot`; a larger number tells the field that the readings have changed */
+    /* number of times that the readings in `snapshot` were replaced; a changed number makes `field` compute its values again */
     uint32_t turn;
     struct workers *workers;
     struct field *field;
@@ -27,14 +28,16 @@ struct offline_renderer {
     int64_t first_us, last_us; /* first and last recorded instant */
 };
 
-/* Opens the plant, its prepared files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason
-   printed. Call offline_renderer_close() in both cases. */
+/* Opens the plant, its prepared files (made by plantcast-prep), the values to show and the baseline (readings to compare them
+   with), and sets *view from options->args. Returns 0, or the exit code with the reason printed. Call offline_renderer_close()
+   in both cases. */
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Like offline_renderer_open(), but without a view. Returns false with the reason printed. */
 bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapshot_options *options);
 /* Sets *view from options->args. Returns false, with the reason printed, if they are invalid. */
 bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
-/* Like offline_renderer_open(), but the renderer already has this plant open: reads only new values, a new baseline and a new view. */
+/* Like offline_renderer_open(), but the renderer already has this plant open: reads only new values, a new baseline (readings
+   to compare the values with) and a new view. */
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Creates the GL context and the renderer. On failure, logs the reason and returns false. */
 bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);

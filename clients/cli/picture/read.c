@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast read`: reads the field's value at a pixel of a picture with a legend strip, from the picture's pixels alone. */
+/* `plantcast read`: reads which measured value the colour of a picture's pixel shows. The picture needs a legend strip
+   along its edge, which contains the colour scale; no other data is used. */
 #include <cairo.h>
 #include <getopt.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
 
 struct redraw_options {
     const char *plant;    /* plant file; NULL: no redraw */
-    const char *prepared; /* folder of the prepared files; NULL: next to the plant file */
+    const char *prepared; /* folder of the files that plantcast-prep made for the plant; NULL: next to the plant file */
     const char *history;  /* history folder; NULL: the statement's readings are not compared with recorded ones */
 };
 

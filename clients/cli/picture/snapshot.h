@@ -14,16 +14,20 @@ struct daemon_access; /* clients/link/daemon.h */
 enum { SNAPSHOT_MAX = 64 };
 struct snapshot_options {
     const struct daemon_access *access; /* for requests to a daemon */
-    const char *from, *out;   /* from: plant file, or daemon's URL; out: file to write, NULL if only a pick is requested */
+    /* from: plant file, or daemon's URL; out: file to write the picture to, NULL if only the value at a pixel is requested
+       (`pick`) */
+    const char *from, *out;
     char *args[SNAPSHOT_MAX]; /* parameters of the view as NAME=VALUE, as in the query of /snapshot.png; owned by the struct */
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
     const char *view; /* id or title of the named view to show (saved_view.h); NULL: none */
-    bool pick; /* true: also prints the equipment and the field's value at the pixel place_px */
+    bool pick; /* true: also prints which equipment is at the pixel place_px, and the measured value that the pixel's colour shows */
     double place_px[2];
-    const char *baseline; /* CSV file of baseline values or, with a daemon, name of a saved baseline; NULL: none */
-    const char *prepared; /* folder of the prepared files; NULL: next to the plant file */
+    /* CSV file of a baseline (readings with which the shown ones are compared) or, with a daemon, name of a saved baseline;
+       NULL: none */
+    const char *baseline;
+    const char *prepared; /* folder of the files that plantcast-prep made for the plant; NULL: next to the plant file */
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws one picture of a prepared plant, without a daemon. */
+/* Draws one picture of a plant without a daemon, from files made by plantcast-prep. */
 #include <stdio.h>
 
 #include "base/mem.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast sensors accept`: accepts the assumed positions of many sensors in a plant's tag list in one step, and can undo that. */
+/* `plantcast sensors accept`: marks the assumed positions of many sensors (chosen on their equipment by `plantcast match`) as
+   confirmed in the plant's tag list, all in one step. It can undo that. */
 #include <getopt.h>
 #include <limits.h>
 #include <stdio.h>
@@ -170,7 +171,8 @@ static bool number_of(const char *name, const char *text, double most, double *o
     return false;
 }
 
-/* Reads from the options which assumed positions to accept. Returns false with the reason printed. */
+/* Reads from the options which sensors' assumed positions are accepted: those of an asset or group, near enough to the surface,
+   and of sufficient confidence. Returns false with the reason printed. */
 static bool read_filter(const struct accept_options *options, const struct plant *plant, struct assumed_filter *filter)
 {
     *filter = (struct assumed_filter){ .asset = options->asset ? plant_find_asset(plant, options->asset) : -1,

@@ -37,7 +37,7 @@ struct viewer_params {
                             camera) */
     unsigned seed;      /* seed of random motion */
     bool blind;         /* true: the viewer acknowledges frames without decoding them */
-    const char *signs;  /* which frames the daemon is asked to sign: `refined`, `all`; NULL: none */
+    const char *signs;  /* which frames the daemon is asked to sign: `refined` (frames in final quality), `all`; NULL: none */
     const char *folder; /* folder to save signed frames in; NULL: they are not saved */
     int number;         /* index of this viewer, used in names of saved files */
     bool stalls;        /* true: the viewer stops reading its socket after the first frame, like a client that hangs */

@@ -10,7 +10,8 @@ const ACTIONS = { // actions by alarm state, for alarms that Plantcast manages i
 };
 const ROLES = { in_service: ['engineer'] };
 
-// Returns the actions that a role may take on an alarm in this state. mode: the plant's alarm mode.
+// Returns the actions that a role may take on an alarm in this state. mode: the plant's alarm mode; only in mode `local`, in
+// which Plantcast manages the alarms itself, are there any actions.
 export function actionsFor({ state }, mode, role) {
     const may = (action) => (ROLES[action] ?? ['operator', 'engineer']).includes(role);
     return mode === 'local' ? (ACTIONS[state] ?? []).filter(may) : [];
@@ -33,7 +34,8 @@ const IS = { // predicates by filter choice
     all: () => true, waiting: ({ waiting }) => waiting, active: ({ state }) => !isGone(state), gone: ({ state }) => isGone(state),
 };
 
-// Returns true if a row of the alarm list passes the filter. which: a key of IS, or a priority; words: each must occur in the row's text.
+// Returns true if a row of the alarm list passes the filter. which: `all`, `waiting` (unacknowledged), `active`, `gone`
+// (returned to normal), or a priority; words: each must occur in the row's text.
 export function passes(row, text, { which, words }) {
     const is = IS[which] ?? (({ priority }) => priority === Number(which)), lower = text.toLowerCase();
     return is(row) && words.toLowerCase().split(/\s+/).every((word) => lower.includes(word));

@@ -8,8 +8,9 @@ const AGAIN_MS = 10000; // two failures within this time mean that the decoder i
 // Decodes frames to pictures that a canvas can draw. onCodecs(list) is called with the codecs to request from now on, onLost() when a key
 // frame is needed.
 export class Decoding {
-    // env: { api (the browser's objects, perhaps with VideoDecoder), store (localStorage), agent (browser version), now, makeBitmap(blob),
-    // tryOut(decoder) (optional) }.
+    // env: { api (the browser's objects, perhaps with VideoDecoder), store (localStorage), agent (browser version), now,
+    // makeBitmap(blob), tryOut(decoder) (optional: replaces the test of H.264 decoders; resolves to null if the decoder works)
+    // }.
     constructor(env) {
         Object.assign(this, { env, h264: null, lost: false, failedAt: -Infinity });
         // plain: the codecs that need no VideoDecoder (JPEG, PNG)

@@ -13,7 +13,8 @@ const COMMANDS = {
     t: 'top', i: 'corner', o: 'projection', v: 'views', p: 'picture', x: 'hide', g: 'ghost', l: 'only', u: 'showAll', m: 'timings',
     e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme', j: 'split',
 };
-export const TAP_S = 1 / 15; // each press of a key immediately causes this many seconds of motion; a key held for longer moves steadily
+// seconds of motion that each press of a key causes immediately; a key held for longer than HOLD_S then moves steadily
+export const TAP_S = 1 / 15;
 export const HOLD_S = 0.25;
 
 function motionName({ key, code, shiftKey }) {

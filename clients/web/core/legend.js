@@ -115,8 +115,8 @@ export function scaleTicks(scale, lines, most = 9) {
     return [min, ...decades.filter((v) => near(v) && placeOf(scale, v) > 0.05 && placeOf(scale, v) < 0.95), max];
 }
 
-// Colours of the operator's view, the lowest band first, as on the server (shaders/maps/operator.csv). from, to: position of a value
-// between the alarm limits.
+// Colours of the operator's view, the lowest band first, as on the server (shaders/maps/operator.csv). from, to: where a value
+// is relative to its alarm limits: -2, -1, 1 and 2 are the limits LL, L, H and HH.
 export const LIMIT_BANDS = [
     { from: -3, to: -2, colour: [90, 141, 192] }, { from: -2, to: -1, colour: [146, 174, 203] },
     { from: -1, to: 1, colour: [201, 201, 201] },

@@ -26,7 +26,8 @@ export function hatchAt(x, row, heightPx, period) {
     return mix(HATCH[0], HATCH[1], hatch(x + 0.5, heightPx - row - 0.5, period));
 }
 
-// Returns the colour of the pattern for tags without limits in the operator's view.
+// Returns the colour of the pattern for tags without alarm limits in the operator's view, which shows values relative to their
+// alarm limits.
 export function ruleAt(row, heightPx, period) {
     return mix(RULE[0], RULE[1], stripes((heightPx - row - 0.5) / period, PATTERNS.RULE_EDGE, period));
 }

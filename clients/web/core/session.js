@@ -166,7 +166,8 @@ export class Session {
             this.connection.send(message);
     }
 
-    // Sends `hello`, the first message of a connection. parts: which parts of our view (camera, params, baseline) to ask for.
+    // Sends `hello`, the first message of a connection. parts: which parts of the page's view to ask for: its camera, its
+    // parameters, its baseline (saved readings to compare with).
     hello(parts) {
         const { shown } = this;
         this.welcomed = false;
@@ -219,7 +220,8 @@ export class Session {
     }
 
     // Returns the view's parameters to send after a reconnect. Parameters equal to the defaults are left out, because the
-    // plant's defaults may have changed. baseline false: without the baseline, which the server may have lost.
+    // plant's defaults may have changed. baseline false: leaves out the baseline (saved readings to compare with), which the
+    // server may have lost.
     carried({ baseline = true } = {}) {
         const { params, ownParams: own } = this;
         const may = (name) => !this.role || this.role === 'engineer' || !ENGINEERS.includes(name);

@@ -11,7 +11,7 @@ const STEEPEST = 6;
 // cells are merged into one quad if their depth codes deviate from a plane by at most FLAT_CODES, or FLAT_SHARE of the depth
 const FLAT_SHARE = 0.002, FLAT_CODES = 0.8;
 const BLOCK = 16; // maximum side of a block of merged cells, in cells
-const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
+const LAP_PX = 0.5; // overlap of merged blocks in pixels of the picture, which hides cracks between blocks of different sizes
 export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the depth step, those behind it
 const ORDER = [0, 2, 1, 1, 2, 3]; // corners of a quad's two triangles, by index of the vertex
 // number of floats per vertex: x and y in pixels of the picture (in a split view: of one half of the picture), depth, and which

@@ -6,8 +6,8 @@ import { FAR, FLOATS, NEAR } from './warp_mesh.js';
 // a rectangle of the source picture is drawn as a parallelogram if its projection deviates by at most SKEW_PX from one, or
 // measures at most LEAST_PX
 const SKEW_PX = 1, LEAST_PX = 4;
-const LAP_PX = 0.1; // overlap of neighbouring parallelograms, which hides cracks between them
-const LEAST_AREA = 1e-3; // parallelograms of fewer pixels are not drawn
+const LAP_PX = 0.1; // overlap of neighbouring parallelograms in drawn pixels, which hides cracks between them
+const LEAST_AREA = 1e-3; // parallelograms with a smaller area, in drawn pixels, are not drawn
 const TINY = 1e-7; // minimum change of the position in the source picture from one screen pixel to the next; avoids divisions by zero
 // the greys of undrawn places are computed for blocks of REDUCED x REDUCED pixels (fillUndrawn() divides by REDUCED with a
 // shift)

@@ -11,8 +11,8 @@ import { make, setText, setVariable } from '../app/common/dom.js';
 import { badge, limitText } from '../app/alarms/alarm_bar.js';
 import { SnapshotPane } from './snapshot_pane.js';
 
-// LEAST_PART: smallest scale of the letters when a pane's content must fit; LATEST_MS: time after which an alarm's picture is
-// shown even if it does not contain the alarm's tag
+// LEAST_PART: smallest scale to which the letters shrink so that a pane's content fits; LATEST_MS: time after which an alarm's
+// picture is shown even if it does not contain the alarm's tag
 const LEAST_PART = 0.4, LATEST_MS = 30000;
 const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane,
     snapshot: SnapshotPane };

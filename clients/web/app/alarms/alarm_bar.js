@@ -20,9 +20,9 @@ export function heldSince(session, { tag, kind }) {
     return then.date === clock(nowUs / 1000).date ? minute : `${then.day} ${minute}`;
 }
 
-// Returns an alarm's values as three texts: the value that raised it; the present value, or since when there is no usable one;
-// the limit. Without a limit, there is only the time since when there is no usable value, or an empty text. fresh false (no
-// messages arrive from the server): a dash replaces the present value. While the past is shown, the second text is left out.
+// Returns a text about an alarm: the value that raised it, its limit, and the present value, or since when there is no usable
+// value. For an alarm without a value or a limit, the text has only that time, or is empty. fresh false (no messages arrive
+// from the server): a dash replaces the present value. While the past is shown, the present value is left out.
 export function limitText(session, alarm, fresh) {
     const { model, time } = session, { tag, value, limit } = alarm, isPast = time.atUs !== null;
     const since = fresh && !isPast ? heldSince(session, alarm) : null, held = since && say('alarms.since', { time: since });
@@ -48,7 +48,8 @@ export class AlarmBar {
         return this.session.model?.alarms ?? null;
     }
 
-    // fresh false: the server is silent; the bar shows the alarms as of its last message.
+    // Sets whether messages arrive from the server. fresh false: none arrive, so the bar shows the alarms as of the last
+    // message.
     setFresh(fresh) {
         this.fresh = fresh;
         document.body.classList.toggle('stale', !fresh);

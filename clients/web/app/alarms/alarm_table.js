@@ -43,8 +43,9 @@ export class AlarmTable {
         return sortRows(rows, this.sort);
     }
 
-    // Fills a <tbody>. said(row) returns the row's text. A row whose text did not change keeps its element, so that a button
-    // does not move while the user presses it. Returns [[element, row]].
+    // Fills a <tbody> with rows. said(row) returns a text that changes whenever the row's display must change; draw(row) makes
+    // the row's element. A row whose text did not change keeps its element, so that a button does not move while the user
+    // presses it. Returns [[element, row]].
     fill(body, rows, said, draw) {
         const before = new Map([...body.children].map((element) => [element.said, element]));
         const drawn = rows.map((row) => {
@@ -104,9 +105,9 @@ function timeText(session, us) {
 const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'alarm-go', title: say('alarms.fly', { tag: tag.name }),
     onclick: () => fly(tag) }, name);
 
-// Returns the <tr> for a row of the alarm list or the journal, which pass different parts: look (attributes of the <tr>), pick
-// (checkbox), state (text), note and also (texts in the description), buttons. fly(tag): called when the user presses the tag's
-// button.
+// Returns the <tr> for a row of the alarm list or of the journal. The caller supplies the parts in which the two tables differ:
+// look (attributes of the <tr>), pick (checkbox), state (text), note and also (texts in the description), buttons. fly(tag) is
+// called when the user presses the tag's button.
 export function rowOf(session, row, fresh, { look, pick, state, note, also = '', buttons, fly }) {
     const { tag, kind, priority } = row, name = make('b', {}, tag.name);
     const cell = (col, title, ...content) => make('td', { 'data-col': col, title }, ...content);

@@ -16,7 +16,8 @@ export class LongList {
         new ResizeObserver(() => this.show()).observe(root);
     }
 
-    // Calls change(), which calls set(), and rebuilds the elements of all rows; keeps scroll position and focus.
+    // Builds the elements of all rows again, not only of changed rows; keeps scroll position and focus. change(): a function of
+    // the caller that sets the rows with set().
     renew(change) {
         const { root } = this, hasFocus = root.contains(document.activeElement);
         this.space.replaceChildren();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The card of a point on the plant's surface: its equipment, the field's value at the point, the sensors that contribute to the value, and
-// the uncertainty.
+// The card of a point on the plant's surface: its equipment, the value at the point (interpolated between sensors), the sensors
+// that contribute to the value, and the uncertainty.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { askPick } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -17,7 +17,8 @@ export class Place {
         this.element = byId('place');
         new ResizeObserver(() => this.show()).observe(this.element);
         this.picked = null;
-        // pending pick request: 'new' (another point) or 'again' (the same point); null: none
+        // pending request for what is at a point of the picture: 'new' (another point than the card's) or 'again' (the same
+        // point); null: none
         this.asked = null;
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
@@ -53,7 +54,8 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // the card was closed meanwhile
-        // ignores the answer to another module's pick request, which has replaced this card's
+        // The server answers only the newest request for what is at a point. If another module has made one since, ignores its
+        // answer.
         if (picked.purpose !== 'place') {
             this.asked = null;
             return;
@@ -61,7 +63,7 @@ export class Place {
         const again = this.asked === 'again';
         this.asked = null;
         if (again && !this.isSamePlace(picked)) {
-            this.close(); // the point is now covered or hidden by equipment, so its card closes
+            this.close(); // closes the card, because its point is now hidden behind other equipment or its equipment was hidden
             return;
         }
         this.picked = picked.asset === null ? null : picked;

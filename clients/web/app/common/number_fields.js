@@ -7,8 +7,8 @@ import { byId, make, setText } from './dom.js';
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
 export const distances = (group) => explained('distance', 'geodesic', 'euclidean', 'heat')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
-// Returns the interpolations that a sensor group offers: the first two are always available, the others only if they were prepared for the
-// group.
+// Returns the interpolations between sensors that a sensor group offers. The first two are always available, the others only if
+// plantcast-prep has computed them for the group.
 export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin', 'gp')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 export const fills = () => explained('fill', 'none', 'neighbours');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Accepts the assumed positions of many sensors in one step, filtered by equipment, name, distance from the surface and
-// confidence of the match. First, the page counts these sensors and marks them on the model. Afterwards, the user can restore
-// the previous tag list.
+// Confirms the assumed positions of many sensors (those chosen on their equipment by `plantcast match`) in one step. A filter
+// selects the sensors by equipment, name, distance from the surface and confidence of the match. First, the page counts these
+// sensors and marks them on the model. Afterwards, the user can restore the previous tag list.
 import { tellAsEngineer } from '../../core/requests.js';
 import { whyNotSaved } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -43,7 +43,7 @@ export class Accepting {
             this.count, this.refused, make('div', { class: 'line' }, this.go, this.undo), this.note);
     }
 
-    // Shows the filter for the current plant, which may have fewer assumed positions than before.
+    // Shows the filter for the current plant, which may have fewer sensors with an assumed position than before.
     show() {
         const assumed = this.session.model.tags.filter(({ place }) => place === 'equipment'), counts = new Map();
         assumed.forEach(({ asset }) => counts.set(asset, (counts.get(asset) ?? 0) + 1));

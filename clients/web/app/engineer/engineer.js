@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engineering panel: placing sensors, loop checks, and field settings. Loaded when it is first opened.
+// The engineering panel: placing sensors, loop checks (finding the tag whose transmitter a technician forces), and settings of
+// the interpolation between sensors. Loaded when it is first opened.
 import { say } from '../../core/words.js';
 import { ACCENT } from '../viewport/overlay.js';
 import { byId, make } from '../common/dom.js';
@@ -78,7 +79,8 @@ export class Engineer {
         return this.open && this.part === part && this.parts[part][name] === tag.name;
     }
 
-    // Returns true if the form that accepts many assumed positions at once (accepting.js) is open and its filter chooses the tag.
+    // Returns true if the form that confirms the assumed positions of many sensors (accepting.js) is open and its filter
+    // selects the tag.
     isAccepted(tag) {
         return this.open && this.part === 'place' && this.parts.place.accepting.names.has(tag.name);
     }
@@ -89,8 +91,8 @@ export class Engineer {
             this.isAt('prove', 'stirred', tag);
     }
 
-    // Draws rings around a tag's marker: dashed for a draft position, blue if the acceptance would include its assumed position, solid if
-    // the tag is selected, double if its reading changed during a loop check.
+    // Draws rings around a tag's marker: dashed if its position is an unsaved draft, blue if the form accepting.js would
+    // confirm its assumed position, solid if the tag is selected, double if its reading changed during a loop check.
     mark(tag) {
         const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
         const stirred = this.isAt('prove', 'stirred', tag);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Field settings for engineers: distance, interpolation, areas without data, and factors for all sensors or for one.
+// Settings for engineers of how values are interpolated between sensors: kind of distance, kind of interpolation, how areas
+// without data are shown, and weighting factors for all sensors or for one.
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
 import { distances, fills, interpolations, numberField, writeNumber } from '../common/number_fields.js';
@@ -36,7 +37,7 @@ export class Method {
         return { name, fieldset, all, why: make('p', { class: 'quiet' }) };
     }
 
-    // Offers the kinds of distance and interpolation that were prepared for the sensor group.
+    // Offers the kinds of distance and interpolation that plantcast-prep has computed for the sensor group.
     offer(group) {
         this.offerOf('distance', distances(group));
         this.offerOf('interpolation', interpolations(group));

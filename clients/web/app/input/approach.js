@@ -7,17 +7,20 @@ import { askPick } from '../../core/requests.js';
 import { distance } from '../../core/camera_moves.js';
 import { length, subtract } from '../../core/vector.js';
 
-const ANSWER_MS = 700, TRIES = 3; // a pick is sent up to TRIES times, because another module's pick request may replace it
+// The request for what is at a point of the picture is sent up to TRIES times, because the server answers only the newest
+// request and another module may make one.
+const ANSWER_MS = 700, TRIES = 3;
 const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
 // A surface nearer to a sensor than this is the one on which the sensor is mounted: NEAR_M metres, but at most the fraction NEAR_PART of
 // the asset's size.
 const NEAR_M = 0.05, NEAR_PART = 0.02;
 const MOST_COVERED = 9; // number of cameras to compare if the tag's own asset hides it from all sides
-// MOST_WALLS: maximum number of walls the eye passes through; CLEAR: how far the eye moves towards the last wall, as a fraction
-// of the distance to it
+// MOST_WALLS: maximum number of walls past which the eye moves towards a tag, one after the other. CLEAR: the eye moves to this
+// fraction of the last wall's distance from the tag, so that it is just past that wall.
 const MOST_WALLS = 6, CLEAR = 0.95;
-const ROOMY = 0.4; // minimum distance from which a tag is looked at from inside its room, as a fraction of the camera's distance outside
+// A camera in the tag's room needs at least this fraction of the outside camera's distance from the tag free of obstacles.
+const ROOMY = 0.4;
 
 const has = (list, id) => (list ?? []).includes(id);
 const without = (list, id) => (list ?? []).filter((other) => other !== id);

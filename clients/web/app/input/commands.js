@@ -12,8 +12,9 @@ const ARRIVAL_MARGIN = 1.7; // distance factor that leaves a margin around an as
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 const HELD_US = 3.5e6;      // microseconds; an instant less than this long ago counts as the present
 
-// Returns the tags of the shown group from which distances along the surface can be shown: those with a position and distances to the other
-// points of the asset's surface. A single sensor on an asset whose surface was not subdivided has no distances.
+// Returns the tags of the shown group from which the page can show distances along the surface: tags with a position, on an
+// asset whose distances plantcast-prep has computed. For a sensor that is alone on its asset it has not computed them if the
+// group has `singles: whole`.
 export function sensorsOf({ model, params }) {
     const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
     if (model.group(params.group)?.singles !== 'whole')
@@ -143,8 +144,9 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         }
     }
 
-    // Returns the parameters for the value kind `show` (value, distance, difference, ...). A distance also needs a sensor: the
-    // selected one, else the first of the group. A difference without a baseline is taken from the present readings.
+    // Returns the picture parameters for showing values of the kind `show` (value, distance, difference, ...). A distance also
+    // needs a sensor: the selected one, else the first of the group. A difference needs a baseline (saved readings); if there
+    // is none, the present readings become the baseline.
     function showParams(show) {
         const { model, params } = session;
         const chosen = [selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);

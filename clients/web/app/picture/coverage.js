@@ -27,7 +27,8 @@ export class Coverage {
         session.emit('shown'); // makes the legends redraw
     }
 
-    // Returns the saved baseline's name and the time it was saved, in the plant's time zone; null if unknown.
+    // Returns the name of the saved baseline (readings with which the present ones are compared) and the time it was saved, in
+    // the plant's time zone; null if unknown.
     since({ baseline }) {
         if (!baseline?.time_us)
             return null;

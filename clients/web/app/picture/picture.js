@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panel of picture settings: baseline to compare with, colour scale and range, and light.
+// The panel of picture settings: baseline (saved readings with which the present ones are compared), colour scale and range,
+// and light.
 import { title, zoneClock } from '../../core/format.js';
 import { sunOf, sunText, towardsSun } from '../../core/sun.js';
 import { say, sayIfKnown } from '../../core/words.js';

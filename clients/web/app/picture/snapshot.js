@@ -76,7 +76,8 @@ export class Snapshot {
         return { blob: notes.length === 0 ? blob : await (await import('./snapshot_notes.js')).addNotes(blob, notes, place), us };
     }
 
-    // Asks the server to sign the next refined frame. Returns its PNG file once that frame is on the screen.
+    // Asks the server to sign the next refined frame (frame in final quality). Returns its PNG file once that frame is on the
+    // screen.
     async onScreen() {
         const { session } = this, frames = new Map();
         let timer;

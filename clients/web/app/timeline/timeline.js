@@ -16,8 +16,9 @@ const SPEEDS = [1, 10, 60, 300, 600, 3600];
 // maximum number of such requests; HAND_MS: time after a drag in which the slider is not moved by the page; NOW_US: an instant
 // less than this many microseconds ago counts as now
 const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_US = 3.5e6;
-// LOST_POINTS: history points per tag when searching for periods of lost sources. BARS: position of the bars that show how many
-// alarms were raised; `full`: number of alarms at full height.
+// LOST_POINTS: number of history points per tag that are requested to find periods in which a source delivered nothing. BARS:
+// lower edge and height of the bars that show how many alarms were raised; the highest bar has the full height only if it
+// represents `full` alarms or more.
 const TRACK = { top: 15, height: 10 }, BARS = { bottom: 58, height: 14, full: 10 }, BAR_PX = 5, LOST_POINTS = 300;
 // MARK_PX: minimum distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests
 // when searching for the next alarm

@@ -9,11 +9,11 @@ import { pointAtInstant } from '../common/crosshair.js';
 import { hatch, hatchAlong, strokeAlong, textSize, toCss, toPixels, triangle } from './chart_style.js';
 
 const EXPAND = 2; // argument of uPlot.join(): a null in one series also breaks its line at instants that only other series have
-// sizes in chart units (chart_style.js): width of a value axis and of its unit, height of the time axis, widths of curves
-// (BOLD: with focus), heights of limit names and of curve numbers, length of ticks. DRAGGED_PX: CSS pixels; a shorter movement
-// is no drag
+// Sizes in chart units (chart_style.js): AXIS, UNIT: width of a value axis and of its unit; TIME: height of the time axis;
+// LINE, BOLD: width of a curve, without and with focus; LABEL, BADGE: height of a limit's name and of a curve's number; TICK:
+// length of a tick. DRAGGED_PX: CSS pixels; a shorter movement is no drag.
 const AXIS = 58, UNIT = 16, TIME = 28, LINE = 1.75, BOLD = 3, LABEL = 15, BADGE = 13, TICK = 10, DRAGGED_PX = 4;
-const PAD = 17, LOW_PAD = 8, LOW = 130; // PAD: space above the curves; LOW_PAD: the same in charts lower than LOW
+const PAD = 17, LOW_PAD = 8, LOW = 130; // PAD: space above the curves; LOW_PAD: the same in charts lower than LOW; all in chart units
 const DAYS_S = 2 * 86400; // time ranges longer than this have day ticks on the time axis
 const FONT = 'system-ui, sans-serif';
 

@@ -61,7 +61,7 @@ export class Trends {
         Object.assign(this, { page, session, tags: [], plots: [], focus: null, isAsking: false });
         Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
         this.unread = null; // the text in the range field, if it was not understood
-        this.isChosen = false; // whether a user or a wall has chosen the time range
+        this.isChosen = false; // true: a user or a wall has chosen the time range; false: it is the default
         this.unknown = []; // names in the trend's list that are not tags of this plant
         this.undrawn = []; // names of tags that are not drawn, because the trend already has its maximum number of tags
         this.series = new Map(); // tag name -> its series, once the server has answered

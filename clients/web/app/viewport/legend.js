@@ -23,7 +23,8 @@ const solid = (colour) => (c, width, height) => {
     c.fillRect(0, 0, width, height);
 };
 
-// Draws the marker of a tag without a loop check, as the overlay does.
+// Draws the legend's sample of the marker that the overlay draws for a tag whose sensor has not passed a loop check: a circle
+// with a dashed outline.
 const brokenMark = (c, width, height) => {
     const radius = 0.38 * height;
     c.beginPath();
@@ -36,7 +37,8 @@ const brokenMark = (c, width, height) => {
     c.stroke();
 };
 
-// Draws the marker of a tag with an assumed position, as the overlay does.
+// Draws the legend's sample of the marker that the overlay draws for a tag with an assumed position (chosen on its equipment by
+// `plantcast match`): two rings.
 const doubleMark = (c, width, height) => {
     for (const [radius, line] of [[0.26, 0.11], [0.45, 0.07]]) {
         c.beginPath();
@@ -65,7 +67,8 @@ function at(element, place) {
 // [title, suffix, note]. coverage.js has those for rarely used values.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
 // Lowest value that a picture of this kind (parameter `show`) can have, as a fraction of the group's range. These kinds do not
-// depend on readings, so nothing in their pictures is uncertain. blind: 5 %, plus rounding.
+// depend on readings, so nothing in their pictures is uncertain. blind (smallest hot spot that a sensor would show): 5 % of the
+// range, directly at a sensor, plus a margin for rounding.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
@@ -114,7 +117,8 @@ export class Legend {
     show(again = false) {
         const { model } = this.session, params = model && this.paramsOf(this.session.shown);
         const group = params && model.group(params.group);
-        this.element.hidden = !group || params.look === 'materials'; // hides the legend if the picture shows no field, or only materials
+        // hides the legend if the picture shows no values interpolated between sensors, or only the materials of the model
+        this.element.hidden = !group || params.look === 'materials';
         if (!group)
             return;
         const range = this.session.rangeOf(params);
@@ -141,8 +145,8 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // largest possible error of the field where the picture marks it as uncertain, in the unit of the legend's title; the
-            // operator's view has no unit
+            // largest possible error of the interpolated values where the picture marks them as uncertain, in the unit of the
+            // legend's title; left out in the operator's view (values relative to alarm limits), which has no unit
             off && !isOperator && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
@@ -173,7 +177,8 @@ export class Legend {
             ...(below ? end('below', map.below, `< ${text(min)}`) : []));
     }
 
-    // Makes the scale of the operator's view, which shows positions between alarm limits (-3 to 3) instead of values.
+    // Makes the scale of the operator's view, which shows where a value is relative to its alarm limits instead of the value:
+    // -2, -1, 1 and 2 are the limits LL, L, H and HH; the scale ends at -3 and 3.
     limitScale() {
         const place = (value) => (value + 3) / 6, band = (p) => LIMIT_BANDS.find(({ to }) => p * 6 - 3 < to) ?? LIMIT_BANDS[4];
         const names = Object.keys(LIMIT_PLACES), places = Object.values(LIMIT_PLACES).map(place);

@@ -15,7 +15,7 @@ const APART_PX = 46; // minimum distance between handles
 const STEPS = { ArrowRight: 0.01, ArrowUp: 0.01, ArrowLeft: -0.01, ArrowDown: -0.01, PageUp: 0.1, PageDown: -0.1, Home: -2, End: 2 };
 // For each key: the axis of the plant along which it moves a clip box (0: x, 1: y, 2: z), and the direction.
 const WAYS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1] };
-const STEP = 0.01; // movement per key press, as a fraction of the plant's length along that axis
+const STEP = 0.01; // distance that a key press moves a clip box, as a fraction of the plant's length along that axis
 const ARROW = 'M-13 0h26M-13 0l6-5.5M-13 0l6 5.5M13 0l-6-5.5M13 0l-6 5.5';
 const CROSS = `${ARROW}M0-13v26M0-13l-5.5 6M0-13l5.5 6M0 13l-5.5-6M0 13l5.5-6`;
 

@@ -113,7 +113,8 @@ export class Hands {
     pick({ point }, purpose = 'headset') {
         const { session, shown } = this.headset, { width, height } = session.size;
         Object.assign(this, { asked: purpose, askedAt: performance.now() });
-        // picks at the centre of a picture whose camera looks at the point
+        // The server tells what is at a pixel of a picture from a given camera. So the request names the picture's centre, and
+        // a camera that looks at the point.
         askPick(session, [width / 2, height / 2], purpose, { ...asAsked(shown.camera), target: point });
     }
 
