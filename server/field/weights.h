@@ -65,7 +65,8 @@ struct weights {
                                     distances */
     /* for prepared interpolations: factorised matrix from which lost sensors get values (influence_fill.h); NULL: no sensor is lost */
     struct influence_fill *fill;
-    /* [sensor], for prepared interpolations with lost sensors: its value if all used sensors read 1; else NULL */
+    /* [sensor], for prepared interpolations: 1 for a used sensor; for a lost one the value that the interpolation predicts if
+       all used sensors read 1. NULL: the interpolation is not prepared */
     double *ones;
     /* metres. For interpolation fin: the decay length, over which a sensor's share of the value falls by a factor of e; for gp:
        the correlation range / sqrt(8) */

@@ -275,7 +275,8 @@ static int read_month(struct history_reader *reader, int month, const struct mon
     return error;
 }
 
-/* Returns true if the months read so far contain a point of the tag. */
+/* Returns true if the months read so far contain a point of the tag, so that earlier months need not be searched for the point
+   where the line begins. */
 static bool has_begun(const struct gather *gather)
 {
     return gather->out->points.count > 0 || gather->out->buckets.count > 0 || gather->rollup.open;

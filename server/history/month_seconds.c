@@ -74,8 +74,8 @@ int month_seconds_write(struct month_file *file, struct month_row *rows, size_t 
     int error = read_mark(file, &mark);
     if (error || count + held_count == 0)
         return error;
-    /* the points of all rows of the table `second` were moved to blocks, perhaps through another handle: writing restarts at
-       the table's first row */
+    /* All rows of the table `second` are free, because their points were moved to blocks, perhaps through another handle. So
+       writing restarts at the table's first row. */
     if (mark >= file->stamp) {
         file->stamp = mark;
         file->slot = 0;

@@ -287,8 +287,9 @@ static bool send_standby(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
-/* Returns whether the standby was sent all state that it needs to take over. After the time lead_ended_ns, one more message of
-   readings must have been sent before all samples count as sent: send_next() looks for waiting samples only after it. */
+/* Returns whether the standby was sent all state that it needs to take over. Samples count as sent only if one more message of
+   readings was sent after lead_ended_ns (the time when this core's state stopped changing): send_next() looks for waiting
+   samples only after that message. */
 static bool has_all(const struct server_context *server, const struct renderer_peer *renderer)
 {
     int64_t ended_ns = server->life.lead_ended_ns;

@@ -38,7 +38,9 @@ struct stream {
     int64_t silent_ns;
     int close_code; /* WebSocket close code to send; 0: the connection stays open */
     const char *close_text;
-    int64_t messages, errors, dropped; /* messages, errors and dropped frames of the session that are already in the metrics */
+    /* numbers of the session's messages, errors and dropped frames that were already added to the server's metrics; only later
+       ones are added next time */
+    int64_t messages, errors, dropped;
 };
 
 /* --- stream_table.c --- */

@@ -98,7 +98,7 @@ void session_not_signed(struct session *session, const struct message_error *why
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
 /* Returns whether session_next_frame() would return a frame now. */
 bool session_has_frame(const struct session *session);
-/* Returns whether the client is told that it gets depth grids. */
+/* Returns whether the client gets depth grids (coarse depth for warping pictures); the message `welcome` tells it so. */
 bool session_gets_depth(const struct session *session);
 /* depth grids of a frame: none; those that the client already has; new ones, to be sent before the frame */
 enum session_depth { SESSION_DEPTH_NONE, SESSION_DEPTH_SENT, SESSION_DEPTH_NEW };

@@ -78,9 +78,9 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     if (!encoded->packet && encoded->absence == FRAME_FAILED)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
-    /* Notes that the shown picture is not refined, because the render service drew a preview for this request. Two special
-       cases are included: a refined frame arrived while the preview was being drawn; and a preview without a packet, because it
-       equals the frame already shown. */
+    /* The client now shows a preview, so the refined frame is wanted again. That also holds if a refined frame arrived while
+       the preview was being drawn, and if the answer has no packet because the preview equals the picture that the client
+       shows. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
     if (is_lost(session, encoded, late)) {
@@ -182,10 +182,10 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Requests a refined frame for changed readings. Sets or_moving while the render thread cannot refine the frames of all
-   sessions, or a frame is requested already: the render service then draws a preview instead, unless refining is as quick. A
-   refined frame can take a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have
-   waited too long. */
+/* Fills in a request for a refined frame that shows changed readings. request->or_moving permits the render service to draw a
+   preview instead, unless refining is as quick. It is set while the render thread is too slow to refine the frames of all
+   sessions, or another request of this session is open. A refined frame can take a minute, for example while lighting is baked;
+   render_thread_next.c then shows a preview once readings have waited too long. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     const struct quality_ladder *ladder = &session->delivery.pacer.ladder;

@@ -89,7 +89,9 @@ struct frame_demand {
     bool starting;        /* true: the first frame waits, for a second at most, for session_begin(), which brings the measured bandwidth */
     int64_t starting_ns;
     bool failure_said; /* true: the client was told that the present view cannot be drawn */
-    int64_t failed_ns; /* monotonic time of the newest request whose frame was lost, or failed for lack of memory; 0: none */
+    /* monotonic time of the newest frame request that brought the client no frame, because the frame was lost or memory was
+       short; 0: none */
+    int64_t failed_ns;
     /* true: a refined frame was lost on its way to the client. It must be drawn again, although the render service counts it as shown */
     bool lost;
 };
@@ -106,7 +108,9 @@ struct frame_delivery {
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
     /* [step]: number of sessions, this one included, that show this view and need that step of the quality ladder */
     int steps[QUALITY_LADDER_STEPS];
-    int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
+    /* step of the quality ladder that all viewers of this view share, so that a frame is encoded once for all; negative: each
+       viewer uses its own step */
+    int common_step;
 };
 
 /* A client's requests about following, by session numbers. The event loop looks up the sessions. */

@@ -40,7 +40,8 @@ struct surface_report {
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
     size_t border_edges, border_edges_after; /* number of edges with one face, before and after gaps were bridged */
     size_t components, components_after;     /* number of connected components, before and after gaps were bridged */
-    size_t bridges;                          /* number of points that repair joined to another point of the surface */
+    /* number of points that repair joined to another point of the surface, to close a crack or a contact between parts */
+    size_t bridges;
     double longest_bridge_m;
     /* largest number of neighbours per point that the search for gaps requested (point_cloud.h); 0: no search was needed */
     int k;

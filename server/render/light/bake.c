@@ -15,7 +15,8 @@
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 /* constant openness (visible part of the sky, 0..255) in a rough light set, which is baked fast because openness is not computed */
 static const uint8_t ROUGH_OPENNESS = 190;
-/* minimum length of a triangle's longest edge, in texels of the sky's depth maps, for the triangle to count as large */
+/* A triangle counts as large, and is also lit at points inside, if its longest edge has at least this length. Unit: texels of
+   the depth maps that tell from which directions of the sky light reaches a point */
 static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width: a filtered lookup also reads the texels around a point */
 static const double SUN_MARGIN = 0.002;
@@ -38,7 +39,8 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
-    /* assets that the plant file shows at start; only these are drawn into the sky's depth maps */
+    /* assets that the plant file shows at start. Only these are drawn into the depth maps that tell from which directions of
+       the sky light reaches a point, because openness is that of the whole plant, whatever users hide */
     struct visibility start;
     bool with_sky;
     struct directions_block *directions;

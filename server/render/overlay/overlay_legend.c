@@ -56,7 +56,7 @@ static void write_title(const struct pen *pen, struct legend *legend)
 }
 
 /* Returns the priorities of all active alarms as bits (1 << priority). Alarms of hidden sensors count, because they are listed.
-   Without a snapshot of readings it returns one priority, so that the legend's width computed now also suffices later. */
+   Without a snapshot, readings are not known yet: returns one bit, to make the legend wide enough for a row of alarms. */
 static unsigned priorities_shown(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;

@@ -81,7 +81,8 @@ static void find_sensor(const struct pick_spot *spot, const struct trial *trial,
     struct marker_place place;
     struct lens lens;
     double near_px = MARKER_PX * (spot->view->pixel_ratio > 0 ? spot->view->pixel_ratio : 1);
-    /* smallest distances, in pixels, found so far between the picked pixel and [0] a visible marker, [1] a hidden marker */
+    /* smallest distance in pixels, among the markers tested so far, from the picked pixel to [0] a visible marker, [1] a hidden
+       marker */
     double least[2] = { near_px, near_px };
     lens_init(&lens, spot->view);
     while (marker_next(&iterator, &place)) {

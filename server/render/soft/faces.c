@@ -5,7 +5,7 @@
 
 #include "render/soft/kernels.h"
 
-/* largest absolute value of a column of the colour map; values far outside the scale are clamped to it */
+/* columns of the colour map are clamped to plus or minus this value; only field values far outside the scale get there */
 #define FARTHEST 1e6f
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */

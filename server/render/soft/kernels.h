@@ -45,7 +45,7 @@ struct soft_kernels {
     /* Colours bands (groups of pixel rows) of a visibility buffer: a task of workers_for(). arg: struct resolve_job */
     void (*color_bands)(void *arg, size_t begin, size_t end);
 };
-/* the variants _wide (AVX2) and _widest (AVX-512) exist on x86 only */
+/* one table for each instruction set: _plain for any machine; _wide (AVX2) and _widest (AVX-512) exist on x86 only */
 extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest;
 
 #define soft_kernels_of_set SOFT_IN_SET(soft_kernels, SOFT_SET)

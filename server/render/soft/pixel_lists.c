@@ -146,9 +146,10 @@ SOFT_INLINE void add_pole(struct logarithm *to, lanes times, lanes left)
     to->third += 2.0f * times * over * over * over;
 }
 
-/* Bounds the derivatives of the logarithm of a sensor's weight in a box around surface points. near_m, far_m: smallest and
-   largest distance of the box from the sensor. Factors that are infinite at the sensor are evaluated at near_m, and factors
-   that are infinite at the reach or radius at far_m. sign: sign of the second derivative of the latter factors. */
+/* Returns bounds of the derivatives of log(weight) of each of eight sensors, for all points of a box around surface points.
+   near_m, far_m: smallest and largest distance of the box from the sensor. The weight is a product. Its factor that grows
+   without bound at the sensor (1 / distance^power) is bounded at near_m. Its factors that vanish at the reach or the radius R
+   are bounded at far_m. sign: 1 or -1, with which the second derivatives of these latter factors are added. */
 SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const struct eight_sensors *of, lanes near_m, lanes far_m,
                                           bool term, float sign)
 {

@@ -10,7 +10,8 @@ enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
 enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + NEAR_CORNERS * PART_TRIANGLES };
 
-/* perspective correction is omitted for faces whose largest and smallest corner depth have at most this ratio */
+/* perspective correction is omitted for faces whose largest corner depth is at most this many times the smallest, because the
+   error would be negligible */
 #define SOFT_LITTLE 1.02f
 
 /* vertices of the part (group of triangles) that is being drawn, one array for each member of struct soft_vertex. After the

@@ -17,7 +17,9 @@
 /* Points whose distances differ by up to this many buckets of the priority queue may be processed in any order. Distances count as final up
    to the current bucket plus this many. */
 #define ANY_ORDER 2
-#define MAX_DEPTH 32     /* maximum number of triangles along a straight line near the source */
+/* maximum number of triangles that a straight line from the source crosses; points beyond get their distance by propagation
+   instead */
+#define MAX_DEPTH 32
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));

@@ -381,7 +381,9 @@ static void ask_beside(struct interior_search *search, struct workers *workers, 
     mem_free(kinds);
 }
 
-struct region_vote { /* results of the tests in one region: number of its triangles, tested ones, and hidden ones */
+/* results of testing the triangles of one region (set of connected points): number of its triangles, of tested ones, and of
+   hidden ones */
+struct region_vote {
     size_t seen, asked, hidden;
     char most;
 };

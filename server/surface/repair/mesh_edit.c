@@ -80,7 +80,7 @@ struct crossing_lists {
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
     uint32_t *target; /* by mesh point: index of the point that replaces it when points are merged */
-    /* lists of the points to connect each point to (after replacement) by an edge; NULL: no edges are requested */
+    /* by point (after merging): lists of the points to which an edge from this point is requested; NULL: no edge is requested */
     uint32_t *partner_first, *partners;
     /* by point after replacement: 1 + its index in the triangulation of the current face; 0: the triangulation does not have it */
     uint32_t *slot;

@@ -108,8 +108,9 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-/* Sums over a set of patches (triangles connected by edges with two faces), which tell whether the set is closed. No patch
- * continues through the edges that connect the set. Stored at the index of the set's lowest triangle */
+/* A set of patches (triangles connected by edges with two faces) that meet at edges where every patch ends. The total length of
+   its open edges (open_m) and its area tell whether the set is closed. stands: a patch of the set ends at an edge where another
+   patch continues. Stored at the index of the set's lowest triangle */
 struct core {
     double open_m, area_m2;
     bool stands;

@@ -31,7 +31,7 @@ struct contacts {
         uint32_t tri, a, b, c, d; /* the edge a-b passes through triangle tri or, if tri is TRIMESH_NONE, crosses the edge c-d */
         uint32_t point;           /* the inserted point */
         double t, s, weights[3];
-        bool own; /* true: edge a-b and triangle tri belong to one part */
+        bool own; /* true: edge a-b and triangle tri belong to the same part, which therefore crosses itself */
     } * crossings;
     size_t crossing_count, crossing_capacity;
 };
