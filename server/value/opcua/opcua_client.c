@@ -219,7 +219,7 @@ static int discover_at(struct opcua_client *client, const struct addrinfo *at, i
     const char *path = client->source->opcua.path ? client->source->opcua.path : "";
     int status = getnameinfo(at->ai_addr, at->ai_addrlen, address, sizeof(address), NULL, 0, NI_NUMERICHOST);
     if (status != 0) {
-        snprintf(why, 200, "an IP address of the host %.100s cannot be used: %.60s", client->host, gai_strerror(status));
+        snprintf(why, 200, "an IP address of the host %.100s cannot be used: %.50s", client->host, gai_strerror(status));
         return -EHOSTUNREACH;
     }
     mem_free(client->numeric_url);
