@@ -3,7 +3,7 @@
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* lets XXH3 keep its hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* makes xxhash.h declare the hash state as a complete type, so that XXH3 can keep it on the stack */
 #include <xxhash.h>
 
 #include "protocol/asset_distance.h"

@@ -111,7 +111,8 @@ static int find_locator(const uint8_t syndromes[STRIP_PARITY], uint8_t locator[S
     return degree;
 }
 
-/* Corrects wrongly read bytes of the strip's code. Returns their number; -1: too many are wrong, and the code may have been changed. */
+/* Corrects wrong bytes in a code that was read from a picture's legend strip. Returns their number; -1: too many are wrong, and
+   the code may have been changed. */
 static int correct_errors(uint8_t code[STRIP_BYTES])
 {
     uint8_t syndromes[STRIP_PARITY], locator[STRIP_PARITY + 1], evaluator[STRIP_PARITY] = { 0 }, slope[STRIP_PARITY] = { 0 };

@@ -24,7 +24,7 @@ int cmd_history(int argc, char **argv);
 int cmd_ready(const struct daemon_access *access, int argc, char **argv);
 /* Makes a daemon on this machine close its sessions, so that they reconnect to other daemons. */
 int cmd_drain(int argc, char **argv);
-/* Begins or ends maintenance of a standby core. */
+/* Begins or ends maintenance of a standby core, the daemon that takes over if the one that polls the field devices fails. */
 int cmd_standby(int argc, char **argv);
 /* Makes a daemon on this machine reload its plant, and prints the result. */
 int cmd_reload(int argc, char **argv);

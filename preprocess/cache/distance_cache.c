@@ -17,7 +17,7 @@
 #include "preprocess/cache/file_io.h"
 #include "protocol/asset_distance.h"
 
-#define LEVEL 1          /* zstd level; level 3 takes twice the time and saves nothing */
+#define LEVEL 1          /* zstd compression level: level 3 would take twice the time and make the file no smaller */
 #define RECORD_STEP 1024 /* sizes of records are multiples of this, so that another sensor's column usually fits a free record */
 
 struct distance_record { /* header of a record; the compressed column follows */

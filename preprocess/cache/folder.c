@@ -126,7 +126,7 @@ bool folder_unpack(struct folder_file *file)
 
 void folder_close(struct folder_file *file)
 {
-    free(file->codes); /* free(), because asset_view_unpack() allocates with malloc() */
+    free(file->codes); /* uses free(), not mem_free(), because asset_view_unpack() allocates with malloc() */
     if (file->bytes)
         munmap(file->bytes, file->size);
     *file = (struct folder_file){ 0 };
@@ -205,8 +205,8 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
-/* Adds a bit mask to an asset's manifest entry: the levels of detail that subdivision left without interpolation error of the
- * field. The daemon need not measure the errors of these levels (server/field/drawn_error.h). */
+/* Adds a bit mask to an asset's manifest entry: the levels of detail in which subdivision left no error in linear interpolation
+   between vertices. The daemon need not measure the errors of these levels (server/field/drawn_error.h). */
 static void add_resolved(json_t *asset, struct log *log, const char *folder, uint64_t key)
 {
     json_t *report = folder_report(log, folder, key), *level;

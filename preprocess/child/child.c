@@ -26,7 +26,9 @@ enum watched { OUTPUT, ERRORS, END, SIGNALS, WATCHED };
 
 struct child {
     pid_t pid;
-    int fds[WATCHED]; /* child's output pipes, pidfd and signalfd, by enum watched; -1: closed */
+    /* file descriptors to wait for, by enum watched: the child's output pipes, its pidfd (readable when the child ends), and a
+       signalfd; -1: closed */
+    int fds[WATCHED];
     struct text errors;
     bool interrupted, timed_out;
 };

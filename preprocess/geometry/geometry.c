@@ -304,7 +304,9 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 
 /* --- joining primitives ---------------------------------------------------------------------------------------------------- */
 
-struct geometry_room { /* state while a geometry's arrays are filled: their capacities, and flags */
+/* state while a geometry's arrays are filled: number of elements that fit into each array, and whether any primitive has
+   texture coordinates or colours */
+struct geometry_room {
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
     float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hashes the part of a model that an asset uses. The hash stays the same if a revision changes only other assets. */
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* xxhash then declares its hash state as a complete type, so that it can be a local variable */
+#define XXH_STATIC_LINKING_ONLY /* makes xxhash.h declare the hash state as a complete type, so that it can be a local variable */
 #include <xxhash.h>
 
 #include "base/mem.h"

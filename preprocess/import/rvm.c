@@ -430,7 +430,9 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            if (r->points) /* skipped if no primitive of the file has points: all contours are then empty */
+            /* If no primitive of the file has points, r->points is NULL. All contours are then empty, and the pointers stay
+               NULL. */
+            if (r->points)
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     if (!params->keep_covered)

@@ -33,7 +33,7 @@ struct solving {
     cholmod_factor *factor;
     struct gaussian_bodies bodies;
     double *covariance;  /* covariance between the sensors before scaling, [sensor][sensor] */
-    double *root_mass_m; /* by row of the sparse system: square root of its mesh point's area */
+    double *root_mass_m; /* by row of the sparse system (one row per mesh point): square root of the point's area */
     double *root_scale;  /* by connected component: square root of its factor `scale` */
     /* by connected component: factor from the variance in the sparse system to the variance given in the plant file; 0: the
      * component has no sensor */
@@ -41,9 +41,10 @@ struct solving {
     double *means;             /* by sensor: weight of its reading in the estimated mean of its body (connected component) */
     /* by sensor: smallest possible variance of a weighted mean of the readings on its body (mean_variance()) */
     double *levels;
-    /* [mesh point][sensor]: covariance of the field at the point with the sensor's reading ("kernel"), later the weights H */
+    /* [mesh point][sensor]: first the "kernel": covariance of the interpolated quantity at the point with the sensor's reading;
+       later replaced by the weights H of the readings */
     float *at_points;
-    float *taken;              /* by vertex: reduction of the field's prior variance by the readings */
+    float *taken;              /* by vertex: variance of the interpolated quantity before any reading, minus that with all readings */
     _Atomic uint64_t *squares; /* by vertex: sum of the random samples' squared errors, in fixed point */
     atomic_bool failed;
 };
@@ -343,7 +344,7 @@ static void take_readings(const struct solving *solving, const double *u, struct
 }
 
 struct gaussian_samples { /* one thread's buffers for a block of samples */
-    float *missed;        /* simulated field minus its prediction, [mesh point][sample] */
+    float *missed;        /* random field of the simulation minus its prediction from the simulated readings, [mesh point][sample] */
     float *readings;      /* simulated readings, [sample][sensor] */
     double *levels;       /* by connected component: the current sample's value at the component's first sensor */
     struct solver solver;

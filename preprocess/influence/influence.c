@@ -11,8 +11,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* contact conductance between a disc and the surface, relative to the surface's conductance; with this value, the field
- * deviates from a reading by about 1e-5 of the difference between neighbouring readings */
+/* contact conductance between a sensor's disc and the surface, relative to the surface's conductance; with this value, the
+   interpolated value at a disc deviates from its reading by about 1e-5 of the difference between neighbouring readings */
 #define CONTACT 1e5
 /* added to the diagonal, as a share of the body's area, so that rounding does not make the matrix singular */
 #define REGULARISATION 1e-9
@@ -33,7 +33,8 @@ struct conduct {
     atomic_bool failed;
 };
 
-/* Returns the diagonal of the linear system: heat loss of the wall plus the contact conductance of the sensors' discs. */
+/* Returns the diagonal of the linear system at each mesh point: heat loss of the surface (the equipment's metal wall) to the
+   surroundings, plus contact conductance of the sensors' discs. */
 static double *diagonal_of(const struct conduct *conduct, double decay_m)
 {
     const struct laplacian *laplacian = &conduct->laplacian;
@@ -52,7 +53,8 @@ static double *diagonal_of(const struct conduct *conduct, double decay_m)
             diagonal[laplacian->row_of[disc->points[i]]] += CONTACT * disc->shares[i];
         touched[component[disc->points[0]]] = 1;
     }
-    /* a body without a sensor has an undetermined temperature, which is not shown; any positive diagonal makes the matrix regular */
+    /* if a body has no sensor, its temperature is undetermined and never shown; any positive diagonal makes the matrix regular
+       */
     for (size_t p = 0; p < points; p++)
         if (laplacian->row_of[p] != TRIMESH_NONE)
             diagonal[laplacian->row_of[p]] +=

@@ -64,12 +64,13 @@ struct bend_report { /* measured bend (interpolation error in drawn triangles); 
     /* numbers of (group, interpolation) pairs. measured: with measured bend; unmeasured: with too many places (corners of
      * overlaps) to measure it */
     size_t measured, unmeasured;
-    /* bound of the field's deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
+    /* upper bound, for any good readings, of the deviation of the interpolated values from linear interpolation in the drawn
+       triangles, in colour steps: (MAX - MIN) / 255 */
     double steps;
     double over_share;   /* share of the area in triangles whose bend (interpolation error) may exceed one step */
-    double hidden_share; /* share of the asset's area inside or against another part; the field is not computed there */
-    /* share of the asset's area that is not on the surface on which the field was computed; like the hidden area, not included
-     * in `steps` and `over_share` */
+    double hidden_share; /* share of the asset's area inside or against another part; no values are computed there */
+    /* share of the asset's area that is not on the surface on which values were computed; like the hidden area, not included in
+       `steps` and `over_share` */
     double unknown_share;
 };
 /* Computes the error of one interpolation after the shares of all sensors were added, and resets the sums for the next one.

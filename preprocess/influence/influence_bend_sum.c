@@ -59,9 +59,9 @@ void influence_bend_add(struct influence_bend *bend, const float *at_points, siz
     }
 }
 
-/* Returns the largest error of the field that any readings can cause, in colour steps. The worst readings are MAX for all
- * sensors with a positive weight error and MIN for the others, or vice versa. plus, minus: sums of the positive and negative
- * weight errors. around: see influence_bend_measure(). */
+/* Returns the largest error of the interpolated values that any readings can cause, in colour steps (1/255 of the range). The
+   worst readings are MAX for all sensors with a positive weight error and MIN for the others, or vice versa. plus, minus: sums
+   of the positive and negative weight errors. around: see influence_bend_measure(). */
 static double worst_of(double plus, double minus, double around)
 {
     double level = around * (plus + minus);

@@ -18,8 +18,10 @@
 #include "preprocess/influence/transport.h"
 #include "protocol/influence_format.h"
 
-#define EDGES 5.0     /* number of mesh edges per correlation range that the mesh is made with; more make no visible difference */
-/* minimum number of mesh edges per correlation range; with fewer, the field would seem more certain than it is */
+/* number of mesh edges per correlation range that the mesh is made with; a finer mesh makes no visible difference */
+#define EDGES 5.0
+/* minimum number of mesh edges per correlation range; on a coarser mesh, the computed uncertainty of the interpolated values
+   would be too small */
 #define MIN_EDGES 2.0
 #define LONGEST 10.0  /* maximum correlation range, in multiples of the surface's size; longer ranges look the same */
 #define FIT_MIN 0.05  /* smallest correlation range that is fitted, in multiples of the surface's size */

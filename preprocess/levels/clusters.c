@@ -9,7 +9,8 @@
 #include "base/mem.h"
 
 #define MAX_VERTICES 255 /* meshoptimizer's limit of vertices per meshlet */
-#define CONE_WEIGHT 0.5f /* how strongly meshoptimizer prefers flat clusters to compact ones */
+/* weight (0 to 1) by which meshoptimizer prefers flat clusters, whose triangles face in similar directions, to compact ones */
+#define CONE_WEIGHT 0.5f
 
 struct clusters_making {
     struct workers_task *task;

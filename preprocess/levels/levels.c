@@ -51,7 +51,7 @@ struct levels_making {
 /* --- events, sorted by error: a part changes to a coarser version or is omitted --------------------------------------- */
 
 struct event {
-    float error_m; /* metres; smallest error of a level of detail in which the part may change */
+    float error_m; /* metres; a level of detail with at least this error may contain the part's coarser version, or omit the part */
     uint32_t part, version;
 };
 

@@ -11,8 +11,9 @@
  * reached; the parts of the edge would be too short; the distance along the surface jumps there, so splitting does not help. */
 enum level_limit { LEVEL_LIMIT_TRIANGLES, LEVEL_LIMIT_LENGTH, LEVEL_LIMIT_JUMP, LEVEL_LIMITS };
 
-/* Edges whose interpolation error after subdivision is still above one colour step: their count, and the largest error in
- * colour steps. In coarser levels of detail, the count of edges too short to split is extrapolated from a sample. */
+/* Edges whose interpolation error after subdivision is still above one colour step (1/255 of the value range): their count, and
+   the largest error in colour steps. In coarser levels of detail, the count of edges too short to split is extrapolated from a
+   sample. */
 struct level_left {
     uint32_t edges;
     float steps;

@@ -24,7 +24,8 @@ static bool has_any(const char *text, const char *const *words, size_t count)
     return false;
 }
 
-/* Returns whether a tag of this data type has values that can be shown as a field: false for booleans, texts and times. */
+/* Returns whether the values of tags of this data type can be interpolated between sensors and shown as colours: false for
+   booleans, texts and times. */
 static bool is_number(const char *type)
 {
     static const char *const others[] = { "Boolean",  "Bool", "Bit",      "String",  "Text", "Char",
@@ -36,7 +37,7 @@ static bool is_number(const char *type)
  * not identify a quantity. */
 static const struct {
     const char *kind;
-    bool alone; /* true: a unit of this kind is enough to determine the quantity, without description or letters */
+    bool alone; /* true: a unit of this kind alone determines the quantity, without the tag's description or ISA-5.1 letters */
     const char *quantities;
 } kinds[] = {
     { "temperature", true, "|Temperature|" },
@@ -79,8 +80,8 @@ static bool is_possible(int kind, const char *quantity)
     return possible;
 }
 
-/* Returns whether the tag is a tuning parameter. TI is one (integral time) if its unit is seconds; with another unit or a
- * telling description it is a temperature indicator. */
+/* Returns whether the tag is a tuning parameter of a controller. TI is one (integral time) if its unit is seconds; with another
+   unit, or a description that names a temperature, it is a temperature indicator. */
 static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, int kind, const char *described)
 {
     if (strcmp(isa->attribute, "TI") != 0)
@@ -225,7 +226,7 @@ void quantities_find(struct quantities *quantities, const struct plant *plant, c
     for (size_t g = 0; g < plant->group_count; g++)
         if (!unused || strcmp(unused, plant->groups[g].id) != 0)
             add_quantity(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
-    /* second round: tags without a unit, which join the groups created by other tags */
+    /* The second round assigns the tags without a unit, which join groups created by other tags in the first round. */
     for (int blank = 0; blank < 2; blank++)
         for (size_t i = 0; i < list->count; i++) {
             if (blank == 0)

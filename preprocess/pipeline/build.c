@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* xxhash then declares its hash state as a complete type, so that it can be a local variable */
+#define XXH_STATIC_LINKING_ONLY /* makes xxhash.h declare the hash state as a complete type, so that it can be a local variable */
 #include <xxhash.h>
 
 #include "base/clock.h"
@@ -42,8 +42,9 @@ static bool is_alone(const struct plant *plant, const struct plant_sensor *senso
     return count_of_group(plant, sensors, count, sensor) == !plant->tags[sensors[sensor].tag].place.assumed;
 }
 
-/* Returns whether the field is constant on the asset: each group has only one sensor, Shepard interpolation and no reach.
- * Distances then do not affect it. */
+/* Returns whether all points of the asset show the same value. This is so if each group has only one sensor on the asset,
+   Shepard interpolation, and no reach (distance beyond which a sensor has no influence). Distances then do not affect the
+   picture. */
 static bool is_constant(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

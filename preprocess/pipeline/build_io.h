@@ -13,7 +13,9 @@ struct geometry_cache;
 struct build_input {
     const struct gltf_model *model; /* parsed model to cut the asset out of; unused if `cache` is set */
     struct geometry_params geometry;
-    const struct plant *plant;          /* the plant; its groups and tags determine where the field needs smaller triangles */
+    /* the plant; its groups and tags determine where smaller triangles are needed, so that values interpolated between vertices
+       are right */
+    const struct plant *plant;
     const struct plant_sensor *sensors; /* the asset's sensors; position_m is set for all sensors, including those placed by a node */
     size_t sensor_count;
     uint64_t key;

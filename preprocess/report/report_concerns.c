@@ -12,11 +12,14 @@
 /* an asset is reported if the root mean square difference between its distances and the heat method's exceeds this, relative to
  * the largest distance; smaller differences come from the heat method, which smooths distances */
 #define METHODS_DIFFER 0.05
-/* an interpolation error above this multiple of subdivision's error limit is reported; above 1 because of single-precision rounding */
+/* an interpolation error that exceeds subdivision's limit by more than this factor is reported; above 1 because of
+   single-precision rounding */
 #define FIELD_SLACK 1.05
-/* an asset is reported if the bend (interpolation error inside triangles) is too large or unknown on more than this share of its surface */
+/* an asset is reported if the error of interpolation inside triangles ("bend") is too large or unknown on more than this share
+   of its surface */
 #define BENT_SHARE 1e-3
-/* powers of inverse distance weights are reported from this one on: here the error of distances alone can exceed two colour steps */
+/* The report warns of inverse distance weights from this power on: then the error of distances alone can change a value by more
+   than two colour steps (1/255 of the range each). */
 #define HIGH_POWER 5
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };

@@ -13,11 +13,11 @@
 #include "protocol/distance_pack.h"
 #include "surface/mesh/trimesh.h"
 
-/* distance, in 16-bit numbers, between the output lines of consecutive sensors; chosen so that the lines do not evict each
- * other from the CPU cache */
+/* distance, in 16-bit numbers, between the buffers of consecutive sensors' codes; the 32 extra numbers keep the buffers from
+   evicting each other from the CPU cache */
 #define APART (ASSET_DISTANCE_BLOCK + 32)
-#define AHEAD 8  /* prefetch distance in vertices, because a vertex's row of distances is probably not in the CPU cache */
-#define LINE 32u /* number of sensors processed at a time, so that their output lines fit into the first-level cache */
+#define AHEAD 8  /* number of vertices ahead whose row of distances is prefetched, because that row is probably not in the CPU cache */
+#define LINE 32u /* number of sensors processed at a time, so that the buffers with their codes fit into the first-level cache */
 
 static size_t blocks_of(const struct distance_rows *rows)
 {

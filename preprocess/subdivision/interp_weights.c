@@ -228,7 +228,7 @@ struct softmax {
     float near_m;
 };
 
-/* Computes the nearness of sensors: 1 at a sensor, falling to 0 at Algorithm 1's radius, and 0 beyond. */
+/* Computes the nearness of sensors: 1 at a sensor, falling to 0 at the radius of Algorithm 1 of Kim & Suh, and 0 beyond. */
 SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 {
     const lanes zero = { 0 };
@@ -237,8 +237,8 @@ SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
     take_more(&zero, out);
 }
 
-/* Computes the softmax weights of Algorithm 1 before division by their sum, and the nearness of each sensor (1 at the sensor, 0 at the
- * radius). */
+/* Computes the softmax weights of Algorithm 1 of Kim & Suh before division by their sum, and the nearness of each sensor (1 at
+   the sensor, 0 at the algorithm's radius). */
 SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const struct softmax *softmax, const float *distance_m, lanes *near,
                             lanes *weight)
 {
@@ -255,10 +255,10 @@ SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const st
         fade(group, softmax->near_m, &far, weight);
 }
 
-/* Returns the largest change of the interpolated value, as a share of the range, if the nearness of each sensor changes by at
- * most 1. Nearness is 1 at the sensor and 0 at the radius. A sensor changes its own term of the value through its weight and
- * its decay. It also changes the terms of the others, whose weights sum to 1 minus its own. Sensors beyond the radius change
- * nothing. */
+/* Returns the largest change of the value interpolated by Algorithm 1 of Kim & Suh, as a share of the value range, if the
+   nearness of each sensor changes by at most 1. Nearness is 1 at the sensor and 0 at the radius. A sensor changes its own term
+   of the value through its weight and its decay. It also changes the terms of the others, whose weights sum to 1 minus its own.
+   Sensors beyond the radius change nothing. */
 SIMD_BODY float paper_slope(const struct interp_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *interp, float all)
 {

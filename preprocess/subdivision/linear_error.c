@@ -11,9 +11,10 @@
 #include "plant/exact.h"
 #include "plant/singles.h"
 
-#define MAX_SLACK (1 / 255.0) /* maximum change of the value that may be subtracted from an error, as a share of the range */
-/* errors of Algorithm 1 are not measured for groups with more sensors: each has so small a weight in Algorithm 1 that these
- * errors are far below those of Shepard interpolation */
+/* maximum amount that may be subtracted from an error for the allowed displacement of a point, as a share of the value range */
+#define MAX_SLACK (1 / 255.0)
+/* Errors of Algorithm 1 of Kim & Suh are not measured for groups with more sensors: each sensor has so small a weight there
+   that these errors are far below those of Shepard interpolation. */
 #define MANY 64
 
 static double factor_of(double x)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the field at points between vertices, its deviation from linear interpolation, and the best split point of an edge. */
+/* Measures how far the values interpolated between sensors deviate from linear interpolation between vertices, and finds the
+   best split point of an edge. */
 #include <math.h>
 #include <string.h>
 #include <xxhash.h>
@@ -19,10 +20,10 @@
 #define WIDE 0.3
 #define GRAIN 256  /* minimum number of edges, triangles or positions handed to a thread at once: half a millisecond of work */
 #define POINTS 16  /* maximum number of points at which the error of an edge is measured */
-#define CORNERS 61 /* number of triangle corners whose samples are cached */
+#define CORNERS 61 /* number of triangle corners whose samples (sensors' weights at a point) each thread caches */
 #define STEPS 2    /* number of refinement steps in the search for an edge's best split point */
-/* if more than this share of an edge's error remains after the best split, the edge is checked for a jump; a smooth bend leaves
- * a quarter of the error, a kink nothing */
+/* if more than this share of an edge's error remains after the best split, the edge is checked for a jump of the distance along
+   the surface; a smooth bend leaves a quarter of the error, a kink nothing */
 #define NO_GAIN 0.5
 #define ROUNDING 1e-9 /* relative margin for comparing distances, larger than their rounding error */
 /* a distance that grows along a path by more than this many times the path's length has a jump: the surface is not connected there */

@@ -28,8 +28,11 @@ struct subdiv_edge { /* an edge between two positions; shared by all levels of d
      * TRIMESH_NONE: no triangle of the level has the edge */
     uint32_t corner;
     float share;  /* split point, as a fraction of the way from a to b; for an edge not split yet, the best split point */
-    float error;  /* the field's error along the edge that splitting can fix, as a share of the range; below 0: not measured yet */
-    float barred; /* the field's error along the edge that splitting cannot fix (see jumps), as a share of the range */
+    /* largest error of linear interpolation along the edge that splitting can fix, as a share of the value range; below 0: not
+       measured yet */
+    float error;
+    /* largest error of linear interpolation along the edge that splitting cannot fix (see jumps), share of the value range */
+    float barred;
     bool jumps;   /* why the error is in `barred`: true: the distance jumps along the edge; false: the edge is too short */
     bool unasked; /* true: not measured, because the edge is too short to split in the current level of detail */
     bool proven;  /* true: measured; the edge needs no split in any level of detail, because coarser levels have looser limits */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds edges along which the field is not linear and splits them, largest error first, until the errors are small enough. */
+/* Finds edges along which the values interpolated between sensors are not linear, and splits them, largest error first, until
+   the errors are small enough. */
 #include "preprocess/subdivision/subdivide.h"
 
 #include <math.h>
@@ -54,7 +55,8 @@
 /* an edge up to this length is not split at a jump of the distance; in multiples of the tolerance, in coarser levels of error_m */
 #define JUMP_WIDTH 8
 #define ON_SURFACE 0.25 /* in multiples of the tolerance; points up to this distance from the surface count as on it */
-/* in multiples of the level's error_m; at any point, a coarser level of detail may show the field of a point up to this far away */
+/* in multiples of the level's error_m; a coarser level of detail may show at any point the value of another point up to this
+   far away */
 #define SLACK 0.7
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast standby`: tells a leading core that its standby core is under maintenance, through a file in the leading core's
-   history folder. */
+/* `plantcast standby`: marks a standby core (the daemon that takes over if the leading one fails) as under maintenance. It
+   tells the leading core so through a file in that core's history folder. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

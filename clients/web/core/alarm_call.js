@@ -21,7 +21,8 @@ export class AlarmCall {
         return alarms.filter((alarm) => !isGone(alarm.state) && nowUs - alarm.raisedUs <= FLOOD_US).length > FLOOD;
     }
 
-    // Returns the alarm to show, or null. alarms: the annunciated ones, one per tag; nowMs: monotonic time; nowUs: the server's time.
+    // Returns the alarm to show, or null. alarms: the annunciated alarms (neither shelved, suppressed nor out of service), one
+    // per tag; nowMs: monotonic time; nowUs: the server's time.
     next(alarms, nowMs, nowUs) {
         const waiting = this.isFlood(alarms, nowUs) ? [] : alarms.filter(({ tag, waiting: calls }) =>
             calls && tag.asset && tag.position).sort((a, b) => isGone(a.state) - isGone(b.state) || byGravity(a, b));

@@ -22,13 +22,13 @@ export const graver = (a, b) => isGone(a.state) - isGone(b.state) || a.priority 
 export class Alarms {
     constructor(tags) {
         Object.assign(this, { tags, mode: 'display', known: false, raised: [] });
-        // tag or device name -> raise times of its annunciated alarms, also from an earlier connection (session.js); null before the first
-        // list of alarms
+        // tag or device name -> raise times of its annunciated alarms (neither shelved, suppressed nor out of service), also
+        // from an earlier connection (session.js); null before the first list of alarms
         this.times = null;
         this.rows = new Map(); // "tag index/kind" -> alarm
         this.then = null; // readings of the past instant shown, which then determine each tag's alarm; null: the present is shown
-        // tag index or device name -> its most urgent annunciated alarm, with two more members: `waiting` (true: any alarm of
-        // the tag is unacknowledged) and `others` (the tag's other alarms)
+        // tag index or device name -> its most urgent annunciated alarm (not shelved, suppressed or out of service), with two
+        // more members: `waiting` (true: any alarm of the tag is unacknowledged) and `others` (the tag's other alarms)
         this.byTag = new Map();
     }
 

@@ -4,8 +4,8 @@ import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-// longest wait between attempts during the first EAGER_MS after the loss of a good connection: another core takes over within 5
-// s
+// longest wait between attempts during the first EAGER_MS after the loss of a good connection: if the server has failed, a
+// standby server takes over within 5 s
 export const EAGER_WAIT_MS = 1500, EAGER_MS = 15000;
 // interval of pings, which the server answers even if it sends nothing else
 export const PING_MS = 2000;

@@ -131,7 +131,7 @@ export class Model {
         return oldest;
     }
 
-    // Returns the most urgent annunciated alarm of an asset's tags, or null.
+    // Returns the most urgent alarm of an asset's tags that is neither shelved, suppressed nor out of service, or null.
     worstAlarm(asset) {
         const alarms = asset.tags.map((tag) => this.alarms.gravest(tag.index)).filter(Boolean);
         return alarms.sort(graver)[0] ?? null;

@@ -81,8 +81,9 @@ void add_link(fbx_graph *graph, std::string_view line)
     graph->parents[child]++;
 }
 
-/* Overwrites a line with blanks if it states a property again: the last statement of a property counts, but Assimp takes the
- * first. known: positions of a list's properties, by name. */
+/* Overwrites an earlier statement of the property in `line` with blanks: the last statement is the valid one, but Assimp
+   takes the first. at: position of the line in the text. known: position of each property of the
+   current list, by name. */
 void keep_last(std::string *text, size_t at, std::string_view line, std::map<std::string, size_t> *known, const std::string &owner,
                bool say)
 {

@@ -44,7 +44,7 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     pipe.Build();
     if (!pipe.IsDone())
         throw unsupported("unsupported: a profile that cannot be swept along its curve");
-    pipe.MakeSolid(); /* ignore the result: it is false for a closed curve, whose tube has no ends to close */
+    pipe.MakeSolid(); /* ignores the return value: MakeSolid() returns false for a closed curve, whose tube has no ends to close */
     return pipe.Shape();
 }
 
