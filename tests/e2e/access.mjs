@@ -323,7 +323,8 @@ test('foreign host names, cross-site requests and foreign origins are refused, a
     for (const [host, status] of [['plant.example', 200], ['plant.example:8443', 200], ['PLANT.example', 200], ['localhost', 200],
         ['evil.example', 403], ['plant.example.evil.example', 403], ['203.0.113.1', 403], ['a b', 403]])
         assert.equal((await ask('/healthz', { host })).status, status, host);
-    assert.equal((await ask('/api/v1/tags', { host: '127.0.0.1', from: null })).status, 401, 'near is not trusted behind a proxy');
+    assert.equal((await ask('/api/v1/tags', { host: '127.0.0.1', from: null })).status, 401,
+        'a loopback client is not trusted behind a proxy');
     assert.equal((await ask('/snapshot.png', { bearer: tokens.viewer, more: ['Sec-Fetch-Site: cross-site'] })).status, 403);
     await assert.rejects(open({ origin: 'https://evil.example' }), /403/);
     (await open({ origin: 'https://plant.example' })).close();
@@ -449,7 +450,7 @@ test('TLS: pictures come over wss, old TLS versions are refused, and a new certi
     const probe = runProgram('plantcast', ['probe', url, '--ca', path('first.pem'), '--seconds', '1', '--size', '320x180', '--json']);
     assert.equal(probe.code, 0, probe.err);
     assert.ok(JSON.parse(probe.out).frames > 0);
-    assert.equal(runProgram('plantcast', ['tags', url]).code, 1, 'a certificate that nobody vouches for');
+    assert.equal(runProgram('plantcast', ['tags', url]).code, 1, 'an untrusted certificate is refused');
     for (const end of ['pem', 'key'])
         copyFileSync(path(`second.${end}`), path(`served.${end}`));
     await plant.daemon.line(/serving the new certificate/);

@@ -255,7 +255,7 @@ test('thousands of wrong tokens make few lines in the trail, and other clients g
     // minute.
     const { length: count } = lines().slice(before_).filter(({ event }) => event === 'login');
     const seconds = (performance.now() - since) / 1000, most = 12 + seconds / 5 + seconds / 60;
-    assert.ok(count <= most, `${count} lines in ${seconds} s`);
+    assert.ok(count <= most, `${count} lines in the trail in ${seconds} s`);
 });
 
 test('a changed byte and removed lines of the trail are detected, also at the next start', { skip }, async () => {
@@ -277,7 +277,7 @@ test('a changed byte and removed lines of the trail are detected, also at the ne
     await plant.daemon.line(/lines were removed/);
     await found('the finding', (line) => line.event === 'audit' && /lines were removed/.test(line.what));
     await plant.daemon.stop();
-    assert.equal(verify().code, 1, 'the gap stays');
+    assert.equal(verify().code, 1, 'the removed line is still reported');
     writeFileSync(trail, '');
     writeFileSync(`${trail}.head`, '');
     const emptied = verify();
@@ -327,7 +327,7 @@ test('a small full disk raises an alarm, no line on it is torn, and a read-only 
     await isGood(0);
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.3.1' });
     await plant.daemon.line(/audit, not written: login refused: \(nobody\) from 127\.0\.3\.1/);
-    assert.equal((await ask('/api/v1/tags', tokens.viewer)).status, 200, 'the plant stays in sight');
+    assert.equal((await ask('/api/v1/tags', tokens.viewer)).status, 200, 'the daemon still serves the plant');
     await whole();
     rmSync(full);
     await plant.daemon.line(/audit: .*audit\.log can be written again/);

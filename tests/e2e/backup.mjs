@@ -60,11 +60,13 @@ test('a restore into another folder returns the recorded history, point by point
     assert.ok(!names.some((name) => /-wal|-shm|part/.test(name)), names.join(' '));
     // the daemon's metrics report the time of this file as the last backup
     const stamp = statSync(join(plant.file.replace(/yaml$/, 'history'), 'last-backup')).mtimeMs;
-    assert.ok(stamp > began - 1000 && stamp < Date.now() + 1000, `${stamp}, not ${began} or later`); // files have a coarser clock
+    assert.ok(stamp > began - 1000 && stamp < Date.now() + 1000,
+        `time of the backup ${stamp}, not ${began} or later`); // files have a coarser clock
     const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);
     assert.equal(drill.code, 0, drill.err);
     assert.match(drill.out, /one: readings from \S+Z to \S+Z\n.*one: verified: a trial restore of all \d+ files succeeded \(backup of /);
-    assert.deepEqual(readdirSync(join(folder('one'), '..')).filter((name) => name.includes('verify')), [], 'nothing of it stays');
+    assert.deepEqual(readdirSync(join(folder('one'), '..')).filter((name) => name.includes('verify')), [],
+        'verify leaves no folder behind');
     mkdirSync(folder('elsewhere'));
     const other = join(folder('elsewhere'), 'other.yaml');
     const restored = runProgram('plantcast', ['restore', folder('three'), other]);

@@ -112,7 +112,7 @@ test('a backup of a running daemon contains everything, and its keys only encryp
     assert.deepEqual(readdirSync(made).filter((file) => !/sqlite$/.test(file)).sort(),
         ['backup.json', 'etc.tar', 'plant.yaml', 'secrets.tar.age', 'state.tar', 'tags.csv']);
     const plain = spawnSync('grep', ['-rlE', 'PRIVATE KEY|^secret$', made], { encoding: 'utf8' }).stdout;
-    assert.equal(plain, '', 'no key lies there in plain text');
+    assert.equal(plain, '', 'the backup contains no key in plain text');
     assert.equal(spawnSync('find', [made, '-perm', '/077'], { encoding: 'utf8' }).stdout, '');
 });
 
@@ -141,7 +141,7 @@ test('one restore command on a bare host gives the same server', options, async 
     assert.doesNotMatch(out, /missing/);
     assert.equal(listing(second), was);
     await serve(second);
-    assert.ok(draw(second).equals(picture), 'another picture');
+    assert.ok(draw(second).equals(picture), 'the restored plant\'s picture is the same');
     ok(second.run(`plantcast audit verify ${STATE}/audit.log`));
     assert.match(readFileSync(second.path(`${STATE}/audit.log`), 'utf8'), /"event":"stop"|"event":"start"[^]*"event":"start"/);
     const again = second.run('plantcast restore /root/backup --identity /root/key');
@@ -248,7 +248,7 @@ test('a backup is sent to another host by SFTP, and restored from there',
         mkdirSync(join(kept, `${mine}2026-01-01T000000Z/folder`), { recursive: true }); // a folder, which `rm` does not delete
         const kept2 = host.run(`plantcast backup p1 --without-secrets --to ${there} --keep 2`);
         assert.deepEqual([kept2.code, /older backups were not deleted there/.test(kept2.err)], [0, true], kept2.err);
-        assert.ok(readdirSync(kept).includes(`${mine}2026-01-01T000000Z.part`), 'no copy looks complete');
+        assert.ok(readdirSync(kept).includes(`${mine}2026-01-01T000000Z.part`), 'the partly deleted copy is named as incomplete');
         // a store that permits neither listing nor deletion
         const drop = there.replace(sshPort, dropPort);
         const dropped = host.run(`plantcast backup p1 --without-secrets --to ${drop} --keep 2 -o /root/d`);

@@ -43,7 +43,7 @@ const startCore = async (name, off_s) => {
 };
 // Checks that a time lies between two instants, within 5 s, which is how long an answer may take on a busy machine.
 const between = (us, first_us, last_us, what) => assert.ok(us > first_us - 5e6 && us < last_us + 5e6,
-    `${what}: ${(us - first_us) / 1e6} s after it was asked for, of ${(last_us - first_us) / 1e6} s`);
+    `${what}: ${(us - first_us) / 1e6} s after the request, which took ${(last_us - first_us) / 1e6} s`);
 const alarmOf = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms
     .find(({ tag, state }) => tag === 'TI-1' && state === 'unacknowledged');
 
@@ -70,7 +70,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
         between(Number(at_us), asked_us, coreUs(), 'the time in a picture');
         assert.ok(Number(age_ms) < 5000, header);
         for (const { age_ms: age, name } of Object.values(await renderer.tags()))
-            assert.ok(age >= 0 && age < 5000, `${name}: ${age} ms`);
+            assert.ok(age >= 0 && age < 5000, `${name}: age of ${age} ms`);
         const shelve = async (seconds) => {
             client.say({ type: 'alarm', seq: 2, action: 'shelve', alarms: [['TI-1', 'H']], for_s: seconds, reason: 'is looked at' });
             await client.text('alarmed');
@@ -80,7 +80,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
         const shelving = performance.now();
         await shelve(4); // now until then
         await until('its return', () => alarmOf(renderer));
-        assert.ok(performance.now() - shelving > 3900, 'it was away for 4 s, not for an hour less');
+        assert.ok(performance.now() - shelving > 3900, 'the alarm was shelved for 4 s, not an hour less');
         client.close();
 
         const { page, errors, close } = await openPage(`http://127.0.0.1:${renderer.port}/`, { viewport: { width: 1280, height: 800 } },
@@ -99,5 +99,5 @@ for (const off_s of [HOUR_S, -HOUR_S])
         await close();
         await renderer.stop();
         await core.stop();
-        assert.equal(renderer.program.said.match(/the core's clock is/g).length, 1, 'it is said once');
+        assert.equal(renderer.program.said.match(/the core's clock is/g).length, 1, 'the clock difference is logged once');
     });

@@ -83,7 +83,7 @@ test('under a proxy\'s path prefix, tags, snapshot and stream work', { skip, tim
     const wrong = await run('tags', at);
     assert.equal(wrong.code, 1);
     assert.match(wrong.err, /404/);
-    assert.equal((await run('tags', `${at}/b?x=1`)).code, 2, 'a query is no path');
+    assert.equal((await run('tags', `${at}/b?x=1`)).code, 2, 'a query in the URL\'s path is refused');
 });
 
 test('snapshot --view accepts views of the plant file and of the page, by id or title, with or without a daemon', { skip, timeout: 100000 },

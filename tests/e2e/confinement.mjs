@@ -52,7 +52,7 @@ test('a compromised model reader can access nothing of the daemon or the machine
         const got = Object.keys(free).filter((name) => free[name] === 'succeeded');
         console.log(`# unconfined, ${got.length} of ${Object.keys(free).length} attempts succeed; refused: ${
             Object.entries(free).filter(([, how]) => how !== 'succeeded').map((each) => each.join(' ')).join(', ')}`);
-        assert.ok(got.length >= (process.getuid() === 0 ? 60 : 35), 'the attempts work where nothing holds them back');
+        assert.ok(got.length >= (process.getuid() === 0 ? 60 : 35), 'the attempts succeed without confinement');
         const { status, stdout, stderr } = spawnSync(join(programs(folder, ESCAPE), 'plantcast'),
             ['import', model, '-o', join(folder, 'plant')], { env, encoding: 'utf8' });
         assert.equal(status, 0, stderr);
@@ -288,7 +288,7 @@ test('a model whose reader crashes, hangs or exceeds memory gets one error line,
     }
     console.log(`# of ${Object.keys(MODELS).length} models: ${JSON.stringify(table)}`);
     for (const kind of ['refused', 'needs more', 'crashed', ...readsIfc ? ['was ended'] : []])
-        assert.ok(table[kind] > 0, `no model ${kind}: ${JSON.stringify(table)}`);
+        assert.ok(table[kind] > 0, `no model of the kind ${kind}: ${JSON.stringify(table)}`);
 }));
 
 // --- tag lists -----------------------------------------------------------------------------------------------------------------

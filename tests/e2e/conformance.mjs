@@ -88,9 +88,10 @@ test('pictures are complete, in order and of the requested size, and state their
     let last = 0, isPart = false;
     // the parts of a picture are frames with the same seq
     for (const { seq, flags, x, y, width, height, full_width, full_height, payload } of client.frames) {
-        assert.ok(seq > last || (isPart && seq === last), 'seq counts up');
+        assert.ok(seq > last || (isPart && seq === last), 'seq increases');
         [last, isPart] = [seq, Boolean(flags & FLAG.more)];
-        assert.deepEqual([payload.readUInt16BE(0), payload.readUInt16BE(payload.length - 2)], [0xffd8, 0xffd9], 'whole JPEGs');
+        assert.deepEqual([payload.readUInt16BE(0), payload.readUInt16BE(payload.length - 2)], [0xffd8, 0xffd9],
+            'the payload begins and ends as a JPEG does');
         assert.ok(x + width <= full_width && y + height <= full_height);
     }
     client.close();
@@ -108,7 +109,7 @@ test('pictures echo the parameters, sizes and projections that they show', { ski
     const shown = await client.frameWhere('parameters 5', (p) => p.params_seq === 5);
     // markers are sent only when they change
     const markers = client.texts.findLast((m) => m.type === 'markers' && m.markers && m.seq <= shown.seq);
-    assert.deepEqual(markers?.markers.map(([tag]) => tag), [2], 'markers go before their frame');
+    assert.deepEqual(markers?.markers.map(([tag]) => tag), [2], 'markers are sent before their frame');
     client.say({ type: 'resize', width: 200, height: 120, pixel_ratio: 2 });
     await client.frameWhere('200x120', (p) => p.full_width === 200 && p.full_height === 120 && p.flags & FLAG.still);
     client.say({ type: 'camera', seq: 6, ...CAMERA, projection: 'orthographic', height_m: 5 });
@@ -154,7 +155,7 @@ test('several clients follow one leader; the leader hands over the lead, and the
     const heirs = (await heir.hello({ width: 320, height: 200 })).session, viewers = (await viewer.hello()).session;
     const told = (client, what, match) => client.until(what, (c) => c.texts.some((m) => m.type === 'following' && match(m)));
     presenter.say({ type: 'lead', session: heirs });
-    assert.equal((await presenter.text('error')).code, 'bad_field', 'it does not follow');
+    assert.equal((await presenter.text('error')).code, 'bad_field', 'a session that does not follow cannot be given the lead');
     for (const client of [heir, viewer]) {
         client.say({ type: 'follow', session });
         await told(client, 'whom', (m) => m.session === session && m.width === 400 && m.group === 'pressure');
@@ -177,7 +178,7 @@ test('several clients follow one leader; the leader hands over the lead, and the
     for (const client of [presenter, viewer])
         await client.frameWhere('where the new one looks', (p) => p.eye[0] === 6);
     presenter.say({ type: 'lead', session: viewers });
-    assert.equal((await presenter.text('error')).code, 'bad_field', 'who follows has no lead to give');
+    assert.equal((await presenter.text('error')).code, 'bad_field', 'a follower has no lead to hand over');
     heir.close();
     await told(viewer, 'that the leader has gone, and what is shown stays', (m) => m.session === heirs && m.gone && m.group === 'pressure');
     presenter.close();

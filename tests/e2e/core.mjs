@@ -194,7 +194,7 @@ test('a core of another version or plant with the same tags is named by both nod
         await renderer.program.line(new RegExp(`no readings: .*${ours}`));
         await until('its refusal', () => core.program.said.includes(`renderer ${name}: refused: ${theirs}`));
         await sleep(2500); // waits until the peer has retried several times
-        assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'it is said once');
+        assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'the refusal is logged once');
         assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
         assert.equal(await renderer.metric(`plantcast_core_up{core="${core.url}"}`), 0);
         await renderer.stop();

@@ -69,7 +69,7 @@ test('a renderer serves the core\'s series, gaps and journal, byte for byte', op
     }
     const [status, , text] = await body(renderer, `/api/v1/history?tags=TI-2,TI-1&from=${iso(0)}&to=${iso(1200)}&points=400&format=csv`);
     assert.equal(status, 200);
-    assert.match(text, /^Tag,Time,Value[^]*\r\nTag,Time,Low/, 'of both kinds');
+    assert.match(text, /^Tag,Time,Value[^]*\r\nTag,Time,Low/, 'the export contains values and intervals');
     assert.equal((await body(renderer, '/api/v1/history?tags=NO-1'))[0], 400);
 });
 
@@ -79,7 +79,7 @@ test('core and renderer draw byte-identical pictures of the past; past readings 
         const [one, other] = await Promise.all([core, renderer].map(
             async (node) => Buffer.from(await (await node.fetch(path)).arrayBuffer())));
         assert.equal(one.subarray(1, 4).toString(), 'PNG', one.toString());
-        assert.ok(one.equals(other), `${s} s: ${one.length}, ${other.length} bytes`);
+        assert.ok(one.equals(other), `${s} s into the past: pictures of ${one.length} and ${other.length} bytes differ`);
     }
     const seen = async (node) => {
         const client = await PlainClient.open(node.port);
@@ -138,7 +138,7 @@ test('users at the renderer need their own token for history, the renderer its o
         ['/snapshot.png', 'renderer', 403], ['/core/instant?at_us=1', 'viewer', 403], ['/core/instant?at_us=1', 'operator', 403],
         ['/core/instant?at_us=1', 'renderer', 200], ['/core/instant?at_us=-1', 'renderer', 400],
         ['/core/instant?at_us=1e3', 'renderer', 400], ['/core/instant', 'renderer', 400]])
-        assert.equal((await body(strict, asked, nodes.tokens[token]))[0], status, `${asked} by ${token}`);
+        assert.equal((await body(strict, asked, nodes.tokens[token]))[0], status, `${asked} with the token of ${token}`);
     await far.stop();
     await strict.stop();
 });
@@ -183,7 +183,7 @@ test('without its core a renderer logs once that it has no history; history retu
     core.program.child.kill('SIGSTOP'); // the core accepts the request but does not answer
     const waits = renderer.fetch(path).catch(() => null);
     await sleep(300);
-    assert.equal((await renderer.fetch('/healthz')).status, 200, 'nobody else waits');
+    assert.equal((await renderer.fetch('/healthz')).status, 200, 'other clients do not wait');
     core.program.child.kill('SIGCONT');
     await waits;
 });

@@ -35,7 +35,7 @@ test('when the core reloads its files, its renderers load the same files at the 
     await renderer.program.line(/reload: configuration \w+ replaced \w+ after [\d.]+ s, requested by the core/);
     await until('the new configuration at both', async () => await configuration(core) !== before_ && isThere());
     promise(t, 'from the signal to readings at the renderer', performance.now() - began, BLIND_MS);
-    assert.equal(await renderer.metric('plantcast_core_refused_total'), 0, 'it did not switch before the core');
+    assert.equal(await renderer.metric('plantcast_core_refused_total'), 0, 'the renderer did not switch before the core');
 });
 
 test('files that the core refuses change nothing at the renderer', options, async () => {

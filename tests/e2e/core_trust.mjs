@@ -94,7 +94,7 @@ test('a renderer\'s token alone authorises no action, whatever user it names; th
     assert.equal(await state(), 'unacknowledged');
     const refused = await recorded('a refusal', ({ event, result, through }) => event === 'access' && result === 'refused' && through);
     assert.equal(refused.through, 'node evil, token r');
-    assert.ok(!trail().some(({ who, result }) => who === 'eve' && result === 'done'), 'nothing was done in her name');
+    assert.ok(!trail().some(({ who, result }) => who === 'eve' && result === 'done'), 'nothing was done in the name of eve');
 });
 
 test('a user\'s token grants its role only: an operator may acknowledge, but not take an alarm out of service', options, async () => {

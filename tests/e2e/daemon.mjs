@@ -196,7 +196,8 @@ test('orthographic cameras, fits, picks and hidden assets are answered correctly
     client.say({ type: 'pick', seq: 5, x: 160.5, y: 90.5, camera: { eye, target, up, projection, height_m } });
     const picked = await client.text('picked');
     assert.deepEqual([picked.seq, picked.asset, picked.unit], [5, 'E-101', '°C']);
-    assert.ok(Math.abs(picked.position[0] - 0.5) < 1e-6 && picked.normal[0] > 0.99, 'its right side; the other box is hidden');
+    assert.ok(Math.abs(picked.position[0] - 0.5) < 1e-6 && picked.normal[0] > 0.99,
+        'the pick hits the box\'s right side, because the other box is hidden');
     assert.ok(['measured', 'between'].includes(picked.state) && picked.nearest.length >= 1);
     client.say({ type: 'params', seq: 2, hidden: ['P-1'] });
     assert.equal((await client.text('error')).code, 'bad_field');
@@ -224,14 +225,14 @@ test('clients that request depth get each depth grid before its picture', { skip
     // leaves out the newest grid if its picture has not arrived yet
     for (const depth of client.depths.filter(({ before }) => before < client.frames.length)) {
         const frame = client.frames.find((f) => f.seq === depth.seq);
-        assert.equal(client.frames.indexOf(frame), depth.before, 'each grid comes right before its picture');
+        assert.equal(client.frames.indexOf(frame), depth.before, 'each depth grid comes right before its picture');
         assert.deepEqual([depth.x, depth.y, depth.width, depth.height], [0, 0, frame.full_width, frame.full_height]);
         assert.deepEqual([depth.columns, depth.rows, depth.encoding], [40, 23, 2]);
         assert.equal(depth.payload.length, depth.payload_bytes);
         assert.equal(inflateRawSync(depth.payload).length, depth.data_bytes);
     }
     const last = client.depths.findLast(({ seq }) => seq <= still.seq), z = last.base + (last.levels - 1) * last.unit;
-    assert.equal(last.flags & 1, 1, 'orthographic');
+    assert.equal(last.flags & 1, 1, 'the depth grid is orthographic');
     assert.ok(Math.abs(z - (eye[0] - 0.5)) < 0.01, `the front of the box is ${z} m from the eye at ${eye}`);
     const newest = client.depths.length - 1, pictures = client.frames.length;
     await plant.tell('set TI-1 33');

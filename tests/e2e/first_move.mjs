@@ -76,9 +76,10 @@ test('the picture of the first camera move is as good as a refined one within a 
         `${at.toFixed(0)} ms: ${codec} of ${fullWidth}x${fullHeight}${still ? ', refined' : ''}, SSIM ${alike[n].toFixed(3)}`);
     t.diagnostic(said.join('; '));
     const good = seen[alike.findIndex((ssim) => ssim >= LEAST)], first = alike[seen.findIndex(({ still }) => still)];
-    assert.ok(first >= LEAST, `refined at once, not in two stages: ${said.join('; ')}`);
+    assert.ok(first >= LEAST, `the picture is refined at once, not in two stages: ${said.join('; ')}`);
     // The first previews of a new page are small, because its bandwidth is still unknown.
-    assert.ok(seen.every((one) => one.fullWidth === image.width || one.at <= SMALL_MS), `of the viewport's size: ${said.join('; ')}`);
+    assert.ok(seen.every((one) => one.fullWidth === image.width || one.at <= SMALL_MS),
+        `the picture has the viewport's size: ${said.join('; ')}`);
     assert.ok(good.at <= WITHIN_MS, said.join('; '));
     assert.deepEqual(browser.errors, []);
 });

@@ -51,7 +51,8 @@ for (const [name, screen] of Object.entries(SCREENS))
             const part = (x) => `${(100 * x).toFixed(1)} %`;
             t.diagnostic(`fills ${part(Math.max(across, up))}, rims ${rims.map(part).join(' and ')}`);
             await shoot(page, `first-${name.replace(/ /g, '-')}`);
-            assert.ok(left >= 0 && top >= freeTop && right <= freeRight && bottom <= seen.height, 'nothing under the legend, all in sight');
+            assert.ok(left >= 0 && top >= freeTop && right <= freeRight && bottom <= seen.height,
+                'the plant lies in sight and not under the legend');
             assert.ok(Math.max(across, up) >= 0.7 && rims.every((rim) => rim <= 0.1));
             assert.deepEqual(errors, []);
         } finally {

@@ -202,7 +202,7 @@ test('two hundred plants take two hundredths of a processor core', { ...options,
         }
         const percent = (cpuMs(fleet.pid) - before) / 10 / SECONDS;
         console.log(`# fleet of ${COUNT}: ${percent.toFixed(2)} % of a core`);
-        assert.ok(percent <= 2, `${percent} %`);
+        assert.ok(percent <= 2, `${percent} % of a processor core`);
     } finally {
         await fleet.stop();
         for (const one of all)

@@ -44,7 +44,7 @@ test('a hundred viewers of one view cost one render, one encode and a hundred se
     }
     const end = await metrics(plant.port, ...names);
     const [renders, encodes, frames] = end.map((value, i) => value - start[i]);
-    assert.ok(frames >= steps * VIEWERS, `${frames} frames`);
+    assert.ok(frames >= steps * VIEWERS, `only ${frames} frames arrived`);
     assert.ok(renders <= 2 * steps && encodes <= 2 * steps,
         `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`);
 });
@@ -81,7 +81,7 @@ test('fifty clients that read nothing cost next to nothing', { skip }, async () 
     const moreKb = residentKb(pid) - beforeKb;
     console.log(`# ${STALLED} stalled clients: ${moreKb} kB more`);
     const picturesKb = 3 * 1280 * 720 * 4 / 1024; // size of the pictures in flight at that moment: two being drawn, one being encoded
-    assert.ok(sanitized || moreKb <= 5 * 1024 + picturesKb, `${moreKb} kB more`);
+    assert.ok(sanitized || moreKb <= 5 * 1024 + picturesKb, `the daemon grew by ${moreKb} kB`);
 });
 
 test('over 1 Mbit/s and 200 ms, a picture is never more than a second old, and another client is not slowed', { skip }, async (t) => {
@@ -111,7 +111,7 @@ test('over 1 Mbit/s and 200 ms, a picture is never more than a second old, and a
     console.log(`# fast and slow: ${said}; slow later by at most ${late.map(Math.round)} ms`);
     assert.ok(rounds.every(({ frames }) => frames > 3), said);
     assert.ok(sanitized || Math.min(...late) < 900, `pictures ${late.map(Math.round)} ms old`);
-    assert.ok(best > 0.7, `beside a slow client: ${said}`);
+    assert.ok(best > 0.7, `frame rate beside a slow client: ${said}`);
 });
 
 test('a client that reads nothing for 15 s is disconnected, and its connection closed', { skip }, async () => {
@@ -188,6 +188,7 @@ test(`after ${SOAK_S} s of random connects, drags, stalls and cuts, no resource 
     assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
     const patience = performance.now() + 180000;
     for (; openForClients().length > filesBefore.length; await sleep(250)) // files opened for the last clients may close later
-        assert.ok(performance.now() < patience, `open:\n${openForClients().join('\n')}\nbefore:\n${filesBefore.join('\n')}`);
+        assert.ok(performance.now() < patience,
+            `files are still open:\n${openForClients().join('\n')}\nbefore:\n${filesBefore.join('\n')}`);
     assert.equal(steady.closed.code, 1000);
 });

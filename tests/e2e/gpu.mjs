@@ -128,12 +128,12 @@ for (const hardware of [true, false]) {
         const grown = residentBytes(plant) - before;
         console.log(`# ${where}: resident ${(grown / 1e6).toFixed(1)} MB more, ${strangers} of ${moved} moving pictures strange`);
         if (!long) // on a loaded machine, moving pictures have another JPEG quality and thus another size
-            assert.ok(strangers < 0.2 * moved, `${strangers} of ${moved} pictures of those who moved were none like before`);
+            assert.ok(strangers < 0.2 * moved, `${strangers} of ${moved} pictures for moving clients equal no earlier picture`);
         assert.equal(faults.get('lost'), LOSSES);
         assert.equal(await plant.metric('plantcast_gl_losses_total'), LOSSES);
         assert.equal(await plant.metric('plantcast_render_failures_total'), 0);
         assert.equal(faults.get('contexts'), 1);
-        assert.ok(grown < GROWTH_BYTES, `${grown} bytes more`);
+        assert.ok(grown < GROWTH_BYTES, `the daemon grew by ${grown} bytes`);
         assert.equal((await get(plant.port, '/readyz')).status, 200);
         assert.ok(clients.every((client) => !client.closed));
         for (const client of clients)
@@ -208,12 +208,12 @@ test('a view refused for lack of GPU memory is drawn completely, unasked, once t
         refused.push(faults.get('refused') > before);
         came.push(await shown(client));
     }
-    assert.ok(refused.filter(Boolean).length > WISHES.length / 2, `refused: ${refused}`);
+    assert.ok(refused.filter(Boolean).length > WISHES.length / 2, `views refused for lack of memory: ${refused}`);
     faults.set('losses', 1); // a context loss: everything is created again, now with enough memory
     for (const [i, one] of WISHES.entries()) {
         wish(client, one);
         const right = await shown(client);
-        assert.equal(came[i], right, `${JSON.stringify(one)}: drawn without room, and kept`);
+        assert.equal(came[i], right, `${JSON.stringify(one)}: the view is drawn once there is memory`);
     }
     assert.equal(faults.get('lost'), 1);
     assert.ok(client.texts.some((message) => message.code === 'no_picture'));

@@ -116,14 +116,14 @@ test('each node reports its spare drawing capacity; a cookie keeps a client at o
     // on a busy machine one node may for a while be able to draw less than the other, so it gets fewer viewers
     const counts = () => ['r1', 'r2'].map((name) => viewers.filter(({ node }) => node === name).length);
     while (viewers.length < VIEWERS || Math.min(...counts()) < LEAST) {
-        assert.ok(viewers.length < MOST, `${counts()} of ${MOST}`);
+        assert.ok(viewers.length < MOST, `viewers per node ${counts()} after ${MOST} viewers`);
         viewers.push(new Viewer(viewers.length));
         await viewers.at(-1).come();
     }
     await Promise.all(viewers.map((viewer) => viewer.look()));
     await nodes.onePoller();
     const { status } = await get(proxy.port, '/api/v1/history?tags=TI-1', 'GET', `Authorization: Bearer ${nodes.tokens.viewer}\r\n`);
-    assert.equal(status, 200, 'history is the core\'s');
+    assert.equal(status, 200, 'a renderer passes history requests to the core');
 });
 
 test('a follower is routed to its leader\'s node, wherever the follower was', options, async () => {
@@ -170,7 +170,7 @@ test('kill -9 of one of two nodes: all sessions are back within 10 s with their 
         `after ${(took_ms / 1000).toFixed(1)} s`);
     promise(t, 'until all are back', took_ms, BACK_MS);
     assert.ok(hit.every(({ welcome, node }) => welcome.resumed && node === 'r2'));
-    assert.equal(new Set(viewers.map(({ welcome }) => welcome.session)).size, viewers.length, 'each has its number');
+    assert.equal(new Set(viewers.map(({ welcome }) => welcome.session)).size, viewers.length, 'each session has its own number');
     await Promise.all(acks);
     const anna = ({ state, who }) => state === 'acknowledged' && who === 'anna';
     await until('all acknowledged', async () => (await standing(core)).filter(anna).length === 3);
@@ -191,7 +191,7 @@ test('a drained node sends its sessions to the other node one by one, and gets n
     const lost = viewers.map(({ lostAt }) => (lostAt - began) / 1000);
     t.diagnostic(`${viewers.length} sessions left from ${Math.min(...lost).toFixed(1)} to ${Math.max(...lost).toFixed(1)} s ` +
         'after it was said');
-    assert.ok(Math.max(...lost) - Math.min(...lost) > 4, `${lost}`);
+    assert.ok(Math.max(...lost) - Math.min(...lost) > 4, `the sessions were moved one after the other: ${lost}`);
     assert.ok(viewers.every(({ reason }) => reason === 'this node is being drained; retry after 0 s'));
     await until('the drained node not to be in use', async () => /^DOWN/.test((await proxy.servers()).r2.status));
 });

@@ -85,11 +85,11 @@ for (const [signal, how] of [['SIGKILL', 'kill -9'], ['SIGTERM', 'an end in good
         assert.equal((await anna.text('alarmed')).done, 1);
         const acknowledged = async () => (await journal()).filter(({ event, who }) => event === 'acknowledge' && who === 'anna').length;
         await until('the acknowledgement in the journal', async () => await acknowledged() === (signal === 'SIGKILL' ? 1 : 2));
-        assert.ok((await journal()).length > rows, 'what was there before is there');
+        assert.ok((await journal()).length > rows, 'the old journal rows are still there');
         assert.equal(anna.closed, null);
         anna.close();
         await two.plant.tell('set TI-1 50');
         await two.restart(core);
         await two.followed(other);
-        assert.equal(await chosen(), other.name, 'who came back stands by');
+        assert.equal(await chosen(), other.name, 'HAProxy stays with the core that took over');
     });

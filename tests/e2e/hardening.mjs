@@ -18,12 +18,12 @@ test('programs are built with PIE, full RELRO, stack protectors and checked libr
     for (const program of PROGRAMS) {
         assert.match(read(program, '-h'), /Type: +DYN/, `${program}: position-independent`);
         assert.match(read(program, '-l'), /GNU_RELRO/, `${program}: RELRO`);
-        assert.match(read(program, '-d'), /FLAGS_1.*NOW.*PIE/, `${program}: bound at the start`);
+        assert.match(read(program, '-d'), /FLAGS_1.*NOW.*PIE/, `${program}: symbols are bound at the start`);
         const symbols = read(program, '--dyn-syms');
         assert.match(symbols, /__stack_chk_fail/, `${program}: stack protector`);
         assert.match(symbols, /__(mem|str|v?s?n?printf|fread|read)\w*_chk/, `${program}: _FORTIFY_SOURCE`);
         const stack = read(program, '-l').match(/GNU_STACK.*/)[0];
-        assert.match(stack, / RW /, `${program}: no program in its stack`);
+        assert.match(stack, / RW /, `${program}: the stack is not executable`);
     }
 });
 
@@ -37,19 +37,19 @@ test('systemd-analyze rates the exposure of the systemd unit at 2 of 10 or less'
     for (const line of [/^MemoryMax=/m, /^UMask=0027$/m, /^CapabilityBoundingSet=$/m, /^StateDirectory=plantcast\/%i$/m])
         assert.match(readFileSync(UNIT, 'utf8'), line);
     assert.deepEqual([...readFileSync(UNIT, 'utf8').matchAll(/^ReadWritePaths=(.*)$/gm)].map(([, path]) => path),
-        ['-/sys/fs/cgroup/system.slice/system-plantcastd.slice/%n'], 'nothing but its own state and its own cgroup');
+        ['-/sys/fs/cgroup/system.slice/system-plantcastd.slice/%n'], 'the unit can write only to its own state and its own cgroup');
 });
 
 test('each clause of IEC 62443-4-2 that is marked as met names tests that exist', () => {
     const rows = readFileSync('deploy/IEC62443.md', 'utf8').split('\n').filter((line) => /^\| (CR|SAR) /.test(line));
-    assert.ok(rows.length >= 40, `${rows.length} clauses`);
+    assert.ok(rows.length >= 40, `only ${rows.length} clauses found`);
     for (const row of rows) {
         const [, clause, state] = row.split('|').map((cell) => cell.trim());
         const files = [...row.matchAll(/`((?:tests|deploy|server)\/[\w./]+)`/g)].map(([, path]) => path);
         for (const path of files)
-            assert.ok(existsSync(path), `${clause}: there is no ${path}`);
+            assert.ok(existsSync(path), `${clause} names ${path}, which does not exist`);
         if (/^met/.test(state))
-            assert.ok(files.some((path) => /^(tests|deploy\/test)\//.test(path)), `${clause} is said to be met, by no test`);
+            assert.ok(files.some((path) => /^(tests|deploy\/test)\//.test(path)), `${clause} is marked as met, but names no test`);
     }
 });
 

@@ -95,19 +95,19 @@ test('each eye sees the plant from its own position; a turned head shows the cha
         t.diagnostic(`${away} m: runs ${JSON.stringify(runs)}, true ${JSON.stringify(trueRuns)}`);
         for (const i of [0, 1]) { // index of the box's edge: left, right
             const [own, real] = [runs, trueRuns].map(([a, b]) => a[i] - b[i]);
-            assert.ok(Math.abs(own - real) <= 1, `at ${away} m: a disparity of ${own} px, in truth ${real}`);
-            assert.ok(Math.abs(runs[0][i] - trueRuns[0][i]) <= 2, `at ${away} m: ${runs[0][i]} px, in truth ${trueRuns[0][i]}`);
+            assert.ok(Math.abs(own - real) <= 1, `at ${away} m: a disparity of ${own} px instead of ${real}`);
+            assert.ok(Math.abs(runs[0][i] - trueRuns[0][i]) <= 2, `at ${away} m: ${runs[0][i]} px instead of ${trueRuns[0][i]}`);
         }
         const undrawn = [left, right].map(({ undrawn: share }) => share);
         t.diagnostic(`${away} m: not drawn ${undrawn.map((share) => (100 * share).toFixed(2))} %`);
-        assert.ok(undrawn.every((share) => share < 0.03), `${undrawn}`);
+        assert.ok(undrawn.every((share) => share < 0.03), `shares of pixels not drawn: ${undrawn}`);
         await keep(page, `headset-${away}m`);
     }
     await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
     const yaw = 8 * Math.PI / 180, { left, seq } = await seen(page), turned = await seen(page, yaw);
     const [a, b] = [left, turned.left].map((picture) => runOf(picture, EYE.height / 2)), middleOf = ([from, to]) => (from + to) / 2;
-    assert.equal(turned.seq, seq, 'before another picture of the server');
-    assert.ok(Math.abs(middleOf(b) - middleOf(a) - PX_PER_TAN * Math.tan(yaw)) < 6, `${a} to ${b}`);
+    assert.equal(turned.seq, seq, 'no other picture of the server has arrived');
+    assert.ok(Math.abs(middleOf(b) - middleOf(a) - PX_PER_TAN * Math.tan(yaw)) < 6, `the box moved from ${a} to ${b}`);
     await page.evaluate(() => globalThis.plantcast.modules.there('enterVr').headset.xr.end());
     await hasEnded(page);
     await page.waitForFunction(({ camera, size }) => {
@@ -181,7 +181,7 @@ test('pictures without depth are not shown, and a message says so; a locked sess
         const { session, modules } = globalThis.plantcast;
         return [session.picture, modules.there('enterVr').headset.shown].map(({ depth }) => depth !== null);
     });
-    assert.deepEqual(depths, [false, true], 'the newest picture, and the one that is shown');
+    assert.deepEqual(depths, [false, true], 'the newest picture has no depth, the shown one has');
     await keep(page, 'headset-flat');
     await page.evaluate(() => {
         globalThis.isMended = true;
@@ -194,7 +194,7 @@ test('pictures without depth are not shown, and a message says so; a locked sess
         session.emit('denied', { code: 'locked' });
     });
     await hasEnded(page);
-    assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp), null, 'nothing draws by a lost context');
+    assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp), null, 'no drawing code uses the lost context');
 }));
 
 test('a lost connection covers the headset view until the server is back; a lost GL context ends it',
@@ -209,7 +209,7 @@ test('a lost connection covers the headset view until the server is back; a lost
         let count = 0;
         for (let i = 0; i < rgba.length; i += 4)
             count += rgba[i] > 90 && rgba[i + 1] < 60 && rgba[i + 2] < 70 ? 1 : 0;
-        assert.ok(count > 0.03 * rgba.length / 4, `${count} pixels`);
+        assert.ok(count > 0.03 * rgba.length / 4, `only ${count} pixels of the message are drawn`);
     }
     await keep(page, 'headset-lost');
     await plant.startDaemon('--port', String(plant.port));

@@ -67,7 +67,7 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
         await until('plantcast_history_good is 0', async () => await gauge(plant, 'plantcast_history_good') === 0);
         await plant.daemon.line(/history-[\d-]+\.sqlite: .*error$/m);
         await plant.daemon.line(/history: cannot be written \(/);
-        assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200, 'pictures go on');
+        assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200, 'pictures are still drawn');
         assert.equal((await get(plant.port, '/readyz')).status, 200);
         await take(plant, 33);
         assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
@@ -122,7 +122,7 @@ test('a certificate that expires while in use is reported, and a new one is load
         await plant.daemon.line(/error .*cert\.pem: this certificate has expired$/m);
         const [env, ...variables] = clock.starter(), address = `https://127.0.0.1:${plant.port}/metrics`;
         const curl = (...args) => spawnSync(env, [...variables, 'curl', '-s', '--max-time', '60', ...args, address], { encoding: 'utf8' });
-        assert.equal(curl('--cacert', at('old.pem')).status, 60, 'who checks is warned');
+        assert.equal(curl('--cacert', at('old.pem')).status, 60, 'curl with the expired certificate fails');
         const { stdout } = curl('-k');
         const left = Number(stdout.match(/^plantcast_certificate_expiry_timestamp_seconds (.*)$/m)[1]) * 1000 - clock.now();
         assert.ok(left <= 0 && left > -ENDS_S * 1000, String(left));

@@ -79,7 +79,7 @@ test('absurd numbers in messages are refused by field, and the next valid messag
     const client = await PlainClient.open(plant.port);
     for (const [width, height] of [[0, 0], [1e9, 1e9], [-5, 100], [16.5, 100], [8193, 16]]) {
         client.say({ ...HELLO, width, height });
-        assert.deepEqual(Object.values(await client.text('error')).slice(1, 2), ['bad_field'], `${width}x${height}`);
+        assert.deepEqual(Object.values(await client.text('error')).slice(1, 2), ['bad_field'], `a size of ${width}x${height} is refused`);
     }
     await client.hello();
     const bad = ['{"type":"camera","seq":1,"eye":[1e300,0,0],"target":[0,0,0]}',

@@ -90,7 +90,7 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         assert.match(said.stdout, new RegExp(`: ${assets} assets`));
         const ours = shapes(join(out, `${file}.glb`)), theirs = shapes(join(DATA, `models/${as}.glb`));
         const common = [...theirs.keys()].filter((name) => ours.has(name));
-        assert.deepEqual([...theirs.keys()].filter((name) => name && !ours.has(name)), [], 'names that we do not have');
+        assert.deepEqual([...theirs.keys()].filter((name) => name && !ours.has(name)), [], 'names that only the other program has');
         const shift = [0, 1, 2].map((k) => median(common.map((name) => theirs.get(name).low[k] - ours.get(name).low[k])));
         let areas = [0, 0], off = 0;
         for (const name of common) {
@@ -100,7 +100,7 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
             off += [0, 1, 2].some((k) => ['low', 'high'].some((end) => Math.abs(a[end][k] + shift[k] - b[end][k]) > bound));
         }
         console.log(`# ${common.length} shapes, ${off} boxes differ; area ${areas[0].toFixed(2)} m2 for ${areas[1].toFixed(2)}`);
-        assert.equal(off, 0, 'boxes that differ');
+        assert.equal(off, 0, 'number of boxes that differ');
         // The other program removes fewer coincident faces: it keeps those that differ in size, and all faces of ducts.
         const all = run('plantcast', 'import', model, '-o', join(folder, 'all'), '--chord', String(chordMm), '--keep-covered');
         assert.equal(all.status, 0, all.stderr);
@@ -111,11 +111,11 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         const covered = Number(/left out: \d+ faces, ([\d.]+) m2/.exec(said.stdout)[1]), measured = total(kept, named) - total(ours, named);
         console.log(`# ${whole.length} shapes that are whole: area ${((ratio - 1) * 100).toFixed(3)} %; ` +
             `${covered} m2 said to be covered, ${measured.toFixed(2)} measured; all faces ${total(kept, common).toFixed(2)} m2`);
-        assert.ok(Math.abs(ratio - 1) < 0.005, 'areas');
-        assert.ok(areas[0] <= areas[1] && areas[1] <= total(kept, common), 'the other program leaves out a part of what we do');
-        assert.ok(Math.abs(covered - measured) < 0.05 + 0.01 * measured, 'the area that is said to be left out');
+        assert.ok(Math.abs(ratio - 1) < 0.005, 'ratio of the surface areas');
+        assert.ok(areas[0] <= areas[1] && areas[1] <= total(kept, common), 'the other program leaves out some of the surface');
+        assert.ok(Math.abs(covered - measured) < 0.05 + 0.01 * measured, 'the reported area of left-out surfaces equals the difference');
         const { json } = readGlb(join(out, `${file}.glb`));
-        assert.ok(json.nodes.filter(({ extras }) => extras?.Type).length >= nodes - 1, 'attributes');
+        assert.ok(json.nodes.filter(({ extras }) => extras?.Type).length >= nodes - 1, 'nodes with attributes');
         const check = run('plantcastd', '--check', join(out, 'plant.yaml'));
         assert.equal(check.status, 0, check.stderr);
         const again = run('plantcast', 'import', model, '-o', out, '--chord', String(chordMm));

@@ -40,7 +40,7 @@ for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
         assert.ok(near(list[7].size, [0.6, 0.4, 0.5]) && near(list[7].centre, [3, 2, 0.25]), JSON.stringify(list[7]));
         assert.ok(near(list[5].size, [4, 0.2, 3]) && list[5].triangles > 12, 'the wall has a hole');
         const bytes = readFileSync(glb), { nodes } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
-        assert.equal(nodes[6].mesh, nodes[7].mesh, 'pumps share a mesh');
+        assert.equal(nodes[6].mesh, nodes[7].mesh, 'both pumps share one mesh');
         const plant = readFileSync(join(folder, 'plant/plant.yaml'), 'utf8');
         assert.match(plant, /id: "P-101A", description: "Feed pump", area: "Ground floor", model: "house\.glb", nodes: "P-101A"/);
         const check = spawnSync(join(BIN, 'plantcastd'), ['--check', join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
@@ -136,13 +136,15 @@ test('a swept pipe with curve parameters and a basin with round edges have the r
         assert.equal(status, 0, stderr);
         assert.match(stdout, /: 2 elements with a shape, 0 lost,/, stdout);
         const { volume, size } = volumeOf(join(folder, `${name}/${name}.glb`));
-        assert.ok(near([volume], [0.2 + Math.PI * 0.025 ** 2 * 3.25]) && near(size, [2.275, 1.75, 0.8]), `${name}: ${volume} m3, ${size}`);
+        assert.ok(near([volume], [0.2 + Math.PI * 0.025 ** 2 * 3.25]) && near(size, [2.275, 1.75, 0.8]),
+            `${name}: the volume is ${volume} m3, the size ${size}`);
     }
     const { status, stderr } = plantcast(['import', join(found, 'basin_brep/basin_brep.ifc'), '-o', join(folder, 'basin')]);
     assert.equal(status, 0, stderr);
     const { volume, size } = volumeOf(join(folder, 'basin/basin_brep.glb'));
     // the volume of the closed body is 2.04 litres
-    assert.ok(near(size, [0.61, 0.4223, 0.094]) && volume > 0.00203 && volume < 0.00206, `${volume} m3, ${size}`);
+    assert.ok(near(size, [0.61, 0.4223, 0.094]) && volume > 0.00203 && volume < 0.00206,
+        `the basin's volume is ${volume} m3, its size ${size}`);
 }));
 
 test('an element whose shape cannot be built is reported with its class and the reason', { skip }, () => inFolder((folder) => {
@@ -213,7 +215,7 @@ test('broken IFC files are read or refused in one line, and leave no files', { s
         'noise.ifc': Buffer.from(Buffer.from(good).map((b, i) => i % 53 === 17 ? 255 - b : b)),
     };
     importBroken(folder, broken, () => ['--timeout', '30'],
-        ({ name, status }) => assert.ok(status !== 0 || !name.startsWith('half'), 'half a plant'));
+        ({ name, status }) => assert.ok(status !== 0 || !name.startsWith('half'), 'a truncated file is refused'));
 }));
 
 test('without Node.js, IFC is refused with a message that names Node.js', { skip }, () => inFolder((folder) => {

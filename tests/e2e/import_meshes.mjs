@@ -230,7 +230,8 @@ test('FBX, COLLADA and OBJ: area and size equal those of a second reader', { ski
         const areas = `${ours.area.toFixed(4)} m2 of ${theirs.area.toFixed(4)}`;
         const text = `${name}: ${areas}, ${ours.size.map((v) => v.toFixed(3)).join(' x ')} m`;
         console.log(`# ${text}`);
-        assert.ok(Math.abs(ours.area / theirs.area - 1) < 1e-3 && near(ours.size, theirs.size), `${text}: ${theirs.size}`);
+        assert.ok(Math.abs(ours.area / theirs.area - 1) < 1e-3 && near(ours.size, theirs.size),
+            `${text}: area or size differ from ${theirs.size}`);
     }
 }));
 
@@ -353,11 +354,11 @@ for (const [ending, bytes] of [['obj', obj()], ['stl', stl()], ['b.stl', stlBina
 test('broken mesh files are read or refused in one line, and leave no files', { skip }, () => withMaterials((folder) => {
     let refused = 0;
     importBroken(folder, broken, () => ['--timeout', '3', '--memory', '2000'], ({ name, status, stdout, stderr }) => {
-        assert.ok(status !== 0 || !name.startsWith('half'), 'half a plant');
+        assert.ok(status !== 0 || !name.startsWith('half'), 'a truncated file is refused');
         assert.doesNotMatch(stderr, /bad_alloc/);
         refused += status !== 0;
         if (status === 0 && /^nan|^far/.test(name))
             assert.match(stdout, /left out: \d+ triangles whose coordinates are infinite or not numbers/, name);
     });
-    assert.ok(refused > 20, `${refused} refused`);
+    assert.ok(refused > 20, `only ${refused} files were refused`);
 }));

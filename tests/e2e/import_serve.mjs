@@ -126,7 +126,7 @@ test('uploads with a bad name, a bad size or from another site are refused, and 
         const put = (name, body = 'x', headers = {}) => served.post(`/upload?name=${encodeURIComponent(name)}`, body, headers);
         for (const name of ['../x.glb', 'a/b.glb', '.x.glb', '', 'a\\b.glb', `${'a'.repeat(201)}`])
             assert.equal((await put(name)).status, 400, JSON.stringify(name));
-        assert.equal((await served.post('/upload?name=x.glb')).status, 413, 'empty');
+        assert.equal((await served.post('/upload?name=x.glb')).status, 413, 'an empty upload is refused');
         assert.equal((await put('x.glb', 'x', { Origin: 'http://elsewhere.example' })).status, 403);
         assert.equal((await put('x.glb', 'x', { 'Sec-Fetch-Site': 'cross-site' })).status, 403);
         assert.equal((await served.post('/run', undefined, { Origin: 'http://elsewhere.example' })).status, 403);
@@ -135,15 +135,15 @@ test('uploads with a bad name, a bad size or from another site are refused, and 
         assert.equal(nothing.status, 405);
         assert.deepEqual((await nothing.text()).match(/\/[\w/]+/g).filter((path) => /import/.test(path)).map((path) => path.slice(15)),
             ['upload', 'remove', 'run', 'decide', 'source', 'cancel']);
-        assert.equal((await served.api('/matches')).status, 404, 'none yet');
-        assert.deepEqual(readdirSync(join(served.folder, 'exports')), [], 'nothing of these is there');
+        assert.equal((await served.api('/matches')).status, 404, 'there are no matches before the first import');
+        assert.deepEqual(readdirSync(join(served.folder, 'exports')), [], 'no upload with a bad name is stored');
         assert.deepEqual(readdirSync(served.root), ['plant']);
 
         assert.equal((await put('열교환기 -1.gltf', boxes(['E-1']))).status, 200);
         assert.equal((await put('tags.csv', TAGS)).status, 200);
         assert.equal((await put('other.csv', TAGS)).status, 200);
         assert.deepEqual((await served.idle()).files.map(({ name, kind }) => [name, kind]), [['other.csv', 'tags'],
-            ['열교환기 -1.gltf', 'model']], 'there is one tag list at a time');
+            ['열교환기 -1.gltf', 'model']], 'a new tag list replaces the old one');
         const both = await Promise.all([served.post('/run'), served.post('/run')]);
         assert.deepEqual(both.map(({ status }) => status).sort(), [200, 409]);
         const state = await served.idle();
@@ -172,7 +172,7 @@ test('at most four uploads run at a time, and one that trickles is ended', optio
         // waits until all four uploads have begun
         for (let status = 200; status !== 503; await new Promise((done) => setTimeout(done, 100))) {
             ({ status } = await put('fifth.glb'));
-            assert.ok([200, 503].includes(status), `${status}`);
+            assert.ok([200, 503].includes(status), `upload answered with ${status}`);
         }
         for (const end = performance.now() + 120000; !drips.every(({ said }) => /^HTTP\/1\.1 408 /.test(said));) {
             assert.ok(performance.now() < end, drips.map(({ said }) => said.slice(0, 60)).join());
@@ -224,7 +224,7 @@ test('a failed import gives one error line, and the previous plant stays', optio
         await put('plant.gltf', boxes(['E-1', 'P-2']));
         await put('tags.csv', '\u0000\u0001');
         await fails(/tags\.csv/);
-        assert.match(served.read('plant.yaml'), /id: "P-2"/, 'the models are good');
+        assert.match(served.read('plant.yaml'), /id: "P-2"/, 'the new models stay');
         await put('tags.csv', TAGS);
         await served.post('/run?what=tags');
         assert.equal((await served.idle()).failed, null);
@@ -258,7 +258,7 @@ test('an import that fails or is cancelled after placing its models restores the
             const { failed } = await served.idle();
             assert.match(failed, /prepared/);
             assert.doesNotMatch(failed, /undone/);
-            assert.deepEqual(files(), before, `as before: ${how}`);
+            assert.deepEqual(files(), before, `the files are as before: ${how}`);
             rmSync(prepared);
             renameSync(`${prepared}.away`, prepared);
         };
@@ -357,7 +357,7 @@ test('an empty plant opens the import panel; a model and a tag list make a plant
     await waitForPicture(page);
     await page.locator('#import.new .drop').waitFor();
     await page.locator('.drop-zone').waitFor(); // an empty plant shows this instead of a picture, which would show only the human figure
-    assert.equal(await page.locator('#import .measures').isVisible(), false, 'there is nothing to be measured');
+    assert.equal(await page.locator('#import .measures').isVisible(), false, 'an empty plant shows no measurements');
     assert.deepEqual(await assetsOf(page), ['person']);
     await settle(page);
     await shoot(page, 'import-1-empty');
@@ -365,7 +365,7 @@ test('an empty plant opens the import panel; a model and a tag list make a plant
     await inForce(page);
     await becomes(() => assetsOf(page), NAMES);
     await page.locator('.drop-zone').waitFor({ state: 'hidden' });
-    assert.equal(existsSync(join(served.folder, 'plant.yaml.1')), false, 'nothing was there that a person wrote');
+    assert.equal(existsSync(join(served.folder, 'plant.yaml.1')), false, 'no version is kept of a generated plant file');
     await becomes(async () => (await page.locator('#import .segments b').allTextContents()).map(Number), [10, 3, 6, 1, 3],
         'all, matched, doubtful, unmatched, unplaced');
     await settle(page);
@@ -382,14 +382,15 @@ test('by keyboard a user browses doubtful tags and their candidates, accepts one
     await shoot(page, 'import-3-candidates');
     await page.keyboard.press('2');
     assert.match(await page.locator('#import [role=status]').last().textContent(), /^1 decision$/);
-    assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^FT-201$/, 'on to the next');
+    assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^FT-201$/, 'the selection moves to the next row');
     await page.keyboard.press('n');
     await page.keyboard.press('Home');
     await page.keyboard.press('ArrowDown');
     assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^TT-2012$/);
     await page.keyboard.press('End');
     assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^TT-1014$/);
-    assert.equal(await page.getByRole('button', { name: 'Accept all 2 matching TT-####' }).count(), 1, 'those with a proposal');
+    assert.equal(await page.getByRole('button', { name: 'Accept all 2 matching TT-####' }).count(), 1,
+        'a button accepts the tags of this pattern with a proposal');
     await page.keyboard.press('a');
     await page.locator('#import .segments label', { hasText: 'All' }).click();
     await shoot(page, 'import-4-decided');
@@ -419,14 +420,14 @@ test('decisions stay when the models are read again in other units', options, as
     await page.locator('#import .measures summary').click();
     assert.match(await size(), /^9\.00 × 1\.00 × 1\.00 m$/);
     await page.locator('#import .measures select').first().selectOption('ft');
-    assert.match(await size(), /^2\.74 × 0\.30 × 0\.30 m$/, 'what it would be');
+    assert.match(await size(), /^2\.74 × 0\.30 × 0\.30 m$/, 'the panel shows the size after correction');
     await page.locator('#import .measures select').last().selectOption('z');
     await page.getByRole('button', { name: 'Apply' }).click();
     await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.model.plant.bounds.max[0] - 9 * 0.3048) < 0.01);
     await page.waitForFunction(() => !document.querySelector('#import.busy'));
     assert.match(await size(), /^2\.74 × 0\.30 × 0\.30 m$/);
     assert.match(served.read('plant.yaml'), /units: ft, up: z/);
-    assert.match(served.read('plant.yaml.1'), /id: "E-101"/, 'the plant before is kept');
+    assert.match(served.read('plant.yaml.1'), /id: "E-101"/, 'the previous plant file is kept');
     assert.match(served.read('matches.csv'), /^TT-9999,sure,E-101,,,by hand/m);
     assert.match(served.read('tags.csv'), /^TT-9999,.*,E-101,/m);
     await settle(page);
@@ -492,7 +493,7 @@ for (const [name, language, screen, dark] of READERS)
             await arrive(other.page);
             await shoot(other.page, `import-${language}`);
             const wide = await other.page.locator('#import').evaluate((panel) => panel.scrollWidth - panel.clientWidth);
-            assert.ok(wide <= 0, `${wide} pixels too wide`);
+            assert.ok(wide <= 0, `the panel is ${wide} pixels too wide`);
             assert.deepEqual(other.errors, []);
         } finally {
             await other.close();
@@ -527,9 +528,9 @@ large('400,000 triangles and 300 tags: a first picture within 5 minutes of the f
         const triangles = Number((await (await real.api('')).json()).said
             .match(/[\d,]+(?= triangles)/g).map((text) => Number(text.replaceAll(',', ''))).reduce((a, b) => a + b));
         console.log(`# ${triangles} triangles, ${rows.length} rows, ${length} tags matched: ${seconds.toFixed(1)} s`);
-        assert.ok(length > 100, `${length} matched`);
-        assert.ok(triangles > 399000, `${triangles}`);
-        assert.ok(seconds < 300, `${seconds} s`);
+        assert.ok(length > 100, `only ${length} tags matched`);
+        assert.ok(triangles > 399000, `only ${triangles} triangles imported`);
+        assert.ok(seconds < 300, `the import took ${seconds} s`);
         await shoot(seen.page, 'import-8-large');
         assert.deepEqual(seen.errors, []);
     } finally {
@@ -571,7 +572,7 @@ test('a data source is entered, its values are seen, it is corrected, and it sur
         assert.deepEqual(await source(), { host: '127.0.0.1', port: String(port), unit: '1', order: 'CDAB', base: '1' });
         assert.match(own.read('plant.yaml'), new RegExp(`^# Where values come from\\.\\nsources:\\n  - \\{ id: plc, type: modbus, ` +
             `host: 127\\.0\\.0\\.1, port: ${port}, unit: 1, address_base: 1, byte_order: CDAB \\}$`, 'm'));
-        assert.equal(own.read('plant.yaml').match(/type: modbus/g).length, 1, 'the first one was changed');
+        assert.equal(own.read('plant.yaml').match(/type: modbus/g).length, 1, 'the first source was changed, not added again');
         assert.match(own.read('tags.csv'), /^E-101\.TT-01,400001,Float,.*,plc,temperature,E-101,/m);
         const still = join(own.root, 'still.csv'), tags = ['E-101.TT-01', 'P-201A.TT-01', 'P-201B.PT-01'];
         writeFileSync(still, `Time_s,${tags}\n0,60,50,8\n`); // constant values, because each change would have a picture drawn

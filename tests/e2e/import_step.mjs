@@ -52,7 +52,7 @@ for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { f
         const colors = (name) => meshes.find((mesh) => mesh.name === name).primitives
             .map(({ material }) => materials[material].pbrMetallicRoughness.baseColorFactor.slice(0, 3).map(Math.round).join(' ')).sort();
         assert.deepEqual(colors('Casing'), ['1 0 0']);
-        assert.deepEqual(colors('Motor'), ['0 0 1', '0 1 0'], 'one side is blue');
+        assert.deepEqual(colors('Motor'), ['0 0 1', '0 1 0'], 'one side of the part is blue');
         const check = plantcast('nodes', glb, '--grep', 'Bolt M20');
         assert.equal(check.stdout.trimEnd().split('\n').length, 8);
         assert.match(readFileSync(join(folder, 'plant/plant.yaml'), 'utf8'), /id: "P-101A", area: "Skid S-100", model/);
@@ -63,7 +63,7 @@ for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { f
 test('--chord refines the triangles, --up y turns the model, and --units is refused for STEP', { skip }, () => withSamples((folder) => {
     const of = (...args) => JSON.parse(plantcast('nodes', join(folder, 'skid_203.step'), '--json', ...args).stdout);
     const [coarse, fine, y] = [of(), of('--chord', '0.05'), of('--up', 'y')];
-    assert.ok(fine.triangles > 1.5 * coarse.triangles, `${coarse.triangles}, ${fine.triangles}`);
+    assert.ok(fine.triangles > 1.5 * coarse.triangles, `triangles: coarse ${coarse.triangles}, fine ${fine.triangles}`);
     assert.ok(near(coarse.size, [2, 1, 0.32]) && near(y.size, [2, 0.32, 1]), JSON.stringify([coarse.size, y.size]));
     const units = plantcast('nodes', join(folder, 'skid_203.step'), '--units', 'mm');
     assert.equal(units.status, 1);
@@ -93,7 +93,7 @@ for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 
         const colors = (name) => meshes[nodes.find((each) => each.name === name).mesh].primitives
             .map(({ material }) => materials[material].pbrMetallicRoughness.baseColorFactor.slice(0, 3).map(Math.round).join(' ')).sort();
         assert.deepEqual(colors('Turned'), ['1 0 0']);
-        assert.deepEqual(colors('Box'), ['0 0 1', '0 1 0'], 'one side is blue');
+        assert.deepEqual(colors('Box'), ['0 0 1', '0 1 0'], 'one side of the part is blue');
         const daemon = spawnSync(join(BIN, 'plantcastd'), ['--check', join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
         assert.equal(daemon.status, 0, daemon.stderr);
     }));
@@ -123,7 +123,7 @@ function imported(folder, name) {
 test('a face that Open CASCADE cannot tessellate unchanged still gets its triangles', { skip }, () => withSamples((folder) => {
     writeFileSync(join(folder, 'cone.stp'), cone());
     const { area, size, lost, out } = imported(folder, 'cone.stp'), slant = (CONE.large - CONE.small) * Math.SQRT2;
-    assert.ok(Math.abs(area / (Math.PI * (CONE.large + CONE.small) * slant * 1e-6) - 1) < 0.01, `${area} m2: ${out}`);
+    assert.ok(Math.abs(area / (Math.PI * (CONE.large + CONE.small) * slant * 1e-6) - 1) < 0.01, `the area is ${area} m2: ${out}`);
     assert.ok(near(size, [0.0234, 0.0902, 0.0902]), JSON.stringify(size));
     assert.deepEqual(lost, []);
 }));

@@ -71,8 +71,9 @@ test('a new version of the page replaces all cached files of the old one', optio
     await page.evaluate(() => caches.open('foreign'));
     await reload();
     const { [version]: files, ...others } = await kept();
-    assert.deepEqual(others, { foreign: [] }, 'what is not ours stays');
-    assert.ok(files.includes('/app/main.js') && !files.includes('/app/views/views.js'), 'what was used of it, and no more');
+    assert.deepEqual(others, { foreign: [] }, 'caches that are not the page\'s own stay');
+    assert.ok(files.includes('/app/main.js') && !files.includes('/app/views/views.js'),
+        'the cache contains the files that were used, and no others');
 });
 
 test('a wall display without a network shows its name and since when it is offline', options, async () => {
@@ -95,7 +96,7 @@ test('the installed page opens without a network, and says what is missing', opt
     await new Promise((done) => server.close(done));
     await reload();
     await page.waitForFunction(() => document.getElementById('health').dataset.kind === 'lost');
-    assert.equal(await page.locator('#picture').isVisible(), false, 'no black picture where none has come');
+    assert.equal(await page.locator('#picture').isVisible(), false, 'no black picture is shown before the first picture');
     await open('v');
     await page.locator('#views.open').waitFor();
     await open('p');

@@ -166,7 +166,7 @@ test('on a full disk each action is answered "not kept" with the reason; once th
         if (answer.unaudited)
             unaudited.push(name);
         if (type === 'alarmed')
-            assert.deepEqual([answer.done, answer.not_kept], [0, 1], 'it has taken effect, and is not kept');
+            assert.deepEqual([answer.done, answer.not_kept], [0, 1], 'the action has taken effect, but is not kept');
     }
     const refused = await upload('full.obj', 'v 0 0 0\n'.repeat(100000));
     assert.equal(refused.status, 507, await refused.text());
@@ -202,9 +202,9 @@ test('an action answered as done survives a kill -9 at that moment, and is in th
         await killed();
         assert.ok(isDone(answer), `${name}: ${JSON.stringify(answer)}`);
         assert.equal(answer.unaudited, undefined, name);
-        assert.ok(await there(answer), `${name} was answered ${JSON.stringify(answer)}, and is gone`);
+        assert.ok(await there(answer), `${name} was answered ${JSON.stringify(answer)}, but its result is lost`);
         const line = trail().slice(lines).find((one) => one.event === event && one.result === 'done');
-        assert.ok(line, `${name} is not in the trail`);
+        assert.ok(line, `${name} is not in the audit trail`);
     }
     const { status } = await upload('part.obj', 'v 0 0 0\n'); // the upload's line in the audit trail follows within a second
     await killed();
@@ -296,7 +296,7 @@ test('while the disk hangs, each action is answered "not kept", and other client
         assert.equal(last.done, 0);
         // requests that store nothing are answered meanwhile; if they waited for the disk, too, there would be only one answer
         // per action
-        assert.ok(served > 6, `${served} requests in ${ms} ms`);
+        assert.ok(served > 6, `${served} requests answered in ${ms} ms`);
         for (const [i, [message, type]] of files.entries()) {
             client.say({ ...message, seq: 40 + i });
             const said = await client.until(type, ({ texts }) => texts.find((one) => one.type === type && one.seq === 40 + i));
@@ -304,9 +304,10 @@ test('while the disk hangs, each action is answered "not kept", and other client
             assert.match(said.why, /the server’s disk does not answer/);
             assert.match(said.unaudited, /the server’s disk does not answer/);
         }
-        assert.equal((await (await fetch(`http://127.0.0.1:${own.port}/api/v1/notes`)).json()).list.length, 0, 'it is not on disk');
+        assert.equal((await (await fetch(`http://127.0.0.1:${own.port}/api/v1/notes`)).json()).list.length, 0, 'the note is not on disk');
         const sent = await fetch(`http://127.0.0.1:${own.port}/api/v1/import/upload?name=part.obj`, { method: 'POST', body: 'v 0 0 0' });
-        assert.deepEqual([sent.status, /does not answer/.test((await sent.json()).unaudited)], [200, true], 'the upload is there, no line');
+        assert.deepEqual([sent.status, /does not answer/.test((await sent.json()).unaudited)], [200, true],
+            'the upload is stored, but has no line in the trail');
         // The client disconnects at once: the audit trail still says that its action was not kept.
         leaver.say({ ...onAlarm({ ...shelve, reason: 'leaves at once' }), seq: 1 });
         leaver.close();

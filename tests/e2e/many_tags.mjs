@@ -55,8 +55,8 @@ test('pages of tags contain every tag once, in order, with its register\'s value
         assert.deepEqual(tags.slice(3).map((tag) => tag.name), Array.from({ length: MANY }, (_, i) => name(i)));
         assert.ok(tags.every(({ quality, value, age_ms: age }) => quality === 'good' && value !== null && age < 60000));
     }
-    assert.equal((await get('/api/v1/tags')).tags.length, 1000, 'if nothing is said');
-    assert.deepEqual((await get(`/api/v1/tags?first=${MANY + 3}`)).tags, [], 'behind the last');
+    assert.equal((await get('/api/v1/tags')).tags.length, 1000, 'the default page has 1000 tags');
+    assert.deepEqual((await get(`/api/v1/tags?first=${MANY + 3}`)).tags, [], 'a page beyond the last tag is empty');
     for (const query of ['count=5001', 'count=0', 'first=-1', 'first=x', 'page=2'])
         assert.equal((await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?${query}`)).status, 400, query);
 });

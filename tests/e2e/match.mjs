@@ -42,7 +42,7 @@ function count(plant, truth) {
     let wrong = '';
     for (const { Tag, Status, Asset, Reason } of table(join(plant, 'matches.csv'))) {
         const want = truth.get(Tag.replace(/\s+/g, ' '));
-        assert.notEqual(want, undefined, `a tag of its own: ${Tag}`);
+        assert.notEqual(want, undefined, `the truth does not contain the tag ${Tag}`);
         const right = Status === 'none' ? want === null : Asset === want;
         counts[Status][right ? 0 : 1]++;
         if (Status === 'sure' && !right)
@@ -82,8 +82,8 @@ for (const { plant, format, bring } of [
         for (const [status, [right, not]] of Object.entries(counts))
             console.log(`#   ${status}: ${right} right, ${not} ${status === 'none' ? 'missed' : 'wrong'}`);
         console.log(`#   precision ${(100 * precision).toFixed(2)} %, recall ${(100 * recall).toFixed(2)} %${wrong}`);
-        assert.ok(precision >= 0.995, 'precision');
-        assert.ok(recall >= 0.9, 'recall');
+        assert.ok(precision >= 0.995, 'precision is below 99.5 %');
+        assert.ok(recall >= 0.9, 'recall is below 90 %');
         assert.match(said.stdout, /ignored \d+ duplicate rows/);
         good(run('plantcastd', '--check', join(out, 'plant.yaml')));
     }));
@@ -176,7 +176,7 @@ test('a change that a user saves during matching is not overwritten', { skip: no
     good(run('plantcast', 'match', folder, list));
     const first = readFileSync(join(folder, 'matches.csv'), 'utf8');
     for (let stopped = false, tries = 0; !stopped; tries++) {
-        assert.ok(tries < 20, 'it was never seen at work');
+        assert.ok(tries < 20, 'the match program was never seen at work');
         writeFileSync(join(folder, 'matches.csv'), first);
         writeFileSync(list, `${rows}\nE-101.XT-${tries},degC\n`);
         const child = spawn(join(BIN, 'plantcast-match'), [folder, list], { timeout: 60000 });
@@ -220,7 +220,7 @@ test('a killed, interrupted, concurrent or out-of-disk match leaves a valid plan
             const args = [list, '--modbus', '127.0.0.1:502'];
             good(run('plantcast', 'match', whole, ...args));
             const replacedAt = names.map((name) => statSync(join(whole, name), { bigint: true }).ctimeNs);
-            assert.deepEqual(replacedAt, [...replacedAt].sort((a, b) => Number(a - b)), 'the order of names');
+            assert.deepEqual(replacedAt, [...replacedAt].sort((a, b) => Number(a - b)), 'files are replaced in the order of their names');
             for (let replaced = 0; replaced <= names.length; replaced++) { // names of the files in the order in which they are renamed
                 rmSync(plant, { recursive: true, force: true });
                 cpSync(first, plant, { recursive: true });
@@ -236,7 +236,7 @@ test('a killed, interrupted, concurrent or out-of-disk match leaves a valid plan
                 chmodSync(join(plant, 'tags.csv'), rights);
                 good(run('plantcastd', '--check', join(plant, 'plant.yaml')));
                 good(run('plantcast', 'match', plant, ...args));
-                assert.deepEqual(filesOf(plant), filesOf(whole), `${replaced} replaced`);
+                assert.deepEqual(filesOf(plant), filesOf(whole), `after ${replaced} replaced files`);
                 assert.equal(statSync(join(plant, 'tags.csv')).mode & 0o777, rights);
                 assert.deepEqual(readdirSync(plant).sort(), [...names, 'model.gltf', ...others].sort());
             }
@@ -333,17 +333,18 @@ for (const last of ['import', 'undo'])
             good(match(plant));
             const now = filesOf(plant);
             if (killed && !left && now['plant.yaml'] === not['plant.yaml']) {
-                assert.deepEqual(now, not, `killed at ${at}`);
+                assert.deepEqual(now, not, `the import was killed at rename ${at}`);
                 early++;
             } else {
-                assert.deepEqual(now, imported, `killed at ${at}`);
+                assert.deepEqual(now, imported, `the import was killed at rename ${at}`);
                 finished += left;
             }
-            assert.deepEqual(readdirSync(plant).filter((name) => /^\.(import|revision\.)/.test(name)), [], `killed at ${at}`);
+            assert.deepEqual(readdirSync(plant).filter((name) => /^\.(import|revision\.)/.test(name)), [],
+                `the import was killed at rename ${at}`);
             rmSync(plant, { recursive: true });
         }
         console.log(`# killed at ${at - 1} places: ${early} before it began, ${finished} while files were replaced`);
-        assert.ok(finished >= 3, `${finished}`);
+        assert.ok(finished >= 3, `only ${finished} kills were recovered`);
     }));
 
 // Kepware's export of a device, and a plant drawn in PDMS: no line of either is edited by hand.

@@ -73,7 +73,7 @@ test('when all clients have left, the daemon keeps no caches and is as small as 
     t.diagnostic(`${now.toFixed(0)} MB; ${start.toFixed(0)} MB at first; ${told(all)}`);
     // on a loaded machine, threads may free memory after the heap was trimmed
     if (sweep(true, false))
-        assert.ok(now <= GROWN * start, `${now} MB, ${start} MB at first: ${told(all)}`);
+        assert.ok(now <= GROWN * start, `${now} MB now, ${start} MB at the start: ${told(all)}`);
     one = await Curious.come(port, dice(SEED));
     await one.leave();
 });

@@ -85,7 +85,7 @@ for (const protocol of ['5', '3.1.1'])
         assert.equal(await metric('up{source="broker"}'), 0);
         await broker.restart();
         for (const end = performance.now() + 90000; await metric('up{source="broker"}') !== 1; await sleep(100))
-            assert.ok(performance.now() < end, 'connected again');
+            assert.ok(performance.now() < end, 'the source did not connect again');
         // the value is still stale: a new connection to the broker does not make it current
         await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 1);
         await publisher.tell('plant/ti1', 20);
@@ -103,7 +103,7 @@ test('JSON values are read by path, with the time and quality in the payload', o
     await publisher.tell('line/temps', { left: { v: [1, 40.5] }, right: '17.25', meta: at(-3000) });
     await publisher.tell('plant/PI-1', { value: 4, meta: { ts: new Date().toISOString(), q: 'good' } });
     const left = await until('TI-1', { ...good, value: 40.5 });
-    assert.ok(left.age_ms >= 3000 && left.age_ms <= 3000 + Date.now() - began + 1, `${left.age_ms} ms`);
+    assert.ok(left.age_ms >= 3000 && left.age_ms <= 3000 + Date.now() - began + 1, `the reading is ${left.age_ms} ms old`);
     await until('TI-2', { ...good, value: 17.25 });
     await until('PI-1', { ...good, value: 4 });
     await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // this message does not contain the left tag
@@ -197,7 +197,7 @@ test('topics of 64 kB from a malicious broker affect nothing else', options, asy
         await until('TI-1', { ...good, value: 23 });
         assert.equal(await metric('connects_total{source="broker"}'), 1);
         assert.equal(await metric('samples_total{source="broker"}'), 3);
-        assert.ok(plant.daemon.said.length < 20000, 'no topic of 64 kB in the log');
+        assert.ok(plant.daemon.said.length < 20000, 'the log contains no topic of 64 kB');
     } finally {
         await plant.daemon?.stop();
         liar.close();
@@ -222,10 +222,10 @@ test('invalid payloads are refused by name, and affect nothing else', options, a
     for (let i = 0; i < 300; i++)
         await publisher.tell('plant/ti1', 'warm', { qos: i === 299 ? 1 : 0 });
     for (const end = performance.now() + 60000; await metric('messages_total{source="broker",result="refused"}') < 308; await sleep(20))
-        assert.ok(performance.now() < end, 'all are counted');
+        assert.ok(performance.now() < end, 'not all refused messages are counted');
     const seconds = Math.ceil((performance.now() - begun) / 1000);
     const lines = plant.daemon.said.match(/refused/g).length;
-    assert.ok(lines <= 1 + Math.floor(seconds / 60), `one line a minute at most:\n${plant.daemon.said}`);
+    assert.ok(lines <= 1 + Math.floor(seconds / 60), `more than one log line a minute:\n${plant.daemon.said}`);
     await publisher.tell('plant/xs1', 0); // publishes again, because the first value may be stale by now
     await until('XS-1', { ...good, value: 0 });
 });

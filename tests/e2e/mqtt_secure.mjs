@@ -111,7 +111,7 @@ test('the last will is published when the daemon is killed, and not when it exit
     await plant.daemon.stop('SIGKILL');
     for (const end = performance.now() + 10000; heard.length === 0 && performance.now() < end;)
         await new Promise((done) => setTimeout(done, 50));
-    assert.deepEqual(heard, ['plantcast/two-boxes offline'], 'and nothing else was ever published');
+    assert.deepEqual(heard, ['plantcast/two-boxes offline'], 'nothing else was ever published');
     plant.write('will: plant/ti1', ROWS);
     assert.match(runProgram('plantcastd', ['--check', plant.file]).err, /will: expected a topic that begins with plantcast\//);
     plant.write('tls: { ca: system, key: x }', ROWS);

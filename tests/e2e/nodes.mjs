@@ -27,7 +27,7 @@ function nodes(content, ...args) {
         return spawnSync(join(BIN, 'plantcast'), ['nodes', join(folder, 'a.gltf'), ...args],
             { encoding: 'utf8', timeout: 60000, maxBuffer: 1 << 28, env: { ...process.env, TMPDIR: folder } });
     } finally {
-        assert.deepEqual(readdirSync(folder), ['a.gltf'], 'nothing is left behind');
+        assert.deepEqual(readdirSync(folder), ['a.gltf'], 'the command leaves no file behind');
         rmSync(folder, { recursive: true });
     }
 }
@@ -44,7 +44,7 @@ test('plantcast nodes prints a summary line, then one line for each node', { ski
         '4 nodes, 1 unnamed; 2 triangles; 101.0 x 240.0 x 4.0 m if the unit is metres and Y is up; 130 m from the origin');
     assert.equal(lines.length, 6);
     assert.match(lines[3], /^#1 +1 +1 x 0 x 2 +100\.50, 240\.00, 1\.00 +Unit\/펌프\/P-101 {2}\| Type=PUMP; power_kW=7\.5$/);
-    assert.match(lines[4], /^#2 +1 +2 x 0 x 4 .* Unit\/plate$/, 'the name of its mesh');
+    assert.match(lines[4], /^#2 +1 +2 x 0 x 4 .* Unit\/plate$/, 'a node without a name has its mesh\'s name');
     assert.match(lines[5], /Unit\/a\ufffdb\ufffd$/);
     assert.match(nodes(model([{ mesh: 0 }], 1, '')).stdout, / #0\n$/);
 });
@@ -70,7 +70,7 @@ test('a size that suggests millimetres read as metres gets a warning', { skip },
     assert.doesNotMatch(nodes(model([{ mesh: 0 }], 25)).stdout, /check its units/);
     const ours = model([{ mesh: 0 }], 2500);
     ours.asset.generator = 'plantcast-import';
-    assert.doesNotMatch(nodes(ours).stdout, /check its units/, 'import knows');
+    assert.doesNotMatch(nodes(ours).stdout, /check its units/, 'models that import made get no warning');
 });
 
 test('listing 100,000 nodes takes seconds', { skip }, (t) => {

@@ -81,8 +81,8 @@ notify:
             await plant.startDaemon();
             await set(plant, 'TI-2', 12345678);
             await until('the next mail', () => mail.mails.length > 1);
-            assert.match(mail.mails[1].body, /TI-2 .*: raised at 12345678 °C/, 'with all digits');
-            assert.doesNotMatch(mail.mails[1].body, /TI-1/, 'the other alarm still stands, and is known');
+            assert.match(mail.mails[1].body, /TI-2 .*: raised at 12345678 °C/, 'the value is written with all digits');
+            assert.doesNotMatch(mail.mails[1].body, /TI-1/, 'the other alarm, already sent, is not sent again');
             assert.notEqual(mail.mails[1].headers['message-id'], first.headers['message-id']);
         } finally {
             await mail.close();
@@ -220,7 +220,7 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
         await until('a try', () => hooks[0].posts.length > 0);
         hooks[0].status = 200;
         await until('it is told', () => hooks[0].taken.length > 0);
-        assert.equal(hooks[0].posts[0].body.id, hooks[0].taken[0].id, 'the same message');
+        assert.equal(hooks[0].posts[0].body.id, hooks[0].taken[0].id, 'the retry has the same message id');
         const [next] = await until('the next one is told', () => hooks[1].taken.length > 0 && hooks[1].taken);
         assert.deepEqual(next.alarms.map(({ tag, escalation }) => [tag, escalation]), [['TI-1', 1]]);
         await acknowledge(plant, 'TI-1', ['H']);

@@ -178,15 +178,15 @@ test('a repeated code, state or answer, another browser, another issuer and a fo
     const browser = new Browser();
     const back = await browser.begin();
     const stranger = await new Browser().get(back);
-    assert.equal(stranger.status, 403, 'another browser');
+    assert.equal(stranger.status, 403, 'another browser is refused');
     assert.match(await stranger.text(), /this browser has no sign-in in progress/);
     assert.equal((await browser.get(back)).status, 303);
     const replayed = await browser.get(back);
-    assert.equal(replayed.status, 403, 'replayed state');
+    assert.equal(replayed.status, 403, 'a replayed state is refused');
     const again = await browser.begin();
     again.searchParams.set('code', back.searchParams.get('code'));
     const code = await browser.get(again);
-    assert.equal(code.status, 403, 'replayed code');
+    assert.equal(code.status, 403, 'a replayed code is refused');
     assert.match(await code.text(), /refuses the code: invalid_grant/);
     const other = await browser.begin();
     other.searchParams.set('iss', 'https://evil.example');
@@ -311,7 +311,7 @@ test('thousands of forged sign-in answers leave one log line, and lock nobody ou
         /^\d+ answers of the identity provider were rejected: they belonged to no sign-in/.test(line.what ?? ''));
     assert.ok(refusals() - lines <= sumsSince(began), String(refusals() - lines));
     const answer = await beginFrom('127.0.0.9');
-    assert.equal((await answer('error=access_denied')).statusCode, 403, 'the address is not held');
+    assert.equal((await answer('error=access_denied')).statusCode, 403, 'the address is not locked out');
 });
 
 test("provider errors and cancelled sign-ins slow nobody, and tokens still work", { skip }, async () => {
@@ -332,7 +332,7 @@ test("provider errors and cancelled sign-ins slow nobody, and tokens still work"
     const guesses = [];
     for (let i = 0; i < 13; i++)
         guesses.push((await (await beginFrom('127.0.0.7'))(`code=made-up-${i}`)).statusCode);
-    assert.ok(guesses.slice(10).includes(429), `what is a guess still counts: ${guesses}`);
+    assert.ok(guesses.slice(10).includes(429), `guesses still slow the address: ${guesses}`);
     assert.equal((await new Browser().signIn()).status, 303);
 });
 
@@ -348,7 +348,7 @@ test('made-up codes slow their own address, and others sign in meanwhile', { ski
     assert.equal(person.status, 303);
     // upper bound of the guesses that the server checks: the first ten, then one every 5 s, and a margin
     const checked = 20 + (performance.now() - began) / 5000;
-    assert.ok(200 - slowed <= checked, `${slowed} of 200 were slowed`);
+    assert.ok(200 - slowed <= checked, `${slowed} of 200 guesses were slowed`);
     assert.ok(refusals() - lines <= checked + sumsSince(began), String(refusals() - lines));
 });
 
@@ -373,7 +373,7 @@ test('with a slow provider, waiting codes are bounded, and the rights of 40 user
     promise(t, 'the renewals of 40 sessions, 40 s one after the other', Date.now() - began, 30000);
     provider.delay_ms = 0;
     const codes = await Promise.all(answers), count = (status) => codes.filter((code) => code === status).length;
-    assert.ok(count(503) >= 10, `${count(503)} of ${codes.length} were told to come again`);
+    assert.ok(count(503) >= 10, `${count(503)} of ${codes.length} clients were asked to retry`);
     assert.equal(count(403) + count(503) + count(429), 90);
     await until('all being revoked', () => provider.live.size === 0);
 });
@@ -410,9 +410,9 @@ test('signing in, requests with cookies and checks of rights cost the event loop
     await until('all being revoked', () => provider.live.size === 0);
     t.diagnostic(`a log-in ${login.toFixed(2)} ms of the loop; a request by token ` +
         `${byToken.toFixed(3)}, by cookie ${byCookie.toFixed(3)} ms; a check of rights ${check.toFixed(3)} ms`);
-    assert.ok(login < 5, `${login} ms of the loop for a log-in`);
-    assert.ok(byCookie < byToken + 0.5, `${byCookie} ms of the loop by cookie, ${byToken} by token`);
-    assert.ok(check < 2, `${check} ms of the loop for a check of rights`);
+    assert.ok(login < 5, `a sign-in takes ${login} ms of the event loop`);
+    assert.ok(byCookie < byToken + 0.5, `a request takes ${byCookie} ms of the event loop by cookie, ${byToken} by token`);
+    assert.ok(check < 2, `a check of rights takes ${check} ms of the event loop`);
 });
 
 test('failing key requests end no session; signing out during a check leaves no refresh token', {

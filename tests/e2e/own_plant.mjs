@@ -62,7 +62,7 @@ for (const { plant, model, format, equipment } of sweep(PLANTS, PLANTS.slice(0, 
             programs.push(daemon);
 
             for (let good = 0, tries = 0; good === 0; tries++) {
-                assert.ok(tries < 300, 'no value came');
+                assert.ok(tries < 300, 'no value arrived');
                 await new Promise((done) => setTimeout(done, 200));
                 const { tags } = await (await fetch(`${url}api/v1/tags`)).json();
                 good = tags.filter(({ quality }) => quality === 'good').length;

@@ -70,15 +70,15 @@ test('pictures, tags, markers and picks show the chosen instant, with the qualit
     const seen = await travel(client, at(300.5));
     assert.equal(seen.from_us, at(0));
     const tags = await client.until('tags of then', () => client.texts.find((m) => m.type === 'tags' && m.time_us === at(300.5)));
-    assert.equal(tags.values.length, 3, 'all of them');
+    assert.equal(tags.values.length, 3, 'the tags message has all tags');
     assert.ok(Math.abs(reading(client, 0)[1] - (10 + 300.5 / 60)) < 0.2 && reading(client, 1)[1] === 40);
-    assert.deepEqual(reading(client, 2).slice(1, 3), [null, 'bad'], 'never recorded');
+    assert.deepEqual(reading(client, 2).slice(1, 3), [null, 'bad'], 'a tag that was never recorded has no value');
     client.say({ type: 'fit', seq: 1, id: 'TI-1' });
     const camera = await client.text('camera');
     client.say({ type: 'pick', seq: 2, x: 160.5, y: 90.5, camera });
     const picked = await client.text('picked');
     assert.equal(picked.time_us, at(300.5));
-    assert.ok(Math.abs(picked.value - 15) < 0.5, `${picked.value}`);
+    assert.ok(Math.abs(picked.value - 15) < 0.5, `the picked value is ${picked.value}`);
     await travel(client, at(900));
     await client.until('TI-2 lost', () => reading(client, 1)[2] === 'bad');
     assert.equal(reading(client, 1)[3], 'Bad_CommunicationError');
@@ -94,7 +94,7 @@ test('playback runs at its speed, pauses, and returns to the present', { skip },
     await travel(client, at(60), 120);
     await client.frameWhere('ten seconds of the past later', (p) => p.flags & FLAG.past && p.data_time_us > at(180));
     const took_s = (performance.now() - began) / 1000, gone_s = client.frames.at(-1).data_time_us / 1e6 - BEGIN_S - 60;
-    assert.ok(gone_s <= 120 * took_s + 1, `${gone_s} s of the past in ${took_s} s`);
+    assert.ok(gone_s <= 120 * took_s + 1, `${gone_s} s of the past played in ${took_s} s`);
     const times = client.frames.filter((p) => p.flags & FLAG.past).map((p) => p.data_time_us);
     assert.deepEqual(times, [...times].sort((a, b) => a - b));
     client.say({ type: 'time', speed: 0 });
@@ -226,7 +226,7 @@ test('an imported gap, blanks and state words count as no data in pictures, read
         await client.until(`the reading at ${s} s`, () => reading(client, 0)[1] === value && reading(client, 0)[2] === severity);
         client.say({ type: 'pick', seq: i + 2, x: 160.5, y: 90.5, camera });
         const picked = await client.until('a pick', () => client.texts.find((m) => m.type === 'picked' && m.seq === i + 2));
-        assert.ok(value ? Math.abs(picked.value - value) < 0.1 : picked.value === null, `${s} s: ${picked.value}`);
+        assert.ok(value ? Math.abs(picked.value - value) < 0.1 : picked.value === null, `at ${s} s the picked value is ${picked.value}`);
     }
     client.close();
     const answer = await fetch(`${url}/api/v1/history?tags=TI-1&from=${from}&to=${from + 3 * day}&points=50`);
@@ -252,7 +252,7 @@ test('an imported gap, blanks and state words count as no data in pictures, read
     assert.match(bring('TI-1', rows, '--longest-gap', '3d'), /samples of 1 tag/);
     const late = day + 3600, middle = 12 + 68 * (late - 70) / (2 * day - 70);
     for (const source of [`${url}/`, plant.file])
-        assert.ok(Math.abs(pick(source, late) - middle) < 0.5, `${source}: ${pick(source, late)}, not ${middle}`);
+        assert.ok(Math.abs(pick(source, late) - middle) < 0.5, `${source}: the value is ${pick(source, late)}, not ${middle}`);
     // nothing was recorded in this span: only the points before and after it are returned
     const joined = await told('TI-1', day, day + 60);
     assert.deepEqual(joined.map(([, value, quality]) => [value, quality]), [[12, 0], [80, 0]]);
@@ -265,7 +265,8 @@ test('an imported gap, blanks and state words count as no data in pictures, read
     // Its Stale s of 1 s is shorter than ten times the spacing, so 3 s without a sample count as no data.
     const steps = Array.from({ length: 20 }, (_, i) => [i / 2 + (i > 9 ? 3 : 0), 50]);
     assert.match(bring('TI-2', steps), /Gaps without data: 1 \(longer than 1 s\)/);
-    assert.ok((await told('TI-2', 0, 12)).some(([us, , quality]) => us === (from + 4.5) * 1e6 + 1 && quality === 0x80310000), 'the API');
+    assert.ok((await told('TI-2', 0, 12)).some(([us, , quality]) => us === (from + 4.5) * 1e6 + 1 && quality === 0x80310000),
+        'the history API has the gap');
     const stale = runProgram('plantcast', ['history', 'export', plant.file, '--tags', 'TI-2', '--from', String(from), '--to',
         String(from + 12), '--points', '1000000']);
     assert.equal(stale.out.match(/TI-2,[^,]*,,0x80310000/g).length, 1, stale.out);

@@ -68,7 +68,7 @@ test('an engineer sees the field of a trial position, and nobody else does', opt
     assert.equal(mine.nearest[0].tag, 'TI-9');
     assert.ok(theirs.nearest.every(({ tag }) => tag !== 'TI-9'));
     assert.ok(Math.abs(theirs.value - before.value) < 1);
-    assert.ok(Math.abs(mine.value - theirs.value) > 2, `${mine.value} and ${theirs.value}`);
+    assert.ok(Math.abs(mine.value - theirs.value) > 2, `the engineer picks ${mine.value}, the viewer ${theirs.value}`);
 
     place(engineer, []);
     assert.deepEqual((await placed(engineer)).sensors, []);
@@ -105,7 +105,7 @@ test('an impossible position is refused with the reason, and nothing moves', opt
     assert.match((await engineer.text('error')).text, /no sensor has been moved/);
     place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [1, 0, 0] }]);
     const { sensors: [far] } = await placed(engineer);
-    assert.ok(far.distance_m > far.limit_m, 'off the surface is said, and may be meant');
+    assert.ok(far.distance_m > far.limit_m, 'a position off the surface is reported, and permitted');
     engineer.close();
 });
 
@@ -118,7 +118,7 @@ test('coverage gaps list areas far from every sensor, and areas without data', o
     assert.deepEqual(before.far, []);
     const [box] = before.assets;
     assert.ok(box.far_share > 0.2 && box.far_share <= 1 && box.lost_share === 0, JSON.stringify(box));
-    assert.ok(Math.abs(box.next_m - 2) < 0.1, 'from one side to the other over an edge'); // path along the surface: 0.5 + 1 + 0.5 m
+    assert.ok(Math.abs(box.next_m - 2) < 0.1, 'the distance is measured around the box\'s edge'); // path along the surface: 0.5 + 1 + 0.5 m
     assert.deepEqual(box.next.sort(), ['TI-1', 'TI-2']);
 
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.8, 0] }]);
@@ -226,7 +226,7 @@ test('a list that cannot be prepared is rolled back', options, async () => {
     assert.match(answer.errors.join(), /plantcast-prep/);
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
-    assert.equal((await probe(engineer)).nearest[0].tag, 'TI-1', 'and goes on as it was tried');
+    assert.equal((await probe(engineer)).nearest[0].tag, 'TI-1', 'the trial continues');
     engineer.close();
 });
 
@@ -314,7 +314,7 @@ test('loop checks are exported, survive a restart of the daemon, and end when th
     assert.equal(begun, true);
     assert.deepEqual(tags.map(([index, result]) => [index, result]), [[0, 'pass'], [1, 'changed'], [2, 'fail'], [3, 'fail']]);
     await forced('TI-9', 51);
-    assert.equal((await prove(engineer, 'TI-9', 51)).passed, true, 'and the file goes on after the line that was cut off');
+    assert.equal((await prove(engineer, 'TI-9', 51)).passed, true, 'the file continues after the truncated line');
     assert.match(readFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), 'utf8'), /,fa\n|"TI-1",fa\n[^\n]*"TI-9",pass/);
     engineer.close();
 });

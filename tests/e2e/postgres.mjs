@@ -102,10 +102,10 @@ async function assertSame(from) {
     };
     for (let tries = 0; !await isSame() && tries < 60; tries++)
         await sleep(500);
-    assert.deepEqual([lacks(there, here), lacks(here, there)], [[], []], 'only there; only here');
-    assert.deepEqual([there.size, here.size], [sql.length, api.length], 'no point twice');
+    assert.deepEqual([lacks(there, here), lacks(here, there)], [[], []], 'points only in the database; points only in the local history');
+    assert.deepEqual([there.size, here.size], [sql.length, api.length], 'no point is stored twice');
     for (const [key, value] of there) // the API prints ten digits
-        assert.ok(value === here.get(key) || Math.abs(value - here.get(key)) <= 1e-9 * Math.abs(value), `${key}: ${value}`);
+        assert.ok(value === here.get(key) || Math.abs(value - here.get(key)) <= 1e-9 * Math.abs(value), `the value at ${key} is ${value}`);
     return sql.length;
 }
 
@@ -130,7 +130,8 @@ test('the database has each recorded point once, with its quality', options, asy
     await plant.tell('release PI-1');
     await sent(200);
     assert.ok(await assertSame(from) > 20);
-    assert.ok(server.ask("SELECT 1 FROM plantcast.history WHERE tag = 'PI-1' AND NOT good AND value IS NULL").length > 0, 'Bad is there');
+    assert.ok(server.ask("SELECT 1 FROM plantcast.history WHERE tag = 'PI-1' AND NOT good AND value IS NULL").length > 0,
+        'the Bad reading is in the database');
     const [[name, unit, value, quality, good]] = server.ask(`SELECT plant, unit, value, quality, good FROM plantcast.history
         WHERE tag = 'TI-2' AND good ORDER BY time DESC LIMIT 1`);
     assert.deepEqual([name, unit, quality, good], ['Two boxes', '°C', '0x00000000', 't']);
@@ -201,9 +202,10 @@ test('every panel and variable of the trend dashboard gets data, and readings th
             const rows = server.ask(expanded(rawSql, from, chosen));
             assert.ok(rows.length > 0 || title === 'Events', `${title}: nothing for ${rawSql}`);
             if (title === 'Newest')
-                assert.deepEqual(rows.map(([tag, value]) => [tag, value]), [...TAGS].sort().map((tag) => [tag, '']), 'not good: no value');
+                assert.deepEqual(rows.map(([tag, value]) => [tag, value]), [...TAGS].sort().map((tag) => [tag, '']),
+                    'a reading that is not good has no value');
             if (title === '$unit')
-                assert.ok(rows.some(([, , value]) => value !== '') && rows.some(([, , value]) => value === ''), 'a line that is broken');
+                assert.ok(rows.some(([, , value]) => value !== '') && rows.some(([, , value]) => value === ''), 'the drawn line has gaps');
         }
     await plant.tell('resume');
 });
@@ -229,7 +231,7 @@ test('no point is lost while the server is killed or frozen; live readings do no
     assert.equal(await metric('history_good'), 1);
     server.thaw();
     const points = await assertSame(from);
-    assert.ok(waited >= 50 && points > waited, `${waited} waited, ${points} arrived`);
+    assert.ok(waited >= 50 && points > waited, `${waited} points waited, ${points} arrived`);
     t.diagnostic(`${waited} points waited, ${points} are there and in the files`);
     assert.equal(await metric('postgres_lost_total'), 0);
 });
@@ -247,7 +249,7 @@ test('the daemon is killed while the server is away and restarted: each point is
     assert.ok(await assertSame(from) > 20);
     assert.deepEqual(server.ask('SELECT kind, count(*) FROM plantcast.event GROUP BY 1'), [['gap', '1']]);
     const gaps = server.ask('SELECT 1 FROM plantcast.sample WHERE v IS NULL AND q = 2150694912');
-    assert.ok(gaps.length >= TAGS.length, 'and when it did not run');
+    assert.ok(gaps.length >= TAGS.length, 'the gaps include the time without a daemon');
 });
 
 test('a connection cut in the middle of a batch loses and repeats no point', options, async () => {
@@ -372,7 +374,7 @@ test('a replacement machine gets the plant\'s history and continues it', options
         assert.deepEqual(inside(has.series[i]), inside(series), series.tag);
     const gaps = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/history/gaps?from=-1h`)).json();
     assert.equal(gaps.gaps.length, 1, JSON.stringify(gaps));
-    assert.ok(Math.abs(gaps.gaps[0][0] / 1e6 - killed) < 20, 'and it knows when nobody recorded');
+    assert.ok(Math.abs(gaps.gaps[0][0] / 1e6 - killed) < 20, 'the replacement machine knows the time without recording');
     await assertSame(from);
 });
 

@@ -86,7 +86,7 @@ test('publishing sends the newest value, and does not exceed the configured rate
         await plant.tell(`set TI-1 ${i}`);
         await sleep(50);
     }
-    assert.ok(publications <= 3 * (performance.now() - began) / 200 + 6, `${publications} messages`);
+    assert.ok(publications <= 3 * (performance.now() - began) / 200 + 6, `${publications} messages were published`);
     await until('the last', () => tag('TI-1').value === 39);
 });
 

@@ -61,7 +61,7 @@ test('a long answer arrives complete, in pieces', options, async () => {
     assert.deepEqual(series.map(({ tag }) => tag), names);
     assert.ok(series.every(({ points }) => points.length > 0.5 * POINTS), String(series.map(({ points }) => points.length)));
     const csv = await (await fetch(`${url}${all}&format=csv`)).text();
-    assert.equal(csv.split('Tag,Time').length, 2, 'one line that names the columns');
+    assert.equal(csv.split('Tag,Time').length, 2, 'the CSV has one header line');
     assert.equal((await get(plant.port, all, 'HEAD')).status, 200);
     const old = await new Promise((done) => { // HTTP/1.0: the end of the connection ends the body
         const socket = connect(plant.port, '127.0.0.1', () => socket.write(head(all).replace('1.1', '1.0')));
@@ -89,7 +89,7 @@ test('clients that do not read their answers cost little memory, and do not dela
         socket.destroy();
     console.log(`# ${(most - before).toFixed(0)} MB more for ${READERS} who do not read; ` +
         `another's answer took ${alone.toFixed(2)} s alone, ${slowest.toFixed(2)} s at most`);
-    assert.ok(most - before < 256, `${(most - before).toFixed(0)} MB`);
+    assert.ok(most - before < 256, `memory grew by ${(most - before).toFixed(0)} MB`);
     promise(t, "the slowest answer to another client", 1000 * slowest, 1000 * Math.max(1, 20 * alone));
 });
 

@@ -37,7 +37,8 @@ async function sleeps(seconds) {
 test('an event loop with nothing to do sleeps', options, async () => {
     await sleep(2000);
     const rate = await sleeps(3);
-    assert.ok(rate < 5, `woken ${rate} times a second`); // the loop would sleep ten times a second if it polled every tenth of a second
+    assert.ok(rate < 5,
+        `the loop wakes ${rate} times a second`); // the loop would sleep ten times a second if it polled every tenth of a second
 });
 
 // The device is read every 100 ms, so the oldest reading of a frame is as old as the change that led to the frame.
@@ -57,7 +58,7 @@ test('a changed reading is sent without waiting for a tick', options, async (t) 
 test('an answer between changes has the present time and current ages', options, async (t) => {
     await sleep(1500);
     const asked = Date.now(), page = JSON.parse((await get(plant.port, '/api/v1/tags')).body.toString()), time = page.time_us / 1000;
-    assert.ok(time > asked - 500 && time < Date.now() + 500, `the time of the page: ${time - asked} ms after it was asked for`);
+    assert.ok(time > asked - 500 && time < Date.now() + 500, `the page's time is ${time - asked} ms after the request`);
     client.say({ type: 'ping', t: 1 });
     const pong = await client.until('a pong', (c) => c.texts.find((text) => text.type === 'pong'));
     promise(t, 'the oldest reading', Math.max(pong.oldest_age_ms, ...page.tags.map((tag) => tag.age_ms)), 500);

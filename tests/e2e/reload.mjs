@@ -74,11 +74,11 @@ test('a reload reports the changes; sessions, alarms and readings continue', opt
     assert.equal(answer.before, first);
     const again = await client.text('welcome');
     assert.equal(again.plant.configuration, answer.configuration);
-    assert.equal(again.session, welcome.session, 'the same session');
-    assert.equal(again.view.ramp_interval, 10, 'and the same view');
+    assert.equal(again.session, welcome.session, 'the session continues after the reload');
+    assert.equal(again.view.ramp_interval, 10, 'the view continues after the reload');
     assert.deepEqual(again.tags.map(({ name }) => name), ['TI-1', 'TI-2', 'PI-1', 'XX-9']);
     await client.until('a picture of the new plant', () => client.frames.length > shown);
-    assert.ok((await active()).includes('TI-1/H acknowledged'), 'nobody has to acknowledge it again');
+    assert.ok((await active()).includes('TI-1/H acknowledged'), 'the acknowledgement survives the reload');
     assert.match(await metric(`plantcast_configuration_info{hash="${first}"}`), / 0$/);
     const tags = (await (await fetch(url('/api/v1/tags'))).json()).tags;
     assert.equal(tags.find(({ name }) => name === 'TI-1').quality, 'good');
@@ -115,7 +115,7 @@ test('points in a unit that cannot be converted are left out, and return with th
 });
 
 test('a reload is refused by GET and from foreign origins', options, async () => {
-    assert.equal((await fetch(url('/api/v1/reload'))).status, 404, 'GET changes nothing');
+    assert.equal((await fetch(url('/api/v1/reload'))).status, 404, 'GET reloads nothing');
     const foreign = await fetch(url('/api/v1/reload'), { method: 'POST', headers: { Origin: 'http://elsewhere.example' } });
     assert.equal(foreign.status, 403);
     assert.equal((await fetch(url('/api/v1/tags'), { method: 'POST' })).status, 405);

@@ -104,7 +104,7 @@ test('a start that prepares the plant asks for more time meanwhile, and ends on 
         await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/);
         // and the journal has a line, for people
         await service.logged(/^plantcastd: preparing the plant, for \d+ s so far$/m);
-        await assert.rejects(get(port, '/readyz'), { code: 'ECONNREFUSED' }, 'not ready yet');
+        await assert.rejects(get(port, '/readyz'), { code: 'ECONNREFUSED' }, 'the daemon is not ready yet');
         assert.doesNotMatch(service.out, /READY=1/);
         assert.equal(await service.stop(), 0, service.err);
         assert.match(service.err, /stopping; the next start continues to prepare the plant/);
@@ -155,7 +155,7 @@ test('during a restart connections wait in the manager\'s socket; clients are to
     { skip, timeout: 120000 }, async () => {
         const service = serve(['--port', '1'], ['--socket']); // plantcastd ignores --port when it gets a socket
         const port = Number((await service.said(/^port: (\d+)$/m))[1]);
-        assert.equal((await get(port, '/readyz')).status, 200, 'asked before anything ran');
+        assert.equal((await get(port, '/readyz')).status, 200, 'a request sent before the daemon ran is answered');
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${port}/`]).code, 0);
         assert.equal(runProgram('plantcast', ['ready', 'http://127.0.0.1:1/']).code, 1);
         const client = await PlainClient.open(port);
@@ -169,9 +169,9 @@ test('during a restart connections wait in the manager\'s socket; clients are to
             answers.push(get(port, '/healthz'));
             await new Promise((done) => setTimeout(done, 50));
         }
-        assert.deepEqual([...new Set((await Promise.all(answers)).map(({ status }) => status))], [200], 'none was refused');
+        assert.deepEqual([...new Set((await Promise.all(answers)).map(({ status }) => status))], [200], 'no request was refused');
         await service.said(/(^started: [^]*){2}/m);
-        assert.equal((await get(port, '/healthz')).status, 200, 'by the second one, too');
+        assert.equal((await get(port, '/healthz')).status, 200, 'the second daemon answers, too');
         await service.stop();
     });
 
@@ -183,7 +183,8 @@ test('each request sent while the daemon restarts is answered, by the old daemon
         service.order('again');
         for (const began = performance.now(); performance.now() - began < 300; await new Promise((done) => setTimeout(done, 1)))
             answers.push(get(port, '/healthz').then(({ status }) => status, ({ code }) => code));
-        assert.deepEqual([...new Set(await Promise.all(answers))], [200], `restart ${round}, ${answers.length} requests`);
+        assert.deepEqual([...new Set(await Promise.all(answers))], [200],
+            `restart ${round}: of ${answers.length} requests some were not answered`);
     }
     await service.stop();
 });
@@ -248,7 +249,7 @@ test('`plantcast reload` fails after a refused reload, and says why; metrics and
     assert.match(out, /^reloaded: configuration \w+$/m);
     assert.equal(await metric('plantcast_reload_good'), 1);
     await service.stop();
-    assert.equal(reload().code, 1, 'it has ended');
+    assert.equal(reload().code, 1, 'reload fails after the daemon has ended');
 });
 
 test('metrics include build, process and certificate, and no names from before a rename', { skip }, async () => {
@@ -267,7 +268,7 @@ test('metrics include build, process and certificate, and no names from before a
     const left = number('plantcast_certificate_expiry_timestamp_seconds') - Date.now() / 1000;
     assert.ok(left > 2.9 * 86400 && left < 3.1 * 86400, String(left));
     const after_s = number('process_start_time_seconds') - began / 1000, took_s = (Date.now() - began) / 1000;
-    assert.ok(after_s > -2 && after_s < took_s, `${after_s} of ${took_s}`); // the kernel reports its start time in whole seconds
+    assert.ok(after_s > -2 && after_s < took_s, `${after_s} of ${took_s} s`); // the kernel reports its start time in whole seconds
     assert.ok(number('process_cpu_seconds_total') > 0 && number('process_threads') > 3);
     assert.ok(number('process_max_fds') >= number('process_open_fds'));
     assert.ok(number('process_open_fds') > 5 && number('process_virtual_memory_bytes') > number('process_resident_memory_bytes'));

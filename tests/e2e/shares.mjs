@@ -51,7 +51,7 @@ test('one address\'s hidden views of the largest size leave room for another add
     for (const client of greedy.admitted)
         client.say({ type: 'visible', visible: false });
     const refused = greedy.clients.filter((client) => client.closed);
-    assert.equal(greedy.admitted.length, 8, 'of 16 million pixels each');
+    assert.equal(greedy.admitted.length, 8, 'eight views of 16 million pixels each are admitted');
     assert.match(refused[0].closed.text, /this address/);
     const other = await PlainClient.open(plant.port, OTHER);
     await other.hello({ width: 1920, height: 1080 });
@@ -79,7 +79,7 @@ test('32 hidden views of the largest size leave another address 5 frames a secon
         const beside = await rate();
         console.log(`# 1920x1080: ${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside 32 hidden views`);
         greedy.close();
-        assert.ok(beside >= Math.min(5, alone / 5), `${beside.toFixed(1)} frames/s`);
+        assert.ok(beside >= Math.min(5, alone / 5), `only ${beside.toFixed(1)} frames/s beside the hidden views`);
     } finally {
         await roomy.destroy();
     }
@@ -121,10 +121,10 @@ test('an address that requests everything leaves another its frames and its pict
     greedy.close();
     await Promise.all(large);
     // On a busy machine everything takes longer.
-    assert.ok(beside.rate >= Math.min(5, alone.rate / 8), `${beside.rate.toFixed(1)} frames/s`);
+    assert.ok(beside.rate >= Math.min(5, alone.rate / 8), `only ${beside.rate.toFixed(1)} frames/s beside the greedy address`);
     assert.equal(beside.status, 200);
     promise(t, 'a small picture beside the greedy client', 1000 * beside.seconds, 1000 * Math.max(3, 12 * alone.seconds));
-    assert.ok(answers.includes(200) && answers.includes(503), 'the greedy one had some, and not all');
+    assert.ok(answers.includes(200) && answers.includes(503), 'the greedy address gets some pictures, and not all');
 });
 
 test('behind a proxy, connections count for the address that the proxy names', options, async () => {
@@ -155,7 +155,7 @@ test('behind a proxy, connections count for the address that the proxy names', o
             socket.destroy();
         for (let status = 503, end = performance.now() + 5000; status !== 200 && performance.now() < end; await sleep(50))
             ({ status } = await keep('203.0.113.7'));
-        assert.equal((await keep('203.0.113.7')).status, 200, 'once they are gone there is room again');
+        assert.equal((await keep('203.0.113.7')).status, 200, 'closed connections make room');
     } finally {
         await proxied.destroy();
     }

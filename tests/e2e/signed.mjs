@@ -79,7 +79,8 @@ test('a signed picture is verified, and every pixel is drawn again', { skip }, a
     assert.match(out, / {2}256000 of 256000 pixels agree with the redrawn picture within 1\/255/);
     const statement = JSON.parse(textOf(picture, STATEMENT));
     assert.deepEqual(statement.readings.now.map(([tag, value]) => [tag, value]), [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]);
-    assert.doesNotMatch(JSON.stringify(statement), /127\.0\.0\.1|modbus|plantcast-tiny/, 'no addresses, no paths');
+    assert.doesNotMatch(JSON.stringify(statement), /127\.0\.0\.1|modbus|plantcast-tiny/,
+        'the statement contains no addresses and no paths');
 });
 
 test('signed pictures of all kinds of views are verified and drawn again', { skip }, async () => {
@@ -164,7 +165,7 @@ test('a PNG with extra chunks that could change its look is refused, and the chu
     const only = (...unwanted) => chunks.filter((chunk) => !unwanted.includes(chunk));
     const more = 'unexpected PNG chunk ';
     assert.deepEqual(chunks.map(({ type }) => type).filter((type) => type !== 'IDAT'), ['IHDR', 'zTXt', 'zTXt', 'sRGB', 'IEND']);
-    assert.match(verify(put('gAMA', '0000b18f')).out, /signature is good/, 'the gamma that sRGB implies');
+    assert.match(verify(put('gAMA', '0000b18f')).out, /signature is good/, 'the gamma that belongs to sRGB is permitted');
     assert.match(verify(put('cHRM', SRGB)).out, /signature is good/);
     const cases = [
         ['another gamma', put('gAMA', '000186a0'), 'chunk gAMA differs'],
@@ -237,7 +238,8 @@ test('a session that requests signed frames gets refined frames signed, and they
 test('a session that requests all frames signed gets every frame signed while it moves', { skip }, () => {
     const { out, names } = probe(path('all'), 2, '--motion', 'orbit', '--codec', 'h264', '--signed', 'all', '--json');
     const { frames, signed_frames: count } = JSON.parse(out);
-    assert.ok(frames > 1 && frames === count && frames === names.length, `${count} of ${frames}, ${names.length} files`);
+    assert.ok(frames > 1 && frames === count && frames === names.length,
+        `${count} of ${frames} frames are signed, ${names.length} files are stored`);
     const again = redraw(readFileSync(join(path('all'), names[names.length >> 1])));
     assert.equal(again.code, 0, again.out + again.err);
     assert.match(again.out, /frame of a live session, quality (preview|refined)/);
@@ -267,7 +269,7 @@ test('sessions of one view get one signed frame, drawn and encoded once', { skip
         const [first, second] = frames.map(({ data_time_us, render_us, encode_us }) => [data_time_us, render_us, encode_us]);
         if (!isDeepStrictEqual(first, second) && performance.now() < end)
             continue;
-        assert.deepEqual(first, second, 'drawn and encoded once: it took as long, to the microsecond');
+        assert.deepEqual(first, second, 'both sessions\' frames have the same timings: drawn and encoded once');
         assert.deepEqual(frames[0].payload, frames[1].payload);
         shared++;
         for (const { payload } of frames) {
@@ -325,7 +327,8 @@ test('the page saves the screen\'s picture, signed, and one with legend and mark
         assert.equal(again.code, 0, again.out + again.err);
         assert.match(again.out, /frame of a live session, quality refined, without legend, markers and clock/);
         assert.match(again.out, new RegExp(`  ${statement.width * statement.height} of ${statement.width * statement.height} pixels`));
-        assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256, 'the pixels that were on the screen');
+        assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256,
+            'the signed pixels are those on the screen');
         await plant.tell('set TI-1 70');
         // the session continues as before, with unsigned frames
         await page.waitForFunction(() => !(globalThis.plantcast.session.picture.flags & 64));
@@ -407,9 +410,10 @@ test('each picture of a signed film is verified; a changed, cut or re-encoded fi
         return path(name);
     };
     const LOSSLESS = ['-c:v', 'libx264rgb', '-qp', '0'];
-    assert.equal(check(reencoded('same.mp4', ...LOSSLESS)).code, 0, 'the same pictures in other bytes');
+    assert.equal(check(reencoded('same.mp4', ...LOSSLESS)).code, 0, 'a lossless re-encoding with the same pictures is verified');
     const bits = (name, set) => reencoded(name, '-c', 'copy', '-bsf:v', `h264_metadata=${set}`);
-    assert.equal(check(bits('copied.mp4', 'video_full_range_flag=1')).code, 0, 'written by another program with the same colours');
+    assert.equal(check(bits('copied.mp4', 'video_full_range_flag=1')).code, 0,
+        'a copy by another program with the same colours is verified');
     bad(bits('transfer.mp4', 'transfer_characteristics=8'), /box colr differs|VUI.* describes other colours/);
     bad(bits('primaries.mp4', 'colour_primaries=5'), /box colr differs|VUI.* describes other colours/);
     bad(bits('range.mp4', 'video_full_range_flag=0'), /box colr differs|VUI.* describes other colours/);
@@ -539,7 +543,7 @@ test('the event loop does not wait for signatures: 10,000 readings are signed in
     const report = spent.map(([id, ms]) => `${readFileSync(`/proc/${pid}/task/${id}/comm`, 'utf8').trim()} ${ms.toFixed(2)}`).join(', ');
     console.log(`# ms of CPU a signed picture, by thread: ${report}`);
     assert.match(verify(whole).out, /signature is good/);
-    assert.ok(loop < 5, `${loop} ms of the loop a picture: ${report}`);
+    assert.ok(loop < 5, `a signed picture takes ${loop} ms of the event loop: ${report}`);
     // A reload while pictures are signed: each request is answered, and all pictures are valid.
     const asked = Array.from({ length: 6 }, async (_, i) => {
         const answer = await fetch(`${url()}snapshot.png?width=320&height=${240 + 2 * i}`);

@@ -77,7 +77,7 @@ test('births and data of every number type are read, by name and by alias', opti
     const began = Date.now(), node = await startNode();
     await until('TI-1', { ...good, value: 20.5 });
     const older = await until('TI-2', { ...good, value: -7.5 });
-    assert.ok(older.age_ms >= 2000 && older.age_ms <= 2000 + Date.now() - began + 1, `${older.age_ms} ms`);
+    assert.ok(older.age_ms >= 2000 && older.age_ms <= 2000 + Date.now() - began + 1, `the reading is ${older.age_ms} ms old`);
     await until('PI-1', { ...good, value: 5 });
     await until('XS-1', { ...good, value: 1 });
     node.publishNodeData({ timestamp: Date.now(), metrics: [{ alias: 1, type: 'Double', value: 21.25 }] });
@@ -200,7 +200,7 @@ test('invalid Sparkplug payloads, and metrics that change their type, are refuse
     const refused = async (count) => {
         const name = 'messages_total{source="broker",result="refused"}';
         for (const end = performance.now() + 60000; await plant.metric(name) < count; await sleep(20))
-            assert.ok(performance.now() < end, `${count} messages are refused`);
+            assert.ok(performance.now() < end, `not all ${count} messages were refused`);
     };
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.from([0xff, 0xff, 0xff, 0xff, 0x0f, 1, 2, 3]));
     await plant.daemon.line(/NDATA\/edge: a message of 8 bytes was refused: not a Sparkplug B payload/);

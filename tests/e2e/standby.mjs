@@ -67,13 +67,13 @@ test('of two cores one leads, the other follows and is not ready; a renderer fin
     const link = ({ toOther }) => `plantcast_core_up{core="ws://127.0.0.1:${toOther.port}"}`, here = 'plantcast_core_up{core="this"}';
     assert.deepEqual([await core.node.metric(here), await core.node.metric(link(core))], [1, 0]);
     assert.deepEqual([await two.other(core).node.metric(here), await two.other(core).node.metric(link(two.other(core)))], [0, 1]);
-    assert.equal(await core.node.metric('plantcast_renderers'), 1, 'a standby is no renderer');
+    assert.equal(await core.node.metric('plantcast_renderers'), 1, 'the standby does not count as a renderer');
     assert.deepEqual(await two.network.overlaps(), []);
     assert.equal(terms(two.other(core)), 0);
     await core.program.line(/history: read \d+ points from PostgreSQL/);
     const months = readdirSync(join(two.plant.folder, core.name, 'history')).filter((name) => /^history-[\d-]+\.sqlite$/.test(name));
     // only months with points have a file: one, or two if a month has just begun
-    assert.ok(months.length < 3, `no months without points: ${months}`);
+    assert.ok(months.length < 3, `months without points are not queried: ${months}`);
     t.diagnostic(`${core.name} leads`);
 });
 
@@ -175,15 +175,16 @@ test('history is complete: database and API agree, and only the take-overs are g
         const lacks = (all, of) => [...all.keys()].filter((key) => of.get(key) !== all.get(key)).map((key) => `${key} ${all.get(key)}`);
         const extra = lacks(here, sql).filter((text) => !isOnLine(all, ...text.split(' ')));
         const lacking = lacks(sql, here).filter((text) => !isOfRest(here, ...text.split(' ')));
-        assert.deepEqual([lacking.slice(0, 5), extra.slice(0, 5)], [[], []], `${one.name}: only there; only here`);
+        assert.deepEqual([lacking.slice(0, 5), extra.slice(0, 5)], [[], []],
+            `${one.name}: points only in the database; points only in the API`);
     }
     const good = [...sql].filter(([, text]) => text.endsWith(' 0')).map(([us]) => Number(us));
-    assert.ok(good.length > 10 * two.takeOvers, `${good.length}`);
+    assert.ok(good.length > 10 * two.takeOvers, `only ${good.length} good points`);
     const behind = [...sql].filter(([us]) => us > cutAt && us < cutAt + 1.5e6);
-    assert.ok(behind.length > 3 && behind.every(([, text]) => text.endsWith(' 0')), `behind the cut: ${behind}`);
+    assert.ok(behind.length > 3 && behind.every(([, text]) => text.endsWith(' 0')), `points after the cut are not good: ${behind}`);
     const next = [...sql].findIndex(([us, text]) => us > killedAt && text.endsWith(' 0'));
     assert.ok([...sql][next][0] - killedAt < (Math.max(TAKE_OVER_MS, pausedMs) + 500) * 1000);
-    assert.match([...sql][next - 1][1], /^ [1-9]/, 'the line ends where its leader was killed');
+    assert.match([...sql][next - 1][1], /^ [1-9]/, 'the line ends where the leader was killed');
 });
 
 test('no alarm was notified twice, and each alarm change is in both cores\' journals once', options, async () => {
@@ -299,8 +300,8 @@ test('a database that refuses every change is logged once, and its recovery once
         await until('the refusal in the log', () => count('permission denied') === 1);
         const before = beat(), end = performance.now() + 3000; // time for several turns of the thread that renews the lease
         await until('several turns', () => performance.now() > end);
-        assert.equal(beat(), before, 'no change is written');
-        assert.ok(await two.ready(core), 'the core leads by the promise of its standby');
+        assert.equal(beat(), before, 'the database stores no change');
+        assert.ok(await two.ready(core), 'the core leads with the lease confirmed by its standby');
         assert.deepEqual([count('PostgreSQL does not answer'), count('PostgreSQL answers again')], [1, 0]);
         assert.equal(await core.node.metric('plantcast_core_lease_database_up'), 0);
     } finally {
@@ -340,7 +341,7 @@ test('during maintenance of the standby and without the database, the leader pol
     standby('normal');
     await core.program.line(/lease: PostgreSQL does not answer \(.*refused/);
     await sleep(5000); // wait longer than a lease lasts
-    assert.ok(await two.ready(core), 'it leads on');
+    assert.ok(await two.ready(core), 'the core continues to lead');
     server.ask('DROP FUNCTION refuse CASCADE');
     await alone(0);
     standby('maintenance');
@@ -365,7 +366,7 @@ test('during maintenance of the standby and without the database, the leader pol
     await two.waitsFor('the database', async () => await core.node.metric('plantcast_core_lease_database_up') === 1);
     await core.program.stop('SIGKILL');
     await sleep(5000);
-    assert.equal(await two.ready(other), false, 'the row names the leader alone');
+    assert.equal(await two.ready(other), false, 'the database row names only the leader');
     await two.start(core.name);
     await two.leader();
     assert.ok(await two.ready(core));

@@ -34,7 +34,7 @@ test('an action is answered once the standby has it', { skip, timeout: 240000 },
         const { leads } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
         const notes = await (await leads.node.fetch('/api/v1/notes')).text();
         for (let i = 0; i <= round; i++)
-            assert.match(notes, new RegExp(`round ${i}`), `answered after ${answered_ms.toFixed(0)} ms`);
+            assert.match(notes, new RegExp(`round ${i}`), `the note that was answered after ${answered_ms.toFixed(0)} ms is kept`);
         t.diagnostic(`answered after ${answered_ms.toFixed(0)} ms`);
         anna.close();
         await two.restart(core);
@@ -77,7 +77,7 @@ for (const reloads of [false, true])
             });
             const isConfirmed = confirms() > 1, { state } = await other.node.alarm();
             t.diagnostic(`${isConfirmed ? 'confirmed' : 'not confirmed'}, and ${state} at the next leader`);
-            assert.ok(!isConfirmed || state === 'acknowledged', `confirmed, and ${state} at the next leader`);
+            assert.ok(!isConfirmed || state === 'acknowledged', `a confirmed acknowledgement is ${state} at the next leader`);
             anna.close();
             if (state !== 'acknowledged') { // another operator acknowledges the alarm again, so that it can end
                 const ben = await other.node.client({}, { token: two.nodes.tokens.operator });

@@ -86,7 +86,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
                 }, 90, () => `${times(points)} of ${least}`);
                 const [right, wrong] = times(points);
                 t.diagnostic(`${what}: ${right} by the right clock, ${wrong} by the other`);
-                assert.equal(right + wrong, points.length, `${what}: no other times`);
+                assert.equal(right + wrong, points.length, `${what}: every point has one of the expected times`);
             };
             await all('two, while it led', () => recorded(other.node), [10, 15]);
             await two.plant.tell('set TI-1 50');
@@ -95,7 +95,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await two.followed(other);
             const second = await two.takeOver(t, other, kill(other, 'SIGKILL'));
             t.diagnostic(`${second.pause_ms.toFixed(0)} ms without a poller`);
-            assert.equal(await one.node.alarm(), undefined, 'what ended has ended');
+            assert.equal(await one.node.alarm(), undefined, 'the ended alarm has ended here, too');
             await move(two, one);
             await two.restart(other);
             await two.followed(one);
@@ -104,7 +104,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
             const { rows } = await json(one.node, '/api/v1/alarms/journal?tag=TI-1');
             // BAD comes and goes on a busy machine that delays readings by more than `Stale s`.
             const events = rows.filter(({ kind }) => kind === 'H').map(({ event }) => event);
-            assert.ok(events.includes('raise') && new Set(events).size === events.length, `each once: ${events}`);
+            assert.ok(events.includes('raise') && new Set(events).size === events.length, `each event occurs once: ${events}`);
         } finally {
             await two.destroy();
         }

@@ -167,7 +167,7 @@ test('a standby of another version is named, shows nothing, votes and takes over
     assert.match(core.program.said, new RegExp(noStandby));
     assert.ok(Object.values(await other.node.tags()).every(({ value }) => value === null));
     await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);
-    assert.equal(await core.node.metric('plantcast_core_standby'), 0, 'of another version it is no standby');
+    assert.equal(await core.node.metric('plantcast_core_standby'), 0, 'a core of another version does not count as a standby');
     assert.equal(await (await core.node.fetch('/readyz')).text(), 'ok, but no standby follows: the log says why\n');
     await core.toDatabase.cut(); // cuts the database link, so that only the standby's promise keeps the leader in its role
     await two.goesOn(t, core, 4);

@@ -33,7 +33,7 @@ test('points recorded during a cut are read although the plant is reloaded meanw
     change(two.file, 100, 101);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
-    assert.equal(other.program.said.match(READ), null, 'it was reloaded before');
+    assert.equal(other.program.said.match(READ), null, 'the reload came before the points were read');
     await until('the points of then', async () => (await valuesOf(other, from_us, to_us))
         .filter((value) => value === 71).length >= CUT_S - 2, 60);
     await other.toOther.mend();

@@ -130,7 +130,7 @@ test('an open viewer gets no reading, tag or user name, and can follow nobody by
         stranger.say({ type: 'pick', seq: x, x, y: 90 });
         picks.push(await stranger.text('picked'));
     }
-    assert.ok(picks.some((pick) => pick.asset && pick.position), 'what is there may be asked');
+    assert.ok(picks.some((pick) => pick.asset && pick.position), 'the viewer\'s picks find assets and positions');
     assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
     // Readings are sent at most twice a second, and markers before a picture. When the second change and its picture arrive,
     // all messages that the first change caused have therefore arrived.
@@ -178,7 +178,7 @@ test('an open viewer gets no reading, tag or user name, and can follow nobody by
     }
     const named = await as({ token: tokens.engineer, params: { seq: 1, show: 'distance', sensor: 'TI-1' } });
     named.say({ type: 'params', seq: 2, isolines: 20 });
-    assert.equal((await named.text('params')).sensor, 'TI-1', 'a token in the hello says that tags may be named');
+    assert.equal((await named.text('params')).sensor, 'TI-1', 'a token in the hello permits naming tags');
     named.close();
     stranger.close();
     engineer.close();
@@ -256,7 +256,7 @@ test('every accepted or refused token is logged; ten wrong tokens slow an addres
     late.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: wrong });
     assert.equal((await late.text('error')).retry_after_s, 5);
     assert.equal((await late.until('a close', (c) => c.closed)).code, 1013);
-    assert.equal((await ask('/api/v1/tags', bearer(tokens.viewer))).status, 200, 'who was let in before is not held up');
+    assert.equal((await ask('/api/v1/tags', bearer(tokens.viewer))).status, 200, 'a token accepted before is not slowed');
     await until('the gauge', async () => await metric('plantcast_logins_slowed_addresses') === 1);
     assert.equal(await metric('plantcast_logins_held_total'), 2);
     await plant.daemon.line(/too many wrong tokens; only one attempt/);
@@ -302,7 +302,8 @@ test(ENDING, { skip, timeout: 200000 }, async () => {
     assert.ok(said.every((text) => /^HTTP\/1\.[01] (200|400|403|408) /.test(text)), JSON.stringify(heads));
     assert.ok(heads[408] > 100);
     assert.match(plant.daemon.said, /http: a request from 127\.0\.0\.1 was closed with status 408: its headers were incomplete after 2 s/);
-    assert.match(await speak('GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Plant: 1\r\n\r\n'), /^HTTP\/1\.1 200/, 'an unknown name');
+    assert.match(await speak('GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Plant: 1\r\n\r\n'), /^HTTP\/1\.1 200/,
+        'an unknown header name is accepted');
 });
 
 test('over TLS, slow requests are ended, too; a connection without a request yet stays open', { skip, timeout: 200000 }, async () => {

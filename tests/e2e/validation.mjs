@@ -30,8 +30,8 @@ const errors = (sensors, interpolation, distance = '') => part.rows.find((row) =
 
 // The temperatures that CalculiX computes are at most the fixed 200, at least the ambient temperature, and mostly in between.
 test('the reference temperatures of CalculiX are within the given limits', { skip }, () => {
-    assert.ok(part.nodes > 2000 && part.triangles > 4000, `${part.nodes} nodes`);
-    assert.ok(Math.abs(part.high - 200) < 0.01 && part.low > 20 && part.low < 40, `${part.low} to ${part.high}`);
+    assert.ok(part.nodes > 2000 && part.triangles > 4000, `only ${part.nodes} nodes`);
+    assert.ok(Math.abs(part.high - 200) < 0.01 && part.low > 20 && part.low < 40, `temperatures from ${part.low} to ${part.high}`);
 });
 
 // Bounds of the mean error and the 95th percentile in kelvin; the part's temperatures span 180 K. Each bound is a third above
@@ -42,13 +42,13 @@ for (const [sensors, interpolation, distance, mean, p95] of [
 ]) {
     test(`${interpolation} from ${sensors} sensors has an error within its limits`, { skip }, () => {
         const { mean: is, p95: high, unknown } = errors(sensors, interpolation, distance);
-        assert.ok(is <= mean && high <= p95, `mean ${is} K (${mean}), 95 % ${high} K (${p95})`);
-        assert.ok(unknown < 0.02, `${100 * unknown} % unknown`);
+        assert.ok(is <= mean && high <= p95, `mean error ${is} K (limit ${mean}), 95th percentile ${high} K (limit ${p95})`);
+        assert.ok(unknown < 0.02, `${100 * unknown} % of the surface is unknown`);
     });
 }
 
 // The walls of the two legs are as far apart as the pipe is thick: straight-line distances mix a hot leg with a cold one.
 test('distances along the surface give smaller errors than straight ones across the gap', { skip }, () => {
     const along = errors(20, 'shepard', 'geodesic').mean, straight = errors(20, 'shepard', 'euclidean').mean;
-    assert.ok(along < 0.85 * straight, `${along} K along, ${straight} K straight`);
+    assert.ok(along < 0.85 * straight, `mean error ${along} K along the surface, ${straight} K straight`);
 });

@@ -58,7 +58,7 @@ test('each command of YOUR_PLANT.md prints the output that the page shows', { sk
                 out = stdout + stderr;
             }
             for (const line of said)
-                assert.ok(out.includes(line), `${command}: on the page:\n${line}\nit said:\n${out}`);
+                assert.ok(out.includes(line), `${command}: the page shows:\n${line}\nthe program printed:\n${out}`);
             console.log(`# ${command}: as on the page, ${said.length} lines`);
             // the page prints the expected content of matches.csv below the command
             if (/^plantcast match/.test(command) && said.length > 0)
@@ -95,7 +95,7 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
     let at = 0; // position up to which the test has read the section
     const read = (text) => {
         const found = written.indexOf(text, at);
-        assert.ok(found >= 0, `not on the page, or before what was done last: ${text}`);
+        assert.ok(found >= 0, `the page does not contain, or not in this order: ${text}`);
         at = found + text.length;
         return text;
     };
@@ -124,7 +124,7 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
         const row = (tag) => panel.locator('.row').filter({ has: room.locator('b', { hasText: new RegExp(`^${tag}$`) }) });
         const said = (text) => room.waitForFunction((what) =>
             document.getElementById('import').innerText.replace(/\s+/g, ' ').includes(what), text, { timeout: 100000 })
-            .catch(async () => assert.fail(`not said: ${text}; but: ${await panel.innerText()}`));
+            .catch(async () => assert.fail(`the panel does not show: ${text}; but: ${await panel.innerText()}`));
         const filter = (name) => panel.locator('.segments label', { hasText: new RegExp(`^\\d+${name}$`) });
         const idle = () => room.waitForFunction(() => !document.querySelector('#import.busy') &&
             !document.querySelector('#import .row.decided'));
@@ -177,7 +177,7 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
         }
         await room.mouse.up();
         await room.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 1);
-        assert.equal(await room.locator('#engineer .off').count(), 0, 'it is on its equipment');
+        assert.equal(await room.locator('#engineer .off').count(), 0, 'the tag is on its equipment');
         await room.mouse.move(640, 5); // moves the pointer away, so that no card covers the picture
         await arrive(room);
         await shoot(room, 'page-4-placed');

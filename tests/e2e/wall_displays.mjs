@@ -77,7 +77,7 @@ test('each pane shows its configured content', options, async () => {
     await page.locator('.clock b').filter({ hasText: /^\d\d:\d\d:\d\d$/ }).waitFor();
     assert.match(await paneTitle('alarms').textContent(), /Alarms/);
     const letters = await page.locator('.tile .name, .pane.alarms').evaluateAll((all) => all.map((e) => getComputedStyle(e).fontSize));
-    assert.deepEqual([...new Set(letters)].length, 1, `tiles have letters as large as those of alarms: ${letters}`);
+    assert.deepEqual([...new Set(letters)].length, 1, `letters of tiles are as large as those of alarms: ${letters}`);
     await shoot(page, 'wall-display');
 });
 
@@ -114,7 +114,7 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
     await page.waitForFunction(() => [...document.querySelectorAll('.pane.views')].some((pane) => !pane.classList.contains('coming') &&
         /PI-1/.test(pane.querySelector('h2').textContent) &&
         pane.querySelector('iframe').contentWindow.plantcast?.session.shown.group === 'pressure'));
-    assert.equal(await page.evaluate(() => globalThis.mixed), 0, 'its name stands over no picture of another quantity or another place');
+    assert.equal(await page.evaluate(() => globalThis.mixed), 0, 'no view\'s name stands over the picture of another quantity or place');
     const [frame, badge] = await page.evaluate(() => {
         const pane = document.querySelector('.pane.views.called');
         return [getComputedStyle(pane, '::after').borderTopColor, getComputedStyle(pane.querySelector('h2 .priority')).borderTopColor];
@@ -235,7 +235,7 @@ test('a view that names things the plant lacks is not shown, and is reported', o
     await other.page.click('#views-toggle');
     await other.page.locator('#named-list em').first().waitFor();
     const said = await other.page.locator('#named-list em').allTextContents();
-    assert.equal(said.length, 2, 'the two that are wrong say so in the list');
+    assert.equal(said.length, 2, 'the list marks the two invalid views');
     const lines = await other.page.evaluate(() => { // the German name of the demo plant's vibration
         const [name] = document.querySelector('#legend h2').childNodes, range = document.createRange();
         name.textContent = 'Schwinggeschwindigkeit';
@@ -290,7 +290,7 @@ test('a tour shows each view for its time, with its text', options, async () => 
     // how long each of the first two views was shown; the first one counts once the page has its shape
     for (const [i, dwellMs] of [[0, 6000], [1, 4000]]) {
         const tookMs = begun[i + 1].at - begun[i].at, { late } = begun[i + 1];
-        assert.ok(tookMs > dwellMs - late - 300 && tookMs < dwellMs + late + 600, `${i}: ${tookMs} ms, late by ${late}`);
+        assert.ok(tookMs > dwellMs - late - 300 && tookMs < dwellMs + late + 600, `view ${i} was shown for ${tookMs} ms, late by ${late}`);
     }
     await other.close();
 });
@@ -299,7 +299,7 @@ test('a lost server is reported in large letters, and the report ends by itself'
     await plant.stopDaemon('SIGKILL');
     await page.locator('#lost', { hasText: 'No connection to the plant since' }).waitFor();
     const px = await page.evaluate(() => parseFloat(getComputedStyle(document.getElementById('lost')).fontSize));
-    assert.ok(px >= 50, `${px} pixels`);
+    assert.ok(px >= 50, `the text is ${px} pixels high`);
     await shoot(page, 'wall-display-lost');
     await plant.startDaemon();
     await page.locator('#lost').waitFor({ state: 'hidden' });

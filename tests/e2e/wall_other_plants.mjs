@@ -149,7 +149,7 @@ test('each way that another plant\'s server fails to send a picture is reported'
         return answer.status === 200 && [state, answer.body];
     }, 'the good picture');
     assert.equal(good.name, 'Fake plant');
-    assert.ok(good.age_ms >= 1500, `${good.age_ms}`);
+    assert.ok(good.age_ms >= 1500, `the picture is ${good.age_ms} ms old`);
     assert.deepEqual(shown, picture);
     assert.equal((await get(`api/v1/other_plants/picture?id=good&picture=${good.picture + 1}`)).status, 404);
     assert.equal((await get('api/v1/other_plants/picture?id=page&picture=1')).status, 404);

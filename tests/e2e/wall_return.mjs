@@ -95,8 +95,9 @@ test('forty displays reconnect one after another, and all are live', options, as
     await all('lost', ({ liveAt, waits }) => liveAt === 0 && waits.length > 0);
     const waits = displays.map((display) => display.waits[0]).sort((a, b) => a - b);
     const most = Math.max(...waits.map((from) => waits.filter((ms) => ms >= from && ms < from + 100).length));
-    assert.ok(most <= 12, `${most} of ${DISPLAYS} within 100 ms`); // on average, 2 displays reconnect within 100 ms
-    assert.ok(waits.at(-1) - waits[0] > SPREAD_MS / 2 && waits.at(-1) <= FIRST_WAIT_MS * (1 + JITTER) + SPREAD_MS, `${waits}`);
+    assert.ok(most <= 12, `${most} of ${DISPLAYS} displays reconnected within 100 ms`); // on average, 2 displays reconnect within 100 ms
+    assert.ok(waits.at(-1) - waits[0] > SPREAD_MS / 2 && waits.at(-1) <= FIRST_WAIT_MS * (1 + JITTER) + SPREAD_MS,
+        `the displays waited: ${waits}`);
     const { port } = plant;
     await plant.startDaemon('--port', String(port));
     const began = clock.now();

@@ -85,7 +85,7 @@ async function expectOnePicture(grab, name) {
     }
     if (share < 0.97 || process.env.PLANTCAST_SHOTS === '1')
         screens.forEach((screen, i) => savePng(screen, join(SCREENSHOTS, `wall-seam-${name}-${i + 1}.png`)));
-    assert.ok(share >= 0.97, `${share} of the pixels are those of the large picture`);
+    assert.ok(share >= 0.97, `share of pixels equal to the large picture: ${share}`);
 }
 
 test('the pages of two adjacent displays show one picture without a line between them', options, async () => {

@@ -72,13 +72,13 @@ test('hidden alarms, and alarms of quantities not shown, are marked on the right
     await mark(1, 'PI-1').and(pages[1].page.locator('.behind')).waitFor();
     for (const [i, text] of ['TI-2', 'PI-1'].entries()) {
         const [x, y] = await placeOf(i, '.marks .alarm', text);
-        assert.ok(x > 0 && x < 1 && y > 0.2 && y < 0.8, `${text} at ${x}, ${y}`);
+        assert.ok(x > 0 && x < 1 && y > 0.2 && y < 0.8, `the mark ${text} is at ${x}, ${y}`);
     }
     await pages[0].page.locator('.picture > h2', { hasText: '2 active, 2 unacknowledged' }).waitFor();
     assert.ok(await pages[0].page.locator('.picture > h2').evaluate(({ clientHeight, scrollWidth, parentNode }) => {
         const { fontSize } = getComputedStyle(parentNode);
         return clientHeight < 2.2 * parseFloat(fontSize) && scrollWidth <= parentNode.clientWidth;
-    }), 'in one line');
+    }), 'the heading fits in one line');
     assert.deepEqual(await pages[0].page.locator('.legend .end-text, .legend .keys span').allTextContents(),
         ['> 100', '< 0', 'No data', 'Uncertain']);
     const cut = await pages[0].page.locator('.legend').evaluate((legend) => {
@@ -108,7 +108,7 @@ test('notes and the desk\'s pointer are marked at their places', options, async 
         await pages[0].page.locator('.marks .pointer', { hasText: 'Desk 2' }).waitFor();
         const [x] = await placeOf(0, '.marks .pointer', 'Desk 2');
         assert.equal(await count(0, '.marks .ring'), 1);
-        assert.ok(x > 0.3 && x < 1, `${x}: on E-101`);
+        assert.ok(x > 0.3 && x < 1, `the mark at ${x} is on E-101`);
         for (const [i, { page }] of pages.entries())
             await shoot(page, `wall-tile-notes-${i + 1}`);
     } finally {

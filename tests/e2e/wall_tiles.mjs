@@ -149,7 +149,7 @@ async function compare(wall, columns, rows, [across, down]) {
             assert.equal(tile.differsFrom(large, x, y), 0, `display ${i + 1} of ${wall}, ${still ? 'refined' : 'preview'}`);
         }
         const colours = new Set(Array.from({ length: large.rgb.length / 3 }, (_, i) => large.rgb.readUIntBE(3 * i, 3)));
-        assert.ok(colours.size > 100, `${colours.size} colours: there is something to compare`);
+        assert.ok(colours.size > 100, `only ${colours.size} colours to compare`);
     }
     return undefined;
 }
@@ -174,14 +174,15 @@ test('every 3 minutes all tiles shift at the same instant', { ...options, timeou
     await leader.until('another picture, by all', () => clients.every((client) => presents(client).at(-1).picture > before.picture));
     const shown = await picture(clients), [x, y] = shiftNow();
     assert.equal(new Set(shown.map(({ at_us: us }) => us)).size, 1);
-    assert.ok(shown[0].at_us % 180e6 < 5e6, `${shown[0].at_us % 180e6 / 1e6} s after the clock says so`);
+    assert.ok(shown[0].at_us % 180e6 < 5e6, `the shift is ${shown[0].at_us % 180e6 / 1e6} s after the full 3 minutes`);
     const more = await metric('plantcast_renders_total') - drawn;
     assert.ok(more <= 6, `${more} pictures were drawn`); // a picture for each tile and step would be more
     for (const [i, client] of clients.entries()) { // compares the area that was inside the tile before and after the shift
         const now = canvasAt(client, shown[i].seq), was = canvases[i], edge = 8, bytes = (WIDTH - 2 * edge) * 3;
         for (let row = edge; row < HEIGHT - edge; row++) {
             const at = (row * WIDTH + edge) * 3, then = ((row + shift[1] - y) * WIDTH + edge + shift[0] - x) * 3;
-            assert.equal(now.rgb.compare(was.rgb, then, then + bytes, at, at + bytes), 0, `display ${i + 1}, row ${row}`);
+            assert.equal(now.rgb.compare(was.rgb, then, then + bytes, at, at + bytes), 0,
+                `display ${i + 1}, row ${row} differs from the old picture`);
         }
     }
     close(clients);
@@ -196,15 +197,15 @@ test('a moving picture is drawn once for all tiles, and all tiles show it at the
     const shown = () => presents(leader).map((one) => one.picture).filter((number) => number > first);
     promise(t, 'until 21 pictures', await moveAll(clients, leader, () => shown().length > 20), 4000);
     const drawn = await metric('plantcast_renders_total') - before, numbers = shown();
-    assert.ok(drawn <= numbers.length + 8, `${drawn} drawn, ${numbers.length} shown`);
+    assert.ok(drawn <= numbers.length + 8, `${drawn} pictures drawn, ${numbers.length} shown`);
     for (const number of numbers) {
         const all = clients.map((client) => presents(client).find((one) => one.picture === number));
-        assert.ok(all.every(Boolean), `picture ${number} by all`);
+        assert.ok(all.every(Boolean), `all tiles show picture ${number}`);
         assert.equal(new Set(all.map(({ at_us: us }) => us)).size, 1);
         for (const [i, client] of clients.entries())
-            assert.ok(client.frames.some((frame) => frame.seq === all[i].seq), 'told only of what it has');
+            assert.ok(client.frames.some((frame) => frame.seq === all[i].seq), 'a tile is told only of frames that it has');
         const sizes = new Set(all.map(({ seq }, i) => clients[i].frames.find((frame) => frame.seq === seq).full_width));
-        assert.equal(sizes.size, 1, 'of one quality');
+        assert.equal(sizes.size, 1, 'all tiles show the same quality');
     }
     close(clients);
 });
@@ -226,7 +227,7 @@ test('a lost tile is named, and the others continue; the lead passes on with its
         rest.every((client) => presents(client).at(-1).picture > before) && presents(next).at(-1));
     const frame = next.frames.find(({ seq }) => seq === shown.seq);
     for (let i = 0; i < 3; i++)
-        assert.ok(Math.abs(frame.eye[i] - eye[i]) < 1e-3, `${frame.eye} is not ${eye}: the view stays`);
+        assert.ok(Math.abs(frame.eye[i] - eye[i]) < 1e-3, `the view stays at ${eye}, not ${frame.eye}`);
     const back = await tileOf('seamless', leader.display, { codecs: ['jpeg'] });
     await picture([...rest, back]);
     await next.until('nobody missing', () => tilesSaid(next).missing.length === 0);
@@ -261,7 +262,7 @@ test('a tile that reads nothing is left out and notified, and can return', optio
     await stuck.until('being told', () => tilesSaid(stuck).late.some(({ display, since_us: us }) => display === 4 && us > 1.6e15));
     // the last picture ordered before that display was left out
     const then = leader.texts.slice(0, at).findLast(({ type }) => type === 'present').picture;
-    assert.ok(then <= number + 3, 'nothing is shown without it before');
+    assert.ok(then <= number + 3, 'no picture is shown without the stalled tile until that tile is left out');
     await leader.until('pictures of the others', () => presents(leader).at(-1).picture > then + 5);
     assert.ok(presents(stuck).at(-1).picture <= then);
     stuck.acknowledge = true;
@@ -284,7 +285,7 @@ test('an invalid tile is refused by name', options, async () => {
     await client.frameWhere('a smaller picture', ({ full_width: width, flags }) => width > 1000 && flags & KEY);
     assert.ok(client.frames[0].flags & KEY);
     const widest = Math.max(...client.frames.map(({ full_width: width }) => width));
-    assert.ok(widest <= 2730, `${widest}: three of 4096 are more than a picture has`);
+    assert.ok(widest <= 2730, `the tile has ${widest} pixels in width: three tiles exceed the limit`);
     // Reloads the plant three times. Returns the tile's part before and after, as text; starts over if the burn-in shift moved
     // meanwhile.
     const reloaded = async () => {
@@ -298,6 +299,6 @@ test('an invalid tile is refused by name', options, async () => {
         return `${shiftNow()}` === `${shift}` ? [before, part()] : reloaded();
     };
     const [before, after_] = await reloaded();
-    assert.equal(after_, before, 'it is laid out by its display, not by what that was made to');
+    assert.equal(after_, before, 'the picture is laid out by its display, not by the last request');
     client.close();
 });

@@ -55,7 +55,7 @@ test('Prometheus scrapes a daemon and loads the rules, and every panel\'s query 
                     for (const { expr } of targets) {
                         const { status, error, data } = await query(expr.replaceAll('$instance', '.+'));
                         assert.equal(status, 'success', `${title}: ${expr}: ${error}`);
-                        assert.ok(EMPTY.test(expr) || data.result.length > 0, `${name}, ${title}: nothing for ${expr}`);
+                        assert.ok(EMPTY.test(expr) || data.result.length > 0, `${name}, ${title}: no data for ${expr}`);
                     }
             }
         } finally {
@@ -143,22 +143,22 @@ test('dashboards are valid for Grafana: panels fit in the grid, and their variab
     for (const name of DASHBOARDS) {
         const { panels, templating, uid, schemaVersion } = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
         assert.deepEqual([uid, schemaVersion], [`plantcast-${name}`, 38]);
-        assert.equal(new Set(panels.map(({ id }) => id)).size, panels.length, `${name}: each panel has an id of its own`);
+        assert.equal(new Set(panels.map(({ id }) => id)).size, panels.length, `${name}: panels have different ids`);
         const variables = new Set(templating.list.map((variable) => variable.name)), taken = new Map();
         for (const { title, type, gridPos: { x, y, w, h }, targets = [], repeat } of panels) {
-            assert.ok(TYPES.includes(type), `${name}, ${title}: ${type}`);
-            assert.ok(x >= 0 && w > 0 && h > 0 && x + w <= 24, `${name}, ${title}: within 24 columns`);
-            assert.ok(repeat === undefined || variables.has(repeat), `${name}, ${title}: repeats ${repeat}`);
+            assert.ok(TYPES.includes(type), `${name}, ${title}: unknown panel type ${type}`);
+            assert.ok(x >= 0 && w > 0 && h > 0 && x + w <= 24, `${name}, ${title}: the panel lies within 24 columns`);
+            assert.ok(repeat === undefined || variables.has(repeat), `${name}, ${title}: the panel repeats an unknown variable ${repeat}`);
             for (let cell = 0; cell < w * h; cell++) {
                 const place = `${x + cell % w},${y + Math.floor(cell / w)}`;
-                assert.ok(!taken.has(place), `${name}: ${title} lies on ${taken.get(place)}`);
+                assert.ok(!taken.has(place), `${name}: the panel ${title} covers ${taken.get(place)}`);
                 taken.set(place, title);
             }
             assert.equal(new Set(targets.map(({ refId }) => refId)).size, targets.length);
         }
         const text = JSON.stringify([panels, templating]).replaceAll(/\$__\w+/g, '');
         for (const [, used, plain] of text.matchAll(/\$(?:\{(\w+)(?::\w+)?\}|(\w+))/g))
-            assert.ok(variables.has(used ?? plain), `${name}: $${used ?? plain}`);
+            assert.ok(variables.has(used ?? plain), `${name}: the variable $${used ?? plain} exists`);
     }
 });
 

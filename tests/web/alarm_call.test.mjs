@@ -28,7 +28,7 @@ test('the shown alarm changes only after a full turn', () => {
         changes += now !== before;
         before = now;
     }
-    assert.ok(changes >= 4 && changes <= 10, `${changes} changes`);
+    assert.ok(changes >= 4 && changes <= 10, `the shown alarm changed ${changes} times`);
 });
 
 test('an acknowledged alarm or one without a place is not shown; a returned, unacknowledged one comes last', () => {
@@ -36,16 +36,16 @@ test('an acknowledged alarm or one without a place is not shown; a returned, una
     assert.equal(shown(call, [alarm(1, 1, 60, { waiting: false })], 0), null);
     const gone = alarm(2, 1, 60, { state: 'returned' });
     assert.equal(shown(new AlarmCall(), [gone, alarm(1, 3)], 0), 1);
-    assert.equal(shown(new AlarmCall(), [gone], 0), 2, 'it stays until it is acknowledged');
+    assert.equal(shown(new AlarmCall(), [gone], 0), 2, 'a returned alarm is shown until it is acknowledged');
     assert.equal(shown(call, [{ ...alarm(1, 1), tag: { index: 1, asset: null, position: null } }], 0), null);
     assert.equal(shown(call, [alarm(1, 1)], 0), 1);
-    assert.equal(shown(call, [], 1), null, 'an alarm that is there no more is not shown on');
+    assert.equal(shown(call, [], 1), null, 'an alarm that no longer exists is not shown');
 });
 
 test('in an alarm flood no alarm\'s place is shown, and alarms are counted by equipment', () => {
     const call = new AlarmCall(), many = Array.from({ length: FLOOD + 1 }, (_, i) => alarm(i, i === 4 ? 1 : 2));
     assert.equal(shown(call, many, 0), null);
-    assert.equal(shown(call, many.map((one) => ({ ...one, raisedUs: NOW_US - 700e6 })), 0), 4, 'old ones are no flood');
+    assert.equal(shown(call, many.map((one) => ({ ...one, raisedUs: NOW_US - 700e6 })), 0), 4, 'old alarms are no flood');
     many[7].tag.asset = many[4].tag.asset = 'P-1';
     assert.deepEqual(byEquipment(many).map(({ asset, count, worst }) => [asset, count, worst.tag.index]), [['P-1', 2, 4], ['E-1', 9, 0]]);
 });

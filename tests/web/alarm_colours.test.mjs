@@ -61,14 +61,14 @@ const maps = Object.fromEntries(readdirSync(new URL('shaders/maps/', ROOT)).map(
 test('the CIEDE2000 colour distance equals the published values', () => {
     for (const [a, b, published] of [[[50, 2.6772, -79.7751], [50, 0, -82.7485], 2.0425], [[50, 2.5, 0], [73, 25, -18], 27.1492],
         [[6.7747, -0.2908, -2.4247], [5.8714, -0.0985, -2.2286], 0.6377], [[50, 2.49, -0.001], [50, -2.49, 0.0011], 7.2195]])
-        assert.ok(Math.abs(distance(a, b) - published) < 1e-4, `${distance(a, b)}, not ${published}`);
+        assert.ok(Math.abs(distance(a, b) - published) < 1e-4, `distance ${distance(a, b)} instead of ${published}`);
 });
 
 test('alarm colours differ enough from every colour map, for each type of colour vision', (t) => {
     for (const [map, colours] of Object.entries(maps)) {
         const row = Object.keys(SIGHTS).map((sight) => ALARM_COLOURS.map(([alarm]) => {
             const own = labOf(hex(alarm), sight), least = Math.min(...colours.map((colour) => distance(own, labOf(colour, sight))));
-            assert.ok(least >= LEAST[sight], `${alarm} and ${map}, ${sight}: ${least}`);
+            assert.ok(least >= LEAST[sight], `${alarm} and ${map}, ${sight}: distance ${least}`);
             return least.toFixed(1);
         }));
         t.diagnostic(`${map.padEnd(10)} ${Object.keys(SIGHTS).map((sight, i) => `${sight}: ${row[i].join(' ')}`).join('   ')}`);
@@ -81,7 +81,7 @@ test('one rim of an alarm ring is visible on each colour of each map', () => {
         for (const [map, colours] of Object.entries(maps))
             for (const colour of colours) {
                 const seen = labOf(colour, sight), most = Math.max(...rims.map((rim) => distance(rim, seen)));
-                assert.ok(most >= LEAST_RIM, `${map} ${colour}, ${sight}: ${most}`);
+                assert.ok(most >= LEAST_RIM, `${map} ${colour}, ${sight}: distance ${most}`);
             }
     }
 });

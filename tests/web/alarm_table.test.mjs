@@ -13,10 +13,10 @@ test('alarm rows sort by any column, and equal rows keep their order', () => {
     const rows = [row('TE-10', { priority: 3, us: 5, area: 'B' }), row('TE-9', { priority: 1, us: 7, area: 'A', state: 'returned' }),
         row('TE-2', { priority: 3, us: 6, area: 'B', state: 'unacknowledged' })];
     const by = (name, down = false) => names(sortRows(rows, { by: name, down }));
-    assert.equal(by('tag'), 'TE-2 TE-9 TE-10', 'numbers in names count');
+    assert.equal(by('tag'), 'TE-2 TE-9 TE-10', 'numbers in names are compared as numbers');
     assert.equal(by('tag', true), 'TE-10 TE-9 TE-2');
     assert.equal(by('priority'), 'TE-9 TE-10 TE-2');
-    assert.equal(by('us'), 'TE-9 TE-2 TE-10', 'newest first');
+    assert.equal(by('us'), 'TE-9 TE-2 TE-10', 'the newest alarm is first');
     assert.equal(by('area'), 'TE-9 TE-10 TE-2');
     assert.equal(by('state'), 'TE-2 TE-10 TE-9');
     assert.equal(by(null), names(rows));

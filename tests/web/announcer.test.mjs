@@ -22,25 +22,25 @@ test('in an alarm flood each alarm is announced once, and no text is replaced be
         announcer.take([alarm(0)]);
         for (let n = 1; n < 20; n++)
             announcer.take([alarm(n, n === 7 ? 1 : 3)]);
-        assert.equal(said.length, 1, 'one text while the first one is read');
+        assert.equal(said.length, 1, 'only one text while the first is read');
         for (let n = 0; n < 5; n++)
             mock.timers.tick(3000);
         assert.equal(said.length, 2, said.join('\n'));
         assert.match(said[0], /^T-0 /);
         assert.match(said[1], /^T-7 .*; T-1 .*; T-2 .*; .*\b16\b/);
         announcer.take([alarm(20)]);
-        assert.match(said[2], /^T-20 /, 'at once when none is being read');
+        assert.match(said[2], /^T-20 /, 'a new alarm is announced at once if no text is being read');
         announcer.take([21, 22, 23, 24, 25].map((n) => alarm(n)));
         alarm(21, 3, 'acknowledged');
         rows.delete('22/H');
         alarm(23, 3, 'returned');
         mock.timers.tick(3000);
-        assert.match(said[3], /^T-23 [^;]*; T-24 [^;]*; T-25 [^;]*$/, 'without alarms that were acknowledged or ended meanwhile');
+        assert.match(said[3], /^T-23 [^;]*; T-24 [^;]*; T-25 [^;]*$/, 'alarms acknowledged or ended meanwhile are left out');
         assert.ok(said[3].includes(say('state.returned')), said[3]);
         announcer.take([alarm(26)]);
         alarm(26, 3, 'acknowledged');
         mock.timers.tick(3000);
-        assert.equal(said.length, 4, 'nothing is left to announce');
+        assert.equal(said.length, 4, 'no alarm is left to announce');
     } finally {
         delete globalThis.document;
         mock.timers.reset();

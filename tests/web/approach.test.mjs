@@ -14,10 +14,10 @@ const SHAPES = [box(0.84, 2.24, 1.04), box(1, 1, 1), box(2, 2, 30), box(8, 8, 9)
 
 test('the camera stops at most as far away as equipment is recognisable, however long the equipment is', () => {
     const bounds = distanceBounds(WHOLE);
-    assert.ok(Math.abs(approachDistance(box(1, 1, 1), bounds) - 1.1) < 1e-9, 'a pump');
-    assert.equal(approachDistance(box(2, 2, 30), bounds), 16, 'a column');
-    assert.ok(Math.abs(approachDistance(box(8, 8, 9), bounds) - 8.8) < 1e-9, 'a tank');
-    assert.equal(approachDistance(box(60, 40, 6), bounds), 16, 'a pipe rack');
+    assert.ok(Math.abs(approachDistance(box(1, 1, 1), bounds) - 1.1) < 1e-9, 'distance to a pump');
+    assert.equal(approachDistance(box(2, 2, 30), bounds), 16, 'distance to a column');
+    assert.ok(Math.abs(approachDistance(box(8, 8, 9), bounds) - 8.8) < 1e-9, 'distance to a tank');
+    assert.equal(approachDistance(box(60, 40, 6), bounds), 16, 'distance to a pipe rack');
 });
 
 test('the box of the equipment fills at least 35 % of the picture from every side, on desk, tablet and phone', () => {
@@ -57,13 +57,14 @@ test('every candidate view looks at the tag, from its own side first, and no two
         assert.deepEqual(one.target, [1, 0.5, 0.5]);
     }
     for (const [i, one] of all.entries())
-        assert.ok(all.slice(0, i).every(({ eye }) => Math.hypot(...eye.map((m, k) => m - one.eye[k])) > 0.1), `side ${i}`);
+        assert.ok(all.slice(0, i).every(({ eye }) => Math.hypot(...eye.map((m, k) => m - one.eye[k])) > 0.1),
+            `side ${i} equals an earlier one`);
 });
 
 test('no candidate camera position is inside solid equipment', () => {
     for (const shape of SHAPES) {
         for (const camera of approaches({ ...usual, solid: true, point: [shape.max[0], shape.max[1] / 2, shape.max[2] / 2], box: shape }))
-            assert.ok(camera.eye.some((m, i) => m <= 0 || m >= shape.max[i]), `${shape.max}: ${camera.eye}`);
+            assert.ok(camera.eye.some((m, i) => m <= 0 || m >= shape.max[i]), `the camera is inside ${shape.max}: ${camera.eye}`);
     }
 });
 
@@ -86,6 +87,6 @@ test('a thin plate is viewed from its faces first, wherever its sensor is and wh
 test('a box\'s silhouette is as large as its projected area', () => {
     const from = (eye) => silhouetteOf({ eye, target: [0, 0, 0] }, box(2, 3, 4)), most = Math.hypot(12, 8, 6);
     assert.ok(Math.abs(from([9, 0, 0]) - 12 / most) < 1e-9 && Math.abs(from([0, 0, -9]) - 6 / most) < 1e-9);
-    assert.ok(Math.abs(from([12, 8, 6]) - 1) < 1e-9, 'the largest');
-    assert.equal(silhouetteOf({ eye: [1, 0, 0], target: [0, 0, 0] }, box(0, 0, 0)), 0, 'a point');
+    assert.ok(Math.abs(from([12, 8, 6]) - 1) < 1e-9, 'silhouette from the diagonal');
+    assert.equal(silhouetteOf({ eye: [1, 0, 0], target: [0, 0, 0] }, box(0, 0, 0)), 0, 'silhouette of a point');
 });

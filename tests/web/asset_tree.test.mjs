@@ -26,9 +26,9 @@ test('areas are in numeric order, then equipment without area, then tags without
     tree.toggle(tree.rows()[2]);
     assert.deepEqual(shown(tree.rows()).slice(2, 4), ['1 area Unit 10', '1 asset Z-4']);
     tree.unfold(plant().assets[2]);
-    assert.ok(shown(tree.rows()).includes('2 asset V-3'), 'what is unfolded is seen');
+    assert.ok(shown(tree.rows()).includes('2 asset V-3'), 'unfolding an asset shows its row');
     tree.toggle(tree.rows().find(({ id }) => id === 'E-1'));
-    assert.ok(!shown(tree.rows()).includes('3 tag TI-1'), 'and closed again');
+    assert.ok(!shown(tree.rows()).includes('3 tag TI-1'), 'a second toggle closes the asset');
     assert.deepEqual(tree.rows()[0].open, true);
 });
 
@@ -37,7 +37,8 @@ test('a search finds assets by all their texts, and tags, and opens their parent
     assert.deepEqual(shown(tree.rows(search('DRUM'))), ['1 area Unit 10', '2 asset V-3']);
     const both = ['1 area Unit 9', '2 asset P-2', '3 tag PI-9', '1 area Unit 10', '2 asset E-1', '3 tag TI-1'];
     assert.deepEqual(shown(tree.rows(search('inlet'))), both);
-    assert.deepEqual(shown(tree.rows(search('exchanger outlet'))), ['1 area Unit 10', '2 asset E-1', '3 tag TI-2'], 'words of both');
+    assert.deepEqual(shown(tree.rows(search('exchanger outlet'))), ['1 area Unit 10', '2 asset E-1', '3 tag TI-2'],
+        'both words are searched, in asset and tag');
     assert.deepEqual(shown(tree.rows(search('xi spare'))), ['1 asset Loose', '2 tag XI-1']);
     assert.deepEqual(tree.rows(search('nothing of that name')), []);
     assert.equal(search(' '), null);

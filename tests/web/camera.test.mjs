@@ -83,7 +83,7 @@ test('looking around: the eye stays, and the point in the middle follows the poi
     const [dx, dy] = [60, 25], looked = lookAround(camera, dx, dy, 996);
     closeTo(looked.eye, camera.eye, 1e-9);
     const [x, y] = projector(looked, 1608, 996)(camera.target);
-    assert.ok(Math.abs(x - 804 - dx) < 8 && Math.abs(y - 498 - dy) < 8, `${x}, ${y}`);
+    assert.ok(Math.abs(x - 804 - dx) < 8 && Math.abs(y - 498 - dy) < 8, `the middle moved to ${x}, ${y}`);
     assert.ok(valid(lookAround(toParallel(camera), dx, dy, 996)));
 });
 
@@ -187,7 +187,8 @@ test('a tag is viewed from its own side, level, a little from above', () => {
     const side = face(camera, [8, 8, 5], box, 4); // the camera looks at the box's long side, at a point near the side's end
     assert.ok(side.eye[1] - 8 > 2 * (side.eye[0] - 8));
     const above = face(camera, [2, 4, 9], box, 4);
-    assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0, 'on top: from where one is');
+    assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0,
+        'a tag on top is viewed from the user\'s side');
 });
 
 // Returns how much of the window the points fill along its limiting axis, and the window's edges on that axis.
@@ -227,7 +228,7 @@ test('a configured view is unchanged if everything fits, and steps back where a 
 
 test('valid() refuses the cameras that the server refuses', () => {
     assert.ok(valid(camera));
-    assert.ok(valid({ ...camera, eye: [412345, 5512345, 120], target: [412355, 5512345, 118] }), 'a survey’s coordinates');
+    assert.ok(valid({ ...camera, eye: [412345, 5512345, 120], target: [412355, 5512345, 118] }), 'survey coordinates are valid');
     for (const bad of [
         null, {}, { ...camera, eye: [NaN, 0, 0] }, { ...camera, eye: [1, 2] }, { ...camera, eye: camera.target }, { ...camera, fov: 0.5 },
         { ...camera, fov: 121 }, { ...camera, eye: [2e7, 0, 0] }, { ...camera, up: [0, 0, 0] }, { ...camera, eye: [1, 0.5, 20] },
@@ -248,7 +249,7 @@ test('a flight starts and ends as requested, stays level, and turns by the short
         close(dot(basis(c).right, [0, 0, 1]), 0, 1e-9);
         eastMost = Math.max(eastMost, c.eye[0]);
     }
-    assert.ok(eastMost > 40, 'by the east, not around by the west');
+    assert.ok(eastMost > 40, 'the flight turns by the east, not around by the west');
 });
 
 test('orthographic: every metre has its pixels, at any distance', () => {

@@ -34,7 +34,7 @@ test('a card covers no other marker if any position beside its point is free', (
     for (const marks of [right, left, [...right, ...left], [[500, 220, false]], [[500, 380, true], [250, 220, false]]])
         assert.deepEqual(covered(cardPlace(card, free, [400, 300], marks), marks), [], JSON.stringify(marks));
     const all = [[500, 300, true], [200, 300, false], [400, 200, true], [400, 400, true]];
-    assert.deepEqual(covered(cardPlace(card, free, [400, 300], all), all), [all[1]], 'a marker rather than an alarm ring');
+    assert.deepEqual(covered(cardPlace(card, free, [400, 300], all), all), [all[1]], 'the card covers a marker rather than an alarm ring');
 });
 
 test('a card changes its side only to cover fewer markers', () => {

@@ -39,7 +39,7 @@ test('an oblique plane moves along its own normal of any length, and the other p
 test('a plane stays inside the plant, and a box keeps a minimum width, so no handle is lost', () => {
     for (const to of [-1e9, 1e9, -5, 10.01]) {
         const clip = cut('x', 3, false), moved = moveGrip(clip, gripsOf(clip, BOUNDS)[0], to);
-        assert.ok(gripsOf(moved, BOUNDS)[0].corners.length >= 3, `${to}`);
+        assert.ok(gripsOf(moved, BOUNDS)[0].corners.length >= 3, `the plane is lost after a move by ${to}`);
     }
     const clip = { box: { min: [2, 2, 1], max: [4, 6, 3] } };
     for (const grip of gripsOf(clip, BOUNDS)) {
@@ -56,7 +56,7 @@ test('a section box has six handles, one for each side', () => {
     assert.deepEqual(spotsOf(grips[3])[0], [3, 6, 2]);
     assert.deepEqual(moveGrip(clip, grips[3], 9).box, { min: [2, 2, 1], max: [4, 9, 3] });
     assert.deepEqual(moveGrip(clip, grips[4], 0).box, { min: [2, 2, 0], max: [4, 6, 3] });
-    assert.deepEqual(clip.box, { min: [2, 2, 1], max: [4, 6, 3] }, 'and leaves what it was given');
+    assert.deepEqual(clip.box, { min: [2, 2, 1], max: [4, 6, 3] }, 'moving does not change the given clip');
     assert.deepEqual(gripsOf(null, BOUNDS), []);
 });
 
@@ -71,11 +71,12 @@ test('a pointer on an arrow\'s line grabs the handle there, in both projections'
                 const t = w.reduce((sum, v, i) => sum + v * d[i], 0) / c;
                 return Math.hypot(...w.map((v, i) => v - t * d[i]));
             };
-            assert.ok(off(p) < off([p[0] + 0.01, 2, 1]) && off(p) < off([p[0] - 0.01, 2, 1]), `${x},${y}`);
+            assert.ok(off(p) < off([p[0] + 0.01, 2, 1]) && off(p) < off([p[0] - 0.01, 2, 1]),
+                `another point is nearer to the pointer at ${x},${y}`);
         }
     }
     const along = { eye: [5, -12, 1], target: [5, 5, 1], up: [0, 0, 1], fov: 45 };
-    assert.equal(alongSight([5, 2, 1], [0, 1, 0], sight(along, 400, 300, 800, 600)), null, 'a way towards the eye');
+    assert.equal(alongSight([5, 2, 1], [0, 1, 0], sight(along, 400, 300, 800, 600)), null, 'a line towards the eye has no grab point');
 });
 
 test('lines that reach behind the eye are cut off in front of it', () => {

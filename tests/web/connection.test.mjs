@@ -34,7 +34,7 @@ test('the connection waits 0.5, 1, 2, 4, 8, 8 seconds between attempts', () => {
         sockets.at(-1).fail();
         waits.push(waitOf(bench));
         clock.advance(waits.at(-1) - 1);
-        assert.equal(sockets.length, n + 1, 'not a moment early');
+        assert.equal(sockets.length, n + 1, 'no attempt comes early');
         clock.advance(1);
         assert.equal(sockets.length, n + 2);
     }
@@ -55,7 +55,7 @@ test('after a loss the connection waits at most 2 seconds between attempts for 1
             clock.advance(waitOf(bench));
             sockets.at(-1).fail();
         }
-        assert.ok(longest >= 1000 && longest <= 2000, `${longest} ms`);
+        assert.ok(longest >= 1000 && longest <= 2000, `the longest wait is ${longest} ms`);
         assert.ok(tries >= 8);
         assert.ok(waitOf(bench) >= LONGEST_WAIT_MS * (1 - JITTER));
     }
@@ -107,7 +107,7 @@ test('retryNow cuts a wait short, and does nothing else', () => {
     connection.retryNow();
     assert.equal(sockets.length, 2);
     clock.advance(600);
-    assert.equal(sockets.length, 2, 'the old timer is gone');
+    assert.equal(sockets.length, 2, 'the old timer is cancelled');
 });
 
 test('a silent server is noticed, then given up without waiting for its close frame', () => {
@@ -124,12 +124,12 @@ test('a silent server is noticed, then given up without waiting for its close fr
     assert.equal(connection.state, 'waiting');
     assert.equal(connection.reason, 'The server stopped responding');
     assert.ok(sockets[0].closed);
-    assert.equal(sockets[0].onmessage, null, 'what still comes is not heard');
+    assert.equal(sockets[0].onmessage, null, 'later messages of the old socket are ignored');
 });
 
 test('a stopped server is noticed and left within 8.2 s, at any moment and with the longest wait; 1.8 s of 10 s remain', () => {
     const most = DEAD_MS + CHECK_MS + FIRST_WAIT_MS * (1 + JITTER);
-    assert.ok(most <= 8200, `${most} ms`);
+    assert.ok(most <= 8200, `the longest time is ${most} ms`);
     for (let spoke = 0; spoke < 4000; spoke += 50) {
         const { connection, sockets, clock } = makeConnection({ random: () => 1 });
         connection.start();
@@ -142,10 +142,10 @@ test('a stopped server is noticed and left within 8.2 s, at any moment and with 
         }
         const last = clock.now();
         clock.advance(DEAD_MS - 1);
-        assert.equal(sockets.length, 1, 'not a moment early');
+        assert.equal(sockets.length, 1, 'no new connection before the limit');
         while (sockets.length < 2)
             clock.advance(10);
-        assert.ok(clock.now() - last <= most + 10, `${clock.now() - last} ms, spoke for ${spoke} ms`);
+        assert.ok(clock.now() - last <= most + 10, `left after ${clock.now() - last} ms, the server sent for ${spoke} ms`);
     }
 });
 
@@ -256,7 +256,7 @@ test('forty displays that lose the server at one moment reconnect at different t
             return waitOf(bench);
         }).sort((a, b) => a - b);
         const most = Math.max(...waits.map((from) => waits.filter((ms) => ms >= from && ms < from + 100).length));
-        assert.ok(most <= 12, `${most} of 40 within 100 ms`);
+        assert.ok(most <= 12, `${most} of 40 displays reconnect within 100 ms`);
         assert.ok(waits.at(-1) < 4000);
     }
 });
@@ -274,7 +274,7 @@ test('a display reconnects after each of 200 losses, the last as soon as the fir
         connection.settle();
         assert.equal(connection.state, 'open');
         sockets.at(-1).fail(loss % 2 ? 1006 : 1001);
-        assert.ok(waitOf(bench) <= 500 * (1 + JITTER) + SPREAD_MS, `loss ${loss}: ${waitOf(bench)} ms`);
+        assert.ok(waitOf(bench) <= 500 * (1 + JITTER) + SPREAD_MS, `the wait after loss ${loss} is ${waitOf(bench)} ms`);
         clock.advance(waitOf(bench));
     }
 });

@@ -27,12 +27,12 @@ const within = (items, { x, y }, least) => items.filter((other) => Math.hypot(ot
 test('markers that must be drawn or stand free are never left out, and no crowd is drawn', () => {
     for (let round = 0; round < 20; round++) {
         const items = crowd(40 * (1 + round)), drawn = thinOut(items), shown = new Set(drawn), others = drawn.filter(({ kept }) => !kept);
-        assert.deepEqual(ids(drawn), ids(drawn).sort((a, b) => a - b), 'in their order');
+        assert.deepEqual(ids(drawn), ids(drawn).sort((a, b) => a - b), 'drawn markers keep their order');
         for (const item of items) {
             if (shown.has(item))
-                assert.ok(within(others, item, 0.4 * NEAR) <= MOST, `a crowd at ${item.id}`);
+                assert.ok(within(others, item, 0.4 * NEAR) <= MOST, `a crowd is drawn at marker ${item.id}`);
             else
-                assert.ok(!item.kept && within(drawn, item, NEAR) >= MOST, `${item.id} is left out`);
+                assert.ok(!item.kept && within(drawn, item, NEAR) >= MOST, `marker ${item.id} is left out`);
         }
     }
 });
@@ -98,7 +98,7 @@ test('while the camera trembles, no marker appears or disappears', () => {
             for (let id = 0; id < sensors.length; id++) {
                 if (before.has(id) === next.has(id))
                     continue;
-                assert.ok(!changed.has(id), `${id} changes a second time`);
+                assert.ok(!changed.has(id), `marker ${id} changes a second time`);
                 changed.add(id);
             }
             before = next;

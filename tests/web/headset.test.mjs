@@ -59,12 +59,12 @@ test('a point has the device\'s clip coordinates, even beyond or behind the view
     isClose(eye.at, [100000, 200000.0315, 51.6]);
     const clip = clipOf(eye, [subtract([100004, 200001, 52], eye.at), 1], 0.05), camera = [-0.9685, 0.4, -4, 1]; // in the eye's axes
     const wanted = [0, 1, 3].map((row) => camera.reduce((sum, v, i) => sum + LEFT[4 * i + row] * v, 0));
-    assert.ok([0, 1, 3].every((row, i) => Math.abs(clip[row] - wanted[i]) < 1e-6), `${clip}`);
-    assert.ok(clip[2] < clip[3] && clip[2] > -clip[3], 'between the nearest and the farthest');
+    assert.ok([0, 1, 3].every((row, i) => Math.abs(clip[row] - wanted[i]) < 1e-6), `clip coordinates are ${clip}`);
+    assert.ok(clip[2] < clip[3] && clip[2] > -clip[3], 'the depth is between the nearest and the farthest');
     const [, , z, w] = clipOf(eye, [[0.02, 0, 0], 1], 0.05);
-    assert.ok(z < -w, 'too near to be drawn');
+    assert.ok(z < -w, 'a point too near is not drawn');
     const [, , endless, far] = clipOf(eye, [[1, 0, 0], 0], 0.05); // a direction without a distance: the background
-    assert.ok(endless < far && far > 0, 'infinitely far is not cut off');
+    assert.ok(endless < far && far > 0, 'an infinitely far point is not clipped');
 });
 
 test('a picture drawn for an eye at its own position and projection is unchanged', () => {
@@ -83,7 +83,7 @@ test('both eyes see a picture\'s point at its true position, with the disparity 
             const [x, , , w] = clipOf(eye, [subtract([0, away, 1.6], eye.at), 1], 0.05);
             return (x / w + 1) * 500;
         });
-        assert.ok(xs.every((x, i) => Math.abs(x - truth[i]) < 1e-3), `${xs} ${truth}`);
+        assert.ok(xs.every((x, i) => Math.abs(x - truth[i]) < 1e-3), `the eyes see the point at ${xs}, not at ${truth}`);
     }
 });
 
@@ -91,7 +91,8 @@ test('the wide picture covers what both eyes see, with a margin, even if the eye
     for (const turn of [0, 5, -5]) {
         const views = viewsAt(30, [1, 1.6, 2], turn), head = matrix(30, [1, 1.6, 2]), { fov, width, height } = wideView(head, views, 1760);
         const camera = headCamera(rigAt([0, 0, 0], [0, 1, 0], UP), head, fov), project = projector(camera, width, height);
-        assert.ok(fov <= 120 && width % 2 === 0 && height % 2 === 0 && width * height <= 4.1e6, `${fov} ${width}x${height}`);
+        assert.ok(fov <= 120 && width % 2 === 0 && height % 2 === 0 && width * height <= 4.1e6,
+            `the wide picture has a field of ${fov} degrees and ${width}x${height} pixels`);
         const rig = rigAt([0, 0, 0], [0, 1, 0], UP);
         for (const view of views) {
             const eye = eyeOf(rig, view), p = view.projectionMatrix;
@@ -100,13 +101,13 @@ test('the wide picture covers what both eyes see, with a margin, even if the eye
                 const far = eye.axes.reduce((sum, axis, i) => along(sum, axis, 1e4 * ray[i]), eye.at);
                 const [x, y] = project(far);
                 const out = Math.max(Math.abs(x / width - 0.5), Math.abs(y / height - 0.5));
-                assert.ok(out < 0.48, `${turn}: ${x} ${y} of ${width}x${height}`);
+                assert.ok(out < 0.48, `head turn ${turn}: the eye's corner is at ${x} ${y} of ${width}x${height}`);
             }
         }
     }
     const level = matrix(0, [0, 0, 0]), widest = { projectionMatrix: projection(-9, 9, -9, 9), transform: { matrix: level } };
     const { fov } = wideView(level, [widest], 1000);
-    assert.ok(Math.abs(fov - 120) < 1e-9, 'never more than the server accepts');
+    assert.ok(Math.abs(fov - 120) < 1e-9, 'the field of view stays within the server\'s limit');
 });
 
 test('a new picture is requested after a step or a turn of the head, not for a tremor', () => {
@@ -114,7 +115,7 @@ test('a new picture is requested after a step or a turn of the head, not for a t
     assert.equal(isApart(start, at(1, [0.01, 1.6, 0])), false);
     assert.equal(isApart(start, at(3, [0, 1.6, 0])), true);
     assert.equal(isApart(start, at(0, [0, 1.63, 0])), true);
-    assert.equal(isApart(start, { ...start, up: unit([0.1, 0, 1]) }), true, 'a tilted head');
+    assert.equal(isApart(start, { ...start, up: unit([0.1, 0, 1]) }), true, 'a tilted head needs a new picture');
 });
 
 test('a user starts on the floor in front of the plant, or below a camera within it', () => {
@@ -127,7 +128,7 @@ test('a user starts on the floor in front of the plant, or below a camera within
     isClose(inside.axes[2], [-1, 0, 0]);
     isClose(rigFor({ ...camera, eye: [5, 5, 0] }, bounds, UP).at, [5, 5, -1], 1e-6);
     const above = rigFor({ ...camera, eye: [10, 4.9, 60] }, bounds, UP);
-    assert.ok(above.at[1] < 0 && above.at[2] === -1 && above.axes[2][1] < -0.9, `${above.at}`);
+    assert.ok(above.at[1] < 0 && above.at[2] === -1 && above.axes[2][1] < -0.9, `the user stands at ${above.at}`);
     const inY = rigFor({ eye: [0, 3, 50], target: [0, 0, 0], up: [0, 1, 0], fov: 45 }, { min: [-2, 0, -2], max: [2, 4, 2] }, [0, 1, 0]);
     isClose(inY.at, [0, 0, 4.5]);
 });
@@ -139,7 +140,7 @@ test('a ray hits the surface that the picture shows, wherever the ray starts', (
     isClose(hitOf(grid, CAMERA, [0.1, -0.5, 1.2], unit([0, 1, 0.02])).point, [0.1, 3, 1.27], 0.03); // this ray begins behind the camera
     assert.equal(hitOf(grid, CAMERA, [0, 0.3, 1.2], [0, -1, 0]), null);
     assert.equal(hitOf(grid, CAMERA, [0, 0.3, 1.2], [1, 0, 0]), null);
-    assert.ok(hitOf(grid, CAMERA, [0, 0.3, 1.2], unit([1, -0.0001, 0])) === null, 'never an endless search');
+    assert.ok(hitOf(grid, CAMERA, [0, 0.3, 1.2], unit([1, -0.0001, 0])) === null, 'the search ends');
 });
 
 test('invalid numbers from a broken device: every search ends, and nothing is hit', () => {
@@ -162,14 +163,14 @@ test('invalid numbers from a broken device: every search ends, and nothing is hi
 
 test('the floor, the user\'s position on it, and the wrist panel are placed correctly', () => {
     isClose(floorHit([0, 0, 1.5], unit([0, 1, -1]), [9, 9, 0], UP), [0, 1.5, 0]);
-    assert.equal(floorHit([0, 0, 1.5], unit([0, 1, 0.1]), [0, 0, 0], UP), null, 'upwards');
-    assert.equal(floorHit([0, 0, 3], unit([0, 15, -1]), [0, 0, 0], UP), null, 'too far');
+    assert.equal(floorHit([0, 0, 1.5], unit([0, 1, 0.1]), [0, 0, 0], UP), null, 'a ray upwards hits no floor');
+    assert.equal(floorHit([0, 0, 3], unit([0, 15, -1]), [0, 0, 0], UP), null, 'a ray that hits the floor too far away does not count');
     const rig = standAt(rigAt([5, 5, 0], [1, 0, 0], UP), [0.3, 1.7, -0.2], [8, 9, 2]);
     isClose(pointOf(rig, [0.3, 0, -0.2]), [8, 9, 2]);
     const panel = { at: [0, 1, 1], axes: [[1, 0, 0], UP, [0, -1, 0]], width: 0.4, height: 0.2 };
     assert.deepEqual(panelHit(panel, [0, 0, 1], [0, 1, 0]).map((share) => Math.round(1e6 * share) / 1e6), [0.5, 0.5]);
-    assert.equal(panelHit(panel, [0, 0, 1], [0, -1, 0]), null, 'behind the hand');
-    assert.equal(panelHit(panel, [0.3, 0, 1], [0, 1, 0]), null, 'beside');
+    assert.equal(panelHit(panel, [0, 0, 1], [0, -1, 0]), null, 'a panel behind the hand is not hit');
+    assert.equal(panelHit(panel, [0.3, 0, 1], [0, 1, 0]), null, 'a ray beside the panel does not hit');
 });
 
 test('the card repeats its request if there is no answer, or if another module\'s request replaced it', () => {
@@ -186,18 +187,18 @@ test('the card repeats its request if there is no answer, or if another module\'
     };
     const answer = (purpose, value) => hands.hear({ purpose, asset: 'E-101', position: [0, 5, 1], value });
     try {
-        assert.deepEqual([after(0), after(1100), after(2000), after(1100)], [1, 1, 2, 2], 'not answered');
+        assert.deepEqual([after(0), after(1100), after(2000), after(1100)], [1, 1, 2, 2], 'an unanswered request is repeated');
         answer('headset again', 2);
         assert.equal(hands.card.picked.value, 2);
         assert.equal(after(0), 3);
         answer('place', 9);
-        assert.deepEqual([hands.card.picked.value, after(1100)], [2, 4], 'replaced');
+        assert.deepEqual([hands.card.picked.value, after(1100)], [2, 4], 'a replaced request is repeated');
         answer('headset again', 3);
         assert.equal(hands.card.picked.value, 3);
         after(1100);
         hands.forget();
         answer('headset again', 4);
-        assert.deepEqual([hands.card, after(5000)], [null, 5], 'a new connection');
+        assert.deepEqual([hands.card, after(5000)], [null, 5], 'a new connection clears the card');
     } finally {
         calls.restore();
     }

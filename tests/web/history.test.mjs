@@ -19,7 +19,7 @@ test('a line holds its last value until now, and breaks at gaps', () => {
     assert.deepEqual(line(series, 0, 6e6), [[1, 1.999999, 2, 4, 6], [5, 5, null, 7, 7]]);
     assert.deepEqual(line(points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE]), 0, 6e6), [[1, 1.999999, 2], [5, 5, null]]);
     assert.deepEqual(line(points(), 0, 6e6), [[], []]);
-    assert.deepEqual(line(points([1e6, 5, BAD_CODE]), 0, 6e6), [[1], [null]], 'a value that is bad is none');
+    assert.deepEqual(line(points([1e6, 5, BAD_CODE]), 0, 6e6), [[1], [null]], 'a bad value counts as none');
 });
 
 test('a value holds until the quality changes, in the line, its values and its statistics', () => {
@@ -44,14 +44,15 @@ test('the line of intervals shows their means, the band keeps spikes, and a gap 
     const lost = { step: false, bucket_us: 10e6, points: [[0, 1, 2, 1, 2, null, 4e6, BAD_CODE]] };
     assert.equal(line(lost, 0, 10e6)[1].at(-1), null);
     const ended = { ...lost, points: [[0, 1, 2, 1, 2, null, 0, BAD_CODE]] };
-    assert.equal(line(ended, 0, 40e6)[1].at(-1), null, 'the series ends with the interval: nothing is known afterwards');
+    assert.equal(line(ended, 0, 40e6)[1].at(-1), null, 'the series ends with the interval, and nothing is known afterwards');
     assert.deepEqual(gaps(lost, 0, 20e6), [{ from: 6, to: 20, severity: BAD }]);
     const held = { ...ended, points: [[0, 5, 5, 5, 5, 5, 0, GOOD_CODE], [30e6, null, null, null, 5, null, 10e6, BAD_CODE]] };
-    assert.deepEqual(line(held, 0, 40e6), [[0, 5, 9.999998, 29.999999, 30], [5, 5, 5, 5, null]], 'held until it was lost');
-    assert.deepEqual(bands(points([0, 5, GOOD_CODE])), [], 'points have no band');
+    assert.deepEqual(line(held, 0, 40e6), [[0, 5, 9.999998, 29.999999, 30], [5, 5, 5, 5, null]], 'the value is held until it was lost');
+    assert.deepEqual(bands(points([0, 5, GOOD_CODE])), [], 'single points have no band');
     const apart = { step: false, bucket_us: 10e6, points: [[0, 1, 3, 2, 1, 3, 0, GOOD_CODE], [30e6, 5, 5, 5, 5, 5, 0, GOOD_CODE]] };
-    assert.equal(bands(apart).length, 2, 'intervals that do not adjoin');
-    assert.deepEqual(line(apart, 0, 40e6)[1], [1, 2, 3, 5, 5, 5, 5], 'straight from the last value to the next first one');
+    assert.equal(bands(apart).length, 2, 'intervals with a gap have two bands');
+    assert.deepEqual(line(apart, 0, 40e6)[1], [1, 2, 3, 5, 5, 5, 5],
+        'the line is straight from the last value of an interval to the first of the next');
 });
 
 test('statistics are means over time, and state the share of the time that they cover', () => {
@@ -59,13 +60,14 @@ test('statistics are means over time, and state the share of the time that they 
     assert.deepEqual(of(points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE]), 0, 20e6), { min: 0, max: 10, mean: 7.5, known: 1 });
     const holed = points([0, 4, GOOD_CODE], [5e6, null, BAD_CODE], [15e6, 8, UNCERTAIN_CODE]);
     assert.deepEqual(of(holed, 0, 20e6), { min: 4, max: 8, mean: 6, known: 0.5 });
-    assert.equal(of({ ...points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE]), step: true }, 0, 20e6).mean, 5, 'a step holds');
-    assert.deepEqual(of(points([-10e6, 0, GOOD_CODE], [10e6, 20, GOOD_CODE]), 0, 10e6), { min: 10, max: 20, mean: 15, known: 1 }, 'cut');
+    assert.equal(of({ ...points([0, 0, GOOD_CODE], [10e6, 10, GOOD_CODE]), step: true }, 0, 20e6).mean, 5, 'a step value is held');
+    assert.deepEqual(of(points([-10e6, 0, GOOD_CODE], [10e6, 20, GOOD_CODE]), 0, 10e6), { min: 10, max: 20, mean: 15, known: 1 },
+        'a range that cuts the line interpolates at its ends');
     assert.equal(of(points(), 0, 1e6), null);
     const intervals = { step: false, bucket_us: 10e6, points: [[0, 1, 99, 5, 2, 4, 0, GOOD_CODE], [30e6, 6, 10, 8, 6, 10, 5e6, BAD_CODE]] };
     const { min, max, mean, known } = of(intervals, 0, 40e6);
     assert.deepEqual([min, max, known], [1, 99, 35 / 40]);
-    assert.ok(Math.abs(mean - (5 * 10 + 5 * 20 + 8 * 5) / 35) < 1e-9, 'with the straight line between the intervals');
+    assert.ok(Math.abs(mean - (5 * 10 + 5 * 20 + 8 * 5) / 35) < 1e-9, 'the line between intervals counts in the mean');
     const bit = { step: true, bucket_us: 10e6, points: [[0, 0, 0, 0, 0, 0, 0, GOOD_CODE], [30e6, 0, 1, 1, 1, 1, 0, GOOD_CODE]] };
     assert.equal(of(bit, 0, 40e6).mean, 1 / 4, 'a switch holds between intervals');
 });
@@ -74,7 +76,7 @@ test('minimum and maximum include a value that is newer than the series', () => 
     const stats = { min: 2, max: 8, mean: 5, known: 0.5 };
     assert.deepEqual([9, 1, 5].map((value) => withNewest(stats, value)),
         [{ ...stats, max: 9 }, { ...stats, min: 1 }, stats]);
-    assert.deepEqual(withNewest(null, 4), { min: 4, max: 4 }, 'nothing is recorded yet');
+    assert.deepEqual(withNewest(null, 4), { min: 4, max: 4 }, 'without recorded points, minimum and maximum are the new value');
 });
 
 test('the value at an instant equals the drawn line', () => {
@@ -93,7 +95,8 @@ test('alarms last from being raised until they return or are shelved, or until n
         row(3, 'raise', 'normal', 'suppressed', 'B'), row(2, 'clear', 'unacknowledged', 'returned', 'B')];
     assert.deepEqual(alarmSpans(rows, 'bar').map(({ us, endUs, tag, value }) => [us, endUs, tag, value]),
         [[4, 7, 'A', 9], [9, null, 'A', 9]]);
-    assert.deepEqual(alarmSpans(rows, '°C').map(({ value, limit }) => [value, limit]), [[null, null], [null, null]], 'another unit');
+    assert.deepEqual(alarmSpans(rows, '°C').map(({ value, limit }) => [value, limit]), [[null, null], [null, null]],
+        'values in another unit are left out');
 });
 
 test('time ranges are read as people write them, in three languages', () => {
@@ -112,8 +115,8 @@ test('time ranges are read as people write them, in three languages', () => {
         assert.equal(read(text), night, text);
     assert.equal(read('yesterday 22:00 to 06:00', 'UTC', now + 9 * 3600e6), '2026-11-25T22:00 2026-11-26T06:00');
     assert.equal(read('yesterday'), '2026-11-25T00:00 2026-11-26T00:00');
-    assert.equal(read('yesterday', 'Asia/Seoul'), '2026-11-24T15:00 2026-11-25T15:00', 'by the clock of the plant');
-    assert.equal(read('2026-11-20 to 2026-11-21'), '2026-11-20T00:00 2026-11-22T00:00', 'whole days');
+    assert.equal(read('yesterday', 'Asia/Seoul'), '2026-11-24T15:00 2026-11-25T15:00', 'yesterday follows the plant\'s clock');
+    assert.equal(read('2026-11-20 to 2026-11-21'), '2026-11-20T00:00 2026-11-22T00:00', 'dates cover whole days');
     assert.equal(read('2026-11-20T06:30 to 07:15'), '2026-11-20T06:30 2026-11-20T07:15');
     for (const text of ['', 'noon', 'last h', 'last 9999 d', '22:00', 'tomorrow', '2027-01-01 to 2027-01-02', '25:00 to 26:00', 'to',
         '1 x'])
@@ -147,7 +150,7 @@ test('a source counts as lost while none of its watched tags has a value', () =>
     const c = points([0, 5, GOOD_CODE], [3e6, null, BAD_CODE], [7e6, 7, GOOD_CODE]);
     assert.deepEqual(lost([a, c], 0, 9e6), [[3e6, 4e6], [5e6, 7e6]]);
     assert.deepEqual(lost([a], 0, 9e6), [[2e6, 4e6], [5e6, 8e6]]);
-    assert.deepEqual(lost([a, points([0, 1, GOOD_CODE])], 0, 9e6), [], 'one fault is none of the source');
+    assert.deepEqual(lost([a, points([0, 1, GOOD_CODE])], 0, 9e6), [], 'the fault of a single sensor is no loss of the source');
     assert.deepEqual(lost([], 0, 9e6), []);
 });
 
@@ -198,11 +201,11 @@ test('limits of several tags: each appears once per axis, with its tags\' names 
 
 test('the user jumps from alarm to alarm, and marks in one place are merged', () => {
     const marks = [[10, 3], [20, 1], [21, 2], [50, 4]].map(([us, priority]) => ({ us, priority }));
-    assert.deepEqual([nextTo(marks, 20, true).us, nextTo(marks, 20, false).us], [10, 21], 'never the one where it stands');
+    assert.deepEqual([nextTo(marks, 20, true).us, nextTo(marks, 20, false).us], [10, 21], 'the jump leaves the present mark');
     assert.deepEqual([nextTo(marks, 10, true), nextTo(marks, 50, false)], [null, null]);
     assert.deepEqual(clustered(marks, 5).map(({ us, priority, of }) => [us, priority, of.length]), [[10, 3, 1], [20, 1, 2], [50, 4, 1]]);
     assert.deepEqual(clustered([], 5), []);
-    assert.deepEqual([900, 3600, 86400, 2592000].map(arrowS), [1, 4, 60, 60], 'a minute at most, also of 30 days');
+    assert.deepEqual([900, 3600, 86400, 2592000].map(arrowS), [1, 4, 60, 60], 'an arrow step is at most a minute, even for 30 days');
 });
 
 test('the density counts alarms in equal parts of a time span, by the most urgent', () => {
@@ -216,8 +219,9 @@ test('a date field follows the plant\'s clock', () => {
     assert.equal(at('2026-11-22T07:27:02', 'Asia/Seoul'), '2026-11-21T22:27:02.000Z');
     assert.equal(at('2026-11-22 07:27', 'America/New_York'), '2026-11-22T12:27:00.000Z');
     assert.equal(at('2026-07-01', 'Europe/Berlin'), '2026-06-30T22:00:00.000Z');
-    assert.equal(at('2026-10-25T02:30:00', 'Europe/Berlin'), '2026-10-25T00:30:00.000Z', 'the first of the hour that comes twice');
-    assert.equal(at('2026-03-29T02:30:00', 'Europe/Berlin'), '2026-03-29T01:30:00.000Z', 'an hour that is left out: the one after it');
+    assert.equal(at('2026-10-25T02:30:00', 'Europe/Berlin'), '2026-10-25T00:30:00.000Z',
+        'an hour that occurs twice means its first occurrence');
+    assert.equal(at('2026-03-29T02:30:00', 'Europe/Berlin'), '2026-03-29T01:30:00.000Z', 'a skipped hour means the hour after it');
     for (const bad of ['', 'noon', '2026-13-01T00:00', '2026-02-30', '26-1-1'])
         assert.equal(fieldInstant(bad, 'UTC'), null, bad);
     assert.equal(fieldText(Date.parse('2026-11-21T22:27:02.9Z') * 1000, 'Asia/Seoul'), '2026-11-22T07:27:02');

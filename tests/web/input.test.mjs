@@ -50,8 +50,8 @@ test('two fingers pan by their average, and zoom about the middle between them',
     assert.deepEqual(pan, { pan: [50, 0] });
     assert.deepEqual(zoom, { zoom: 0.5, at: [200, 100] });
     assert.deepEqual(g.up(touch(2, 300, 100)), []);
-    assert.deepEqual(g.move(touch(1, 110, 100)), [{ orbit: [10, 0] }], 'the finger that stays turns, without a jump');
-    assert.deepEqual(g.up(touch(1, 110, 100)), [], 'and is no click');
+    assert.deepEqual(g.move(touch(1, 110, 100)), [{ orbit: [10, 0] }], 'the remaining finger orbits without a jump');
+    assert.deepEqual(g.up(touch(1, 110, 100)), [], 'lifting the remaining finger is no click');
 });
 
 test('three fingers look around; a fourth finger is ignored', () => {
@@ -62,8 +62,8 @@ test('three fingers look around; a fourth finger is ignored', () => {
     assert.deepEqual(g.move(touch(4, 900, 900)), [{ look: [0, 0] }]);
     g.up(touch(1, 100, 50));
     g.up(touch(4, 900, 900));
-    assert.deepEqual(Object.keys(g.move(touch(3, 310, 50))[0]), ['pan'], 'two that stay move');
-    assert.deepEqual(g.up(touch(2, 230, 80)), [], 'and are no click');
+    assert.deepEqual(Object.keys(g.move(touch(3, 310, 50))[0]), ['pan'], 'the two remaining fingers pan');
+    assert.deepEqual(g.up(touch(2, 230, 80)), [], 'lifting them is no click');
 });
 
 test('a lost pointer ends its gesture, an unknown pointer is ignored', () => {
@@ -95,7 +95,7 @@ test('each key maps to its motion or command', () => {
     assert.deepEqual(key('F', 'KeyF', { shiftKey: true }), { command: 'fit' });
     assert.deepEqual(key('?', 'Slash', { shiftKey: true }), { command: 'help' });
     assert.deepEqual(key('2', 'Digit2'), { group: 1 });
-    assert.equal(key('f', 'KeyF', { ctrlKey: true }), null, 'find in page stays the browser\'s');
+    assert.equal(key('f', 'KeyF', { ctrlKey: true }), null, 'Ctrl+F is left to the browser');
     assert.equal(key('q', 'KeyQ'), null);
 });
 

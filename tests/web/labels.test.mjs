@@ -67,7 +67,8 @@ function checkLeaders(members, placed) {
     const nearest = Math.min(...members.map(far)), most = members.filter((item) => far(item) <= 60).length > 4 ? nearest
         : Math.max(60, nearest);
     for (const item of members)
-        assert.equal(placed.get(item.id).leads, far(item) <= most, `${far(item)} of at most ${most}`);
+        assert.equal(placed.get(item.id).leads, far(item) <= most,
+            `a leader line is drawn only up to ${most}, the label is at ${far(item)}`);
 }
 
 // Random pictures from the size of a phone to that of a wall, with few or many rings, and with a legend in the way.
@@ -86,7 +87,7 @@ test('every alarm ring has a label or a call-out, within the picture and over no
         const rings = items.filter(({ ring }) => ring), boxes = new Map();
         for (const { id } of rings) {
             const place = placed.get(id);
-            assert.ok(place, `ring ${id} of ${rings.length} has none, in ${right} x ${bottom}`);
+            assert.ok(place, `ring ${id} of ${rings.length} has no label in a picture of ${right} x ${bottom}`);
             if (place.callout !== undefined)
                 checkLeaders(items.filter((item) => placed.get(item.id)?.callout === place.callout), placed);
             boxes.set(place.callout ?? id, { ...place, right: place.left + place.width, bottom: place.top + place.height });

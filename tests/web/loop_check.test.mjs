@@ -30,7 +30,7 @@ test('the forced tag is found even if another varies more by itself', () => {
     assert.deepEqual([loopCheck.stirred(span).index, loopCheck.stirred(span).by], [1, 3]);
     loopCheck.disarm();
     assert.equal(loopCheck.stirred(span), null);
-    assert.equal(new LoopCheckSession().stirred(span), null, 'nor before it is armed');
+    assert.equal(new LoopCheckSession().stirred(span), null, 'an unarmed loop check finds no tag');
 });
 
 test('steps smaller than the transmitter\'s resolution do not count', () => {

@@ -37,7 +37,7 @@ test('filters: a match with several candidates is doubtful until decided; unplac
     assert.deepEqual(tags(matches.rows('likely', '301 e-')), ['FT-3011']);
     assert.deepEqual(tags(matches.rows('all', 'MODEL')), ['열교환기/TT "1"']);
     matches.decide(matches.all[3], '');
-    assert.deepEqual([matches.counts().none, matches.counts().likely], [2, 2], 'none of those that it could be');
+    assert.deepEqual([matches.counts().none, matches.counts().likely], [2, 2], 'a decision for no equipment counts as none');
     matches.decide(matches.all[3], 'P-301');
     assert.deepEqual([matches.counts().sure, matches.counts().likely], [2, 2]);
 });
@@ -53,11 +53,11 @@ test('accepting a pattern decides its doubtful tags that have a proposal', () =>
     matches.decide(matches.all[4], 'V-1, "a"');
     assert.equal(matches.text(), 'Tag,Status,Asset\nTT-2011,sure,P-201\nTT-2012,sure,P-201\nTT-1011,none,\n' +
         '"열교환기/TT ""1""",sure,"V-1, ""a"""\n');
-    assert.deepEqual(readCsv(matches.text())[4], ['열교환기/TT "1"', 'sure', 'V-1, "a"'], 'it is read as it was written');
+    assert.deepEqual(readCsv(matches.text())[4], ['열교환기/TT "1"', 'sure', 'V-1, "a"'], 'a written list is read back unchanged');
     matches.decide(sure, 'E-101');
-    assert.equal(matches.decisions.has('TT-1011'), false, 'as it was before');
+    assert.equal(matches.decisions.has('TT-1011'), false, 'deciding as the list proposes removes the decision');
     matches.set(matches.all.slice(0, 2));
-    assert.deepEqual([...matches.decisions.keys()], ['TT-2011'], 'what is no longer there is not decided');
+    assert.deepEqual([...matches.decisions.keys()], ['TT-2011'], 'decisions for removed tags are dropped');
 });
 
 test('a decision for one tag extends to tags of its pattern with the same candidate', () => {

@@ -25,7 +25,7 @@ test('parameters missing from a saved view are those of its group, or of the pla
     assert.deepEqual(params.hidden, one.model.start.hidden);
     assert.deepEqual(params.isolines, group.isolines);
     assert.equal(params.interpolation, group.interpolation);
-    assert.ok(camera.eye.every(Number.isFinite), 'without a camera it is seen from home');
+    assert.ok(camera.eye.every(Number.isFinite), 'without a camera the view uses the home camera');
 });
 
 test('a view\'s colour bands become its group\'s numbers, because the legend draws them before the server answers', () => {

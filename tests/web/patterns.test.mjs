@@ -12,5 +12,5 @@ test('bands of limits have the colours of shaders/maps/operator.csv', () => {
     const colours = linesOf('maps/operator.csv').filter((line) => /^\d/.test(line)).map((line) => line.split(',').map(Number));
     assert.equal(colours.length, 256);
     for (const { from, to, colour } of LIMIT_BANDS) // the middle band is lightest at its centre
-        assert.deepEqual(colours[Math.floor(((from + to) / 2 + 3) / 6 * 256)], colour, `${from} to ${to}`);
+        assert.deepEqual(colours[Math.floor(((from + to) / 2 + 3) / 6 * 256)], colour, `colour of the band from ${from} to ${to}`);
 });

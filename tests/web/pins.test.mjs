@@ -33,13 +33,13 @@ test('pins cover alarm rings only if the picture has no other space', () => {
             rings.push({ left: x, right: x + 26, top: y, bottom: y + 26 });
     assert.ok(rings.every((ring) => !meets(placePin(pin(200, 300), AREA, [], rings), ring)));
     const all = [{ left: 0, top: 0, right: 600, bottom: 400 }], fixed = [boxOf(200, 300 - STEM - 20)];
-    assert.ok(!meets(placePin(pin(200, 300), AREA, fixed, all), fixed[0]), 'even then not another pin');
+    assert.ok(!meets(placePin(pin(200, 300), AREA, fixed, all), fixed[0]), 'a pin never covers another pin');
 });
 
 test('a pin keeps a distance from its own point\'s alarm ring, so that its stem is visible', () => {
     const ring = { left: 187, top: 187, right: 213, bottom: 213 }, box = placePin(pin(200, 200), AREA, [], [ring]);
     assert.ok(box.left > ring.right + STEM - 1 || box.bottom < ring.top - STEM + 1, JSON.stringify(box));
-    assert.ok(Math.hypot(box.left - 200, box.bottom - 200) < 60, 'and it is near');
+    assert.ok(Math.hypot(box.left - 200, box.bottom - 200) < 60, 'the pin stays near its point');
 });
 
 test('a pin without free space covers as few markers as it can', () => {

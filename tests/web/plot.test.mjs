@@ -79,9 +79,9 @@ test('a limit\'s name is on its line beside the curve, shortened or above the li
     assert.equal(first.text, 'TE-101 H 170');
     assert.ok(first.left >= 100 && first.left < 120 && (first.top + first.bottom) / 2 === 20, JSON.stringify(first));
     const [short] = namesBeside([[0, 20], [200, 20], [205, 60], [260, 60], [265, 0], [300, 0]], [limit]);
-    assert.equal(short.text, 'H 170', 'the long name has no room');
+    assert.equal(short.text, 'H 170', 'a long name is shortened');
     const [above] = namesBeside([[0, 20], [300, 20]], [{ ...limit, y: 40 }, { ...limit, y: 20 }]);
-    assert.ok(above.top > 20, 'not at the curve');
+    assert.ok(above.top > 20, 'the name does not cover the curve');
     const zigzag = Array.from({ length: 31 }, (_, i) => [10 * i, i % 2 ? 60 : 0]);
-    assert.deepEqual(namesBeside(zigzag, [limit]), [], 'a curve that is everywhere');
+    assert.deepEqual(namesBeside(zigzag, [limit]), [], 'no name is placed beside a curve that is everywhere');
 });

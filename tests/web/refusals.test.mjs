@@ -31,17 +31,19 @@ test('every language has a text for each refusal code, with the same arguments',
 test('the server uses every refusal code, and provides the arguments of its text', () => {
     assert.deepEqual(codes.filter((code) => !refused.some(([one]) => one === code)), []);
     for (const [code, args] of refused) {
-        const wanted = blanks(tables.en[code] ?? assert.fail(`no words for ${code}`));
-        assert.ok(wanted.length === 0 || args === null || wanted.every((name) => args.includes(name)), `${code}: ${args} for ${wanted}`);
+        const wanted = blanks(tables.en[code] ?? assert.fail(`no text for the code ${code}`));
+        assert.ok(wanted.length === 0 || args === null || wanted.every((name) => args.includes(name)),
+            `${code}: arguments ${args}, the text needs ${wanted}`);
     }
     for (const code of codes.filter((one) => blanks(tables.en[one]).length > 0))
-        assert.ok(refused.some(([one, args]) => one === code && args), `nobody gives ${code} its arguments`);
+        assert.ok(refused.some(([one, args]) => one === code && args), `the server never gives ${code} its arguments`);
 });
 
 test('PROTOCOL.md names every code with its arguments', () => {
     const rows = [...read('protocol/PROTOCOL.md').split('## Refusals')[1].matchAll(/^\| `(\w+)` \| ([^|]*)\| [^|]+ \| [^|]+ \|$/gm)];
     for (const [, code, args] of rows)
-        assert.deepEqual((args.match(/\w+/g) ?? []).sort(), blanks(tables.en[code] ?? assert.fail(`no code ${code}`)), code);
+        assert.deepEqual((args.match(/\w+/g) ?? []).sort(), blanks(tables.en[code] ?? assert.fail(
+            `PROTOCOL.md does not list ${code}`)), code);
     assert.deepEqual(rows.map(([, code]) => code).sort(), [...codes].sort());
 });
 

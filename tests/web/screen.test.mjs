@@ -65,7 +65,7 @@ test('ticks are round, include both ends, and none crowds an end', () => {
     assert.deepEqual(ticks(5, 5), []);
     for (const [min, max] of [[0, 7.1], [-273, 12], [0.001, 0.0093], [1e6, 3e6]]) {
         const list = ticks(min, max);
-        assert.ok(list.length >= 3 && list.length <= 8, `${list}`);
+        assert.ok(list.length >= 3 && list.length <= 8, `ticks ${list}`);
         assert.ok(list.every((v, i) => i === 0 || v > list[i - 1]));
     }
 });
@@ -98,11 +98,11 @@ test('colours: values in range take the map\'s colours, others the two end colou
     const steps = scale({ interval: 25 });
     assert.deepEqual(colourOf(steps, 51), colourOf(steps, 74));
     assert.notDeepEqual(colourOf(steps, 49), colourOf(steps, 51));
-    assert.deepEqual(colourOf(steps, 62), [160, 160, 160], 'the colour of the middle of the step');
+    assert.deepEqual(colourOf(steps, 62), [160, 160, 160], 'a step has the colour of its middle');
     const other = scale({ min: 15, max: 50, interval: 10 });
-    assert.deepEqual(colourOf(other, 26), colourOf(other, 34), 'steps count from MIN');
+    assert.deepEqual(colourOf(other, 26), colourOf(other, 34), 'steps are counted from MIN');
     assert.deepEqual(colourOf(steps, 100), colourOf(steps, 76), 'MAX is in the last step');
-    assert.deepEqual(colourOf(scale({ interval: 30 }), 95), [243, 243, 243], 'a last step that is cut short');
+    assert.deepEqual(colourOf(scale({ interval: 30 }), 95), [243, 243, 243], 'the last step is cut short');
 });
 
 test('colours: bands between breaks are spread evenly over the map', () => {
@@ -110,7 +110,7 @@ test('colours: bands between breaks are spread evenly over the map', () => {
     assert.deepEqual([0, 59.9, 60, 80, 100].map((value) => colourOf(bands, value)[0]), [32, 32, 96, 160, 224]);
     assert.deepEqual(edges(bands), [60, 80, 95]);
     assert.deepEqual(edges(scale({ interval: 40 })), [40, 80]);
-    assert.deepEqual(edges(scale({ interval: 1e-6 })), [], 'more than anybody sees');
+    assert.deepEqual(edges(scale({ interval: 1e-6 })), [], 'more edges than a person can see are left out');
 });
 
 test('logarithmic scales have logarithmic ticks and colours', () => {
@@ -151,7 +151,7 @@ test('patterns: half of the hatching is dark, a fifth of the stipple is dots, an
     assert.ok(Math.abs(darkness((x, y) => hatchAt(x, y, 300, period), 240, 150) - 0.5) < 0.02);
     assert.ok(Math.abs(darkness((x, y) => stippleAt(x, y, 300, period, [200, 200, 200]), 200, 64) - Math.PI * 0.26 ** 2) < 0.02);
     assert.deepEqual(hatchAt(3, 50, 300, 10 / 1.4142), hatchAt(13, 50, 300, 10 / 1.4142), 'stripes repeat after the diagonal of a period');
-    assert.deepEqual(hatchAt(40, 50, 300, 12), hatchAt(41, 51, 300, 12), 'and fall from left to right');
+    assert.deepEqual(hatchAt(40, 50, 300, 12), hatchAt(41, 51, 300, 12), 'stripes fall from left to right');
 });
 
 test('the nearest marker within reach is chosen, visible ones before hidden ones', () => {
@@ -205,10 +205,11 @@ test('a view with every parameter is read back from the address unchanged', () =
     };
     const at = Date.UTC(2026, 4, 1, 12) * 1000, text = writeAddress({ params, time: { atUs: at } });
     assert.deepEqual(readAddress(text), { camera: null, params, tag: null, time: { atUs: at } });
-    assert.ok(!writeAddress({ params, own: { power: 3, range: [-5, 5] } }).match(/power|range/), 'what is usual is not said');
+    assert.ok(!writeAddress({ params, own: { power: 3, range: [-5, 5] } }).match(/power|range/),
+        'the usual parameters are not in the address');
     assert.equal(writeAddress({ params: { strength: 1, decay: 1, radius_m: 0, reach_m: null, sensors: {} } }), '');
     const own = { hidden: ['ROOF'], isolate: [], ghost: ['HALL'] };
-    assert.equal(writeAddress({ params: own, own }), '', 'as the plant begins');
+    assert.equal(writeAddress({ params: own, own }), '', 'the plant\'s own start is not in the address');
     assert.equal(writeAddress({ params: { ...own, hidden: [] }, own }), '#hide=');
     assert.deepEqual(readAddress('#hide=&ghost=A,B').params, { hidden: [], ghost: ['A', 'B'] });
     assert.deepEqual(readAddress(writeAddress({ params: { look: 'flat', split: { look: 'flat' } } })).params, { look: 'flat', split: {} });

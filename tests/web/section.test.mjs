@@ -28,7 +28,7 @@ test('a section box written as parameters is read back with its size', () => {
     assert.equal(readBox(boxAround(bounds, 1.5), bounds), 1.5);
     const drawn = boxAround(bounds, 0.5);
     drawn.box.max[1] += 0.1;
-    assert.equal(readBox(drawn, bounds), null, 'one side was drawn out');
+    assert.equal(readBox(drawn, bounds), null, 'a box with one side moved has no size factor');
     assert.equal(readBox(cut('x', 1, false), bounds), null);
 });
 

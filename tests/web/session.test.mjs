@@ -60,7 +60,7 @@ test('without a view of its own, the session takes the plant\'s view', () => {
     assert.deepEqual(socket.sent[0], { type: 'hello', width: 640, height: 360, codecs: ['jpeg', 'png'] });
     assert.deepEqual(session.camera, welcome.plant.home);
     session.flush();
-    assert.equal(socket.sent.length, 1, 'the server knows its own home');
+    assert.equal(socket.sent.length, 1, 'the home camera is not sent, because the server knows it');
     assert.equal(session.params.group, welcome.view.group);
     assert.equal(session.connection.tries, 0);
 });
@@ -117,7 +117,7 @@ test('strength and decay of single sensors are changed one by one, and undone', 
     session.setParams({ sensors: { A: { strength: 2 } } });
     session.setParams({ sensors: { B: { decay: 3 } } });
     assert.deepEqual(session.params.sensors, { A: { strength: 2 }, B: { decay: 3 } });
-    assert.deepEqual(last(socket.sent).sensors, { B: { decay: 3 } }, 'only the change goes out');
+    assert.deepEqual(last(socket.sent).sensors, { B: { decay: 3 } }, 'only the changed parameters are sent');
     session.setParams({ sensors: { A: null } });
     assert.deepEqual(session.params.sensors, { B: { decay: 3 } });
     session.setParams({ sensors: null });
@@ -135,7 +135,7 @@ test('at most one camera is sent per animation frame, the newest', () => {
     assert.deepEqual(last(socket.sent), { type: 'camera', seq: 2, ...session.camera });
     session.setCamera(session.camera);
     session.flush();
-    assert.equal(socket.sent.length, before + 1, 'the same camera is no news');
+    assert.equal(socket.sent.length, before + 1, 'an unchanged camera is not sent');
 });
 
 test('over a congested connection no camera is sent; the newest is sent once it clears', () => {
@@ -164,7 +164,7 @@ test('after a reconnect the same camera and parameters are requested', () => {
     assert.equal(sockets[1].sent[0].params.distance, 'euclidean');
     assert.equal(sockets[1].sent[0].params.ramp_interval, 10);
     assert.equal(sockets[1].sent[0].params.seq, 1);
-    assert.equal(sockets[1].sent[0].params.range, undefined, 'what is only the group\'s own may have changed there');
+    assert.equal(sockets[1].sent[0].params.range, undefined, 'the group\'s own range is not sent, because it may have changed');
     sockets[1].say({ ...welcome, view: { ...welcome.view, ...params } });
     assert.deepEqual(session.camera, camera);
     assert.equal(session.params.ramp_interval, 10);
@@ -185,7 +185,7 @@ test('the plant\'s start sets are not sent; other sets are sent, even empty, and
     sockets[0].fail();
     connection.retryNow();
     sockets[1].accept();
-    assert.deepEqual(sockets[1].sent[0].params.hidden, [first.id], 'whatever the plant begins with by then');
+    assert.deepEqual(sockets[1].sent[0].params.hidden, [first.id], 'a user\'s own set stays, whatever the plant\'s start is by then');
     const named = makeSession({ camera: null, params: { hidden: [] } });
     named.connection.start();
     named.sockets[0].accept();
@@ -252,11 +252,11 @@ test('after a reconnect to another plant the session starts at that plant\'s hom
 test('parameters are shown at once, corrected by the answer, and restored when refused', () => {
     const { session, socket } = greeted();
     session.setParams({ group: 'pressure' });
-    assert.equal(session.params.interpolation, 'paper', 'a group brings its own settings');
+    assert.equal(session.params.interpolation, 'paper', 'a new group brings its own settings');
     assert.deepEqual(last(socket.sent), { type: 'params', seq: 1, group: 'pressure' });
     session.setParams({ colormap: 'viridis' });
     socket.say({ ...vector('server/params.json'), seq: 1, group: 'pressure', colormap: 'relief' });
-    assert.equal(session.params.colormap, 'viridis', 'the answer to an older question changes nothing');
+    assert.equal(session.params.colormap, 'viridis', 'the answer to an older request changes nothing');
     socket.say({ ...vector('server/params.json'), seq: 2, group: 'pressure', colormap: 'viridis' });
     session.setParams({ colormap: 'plaid' });
     socket.say({ type: 'error', code: 'bad_field', text: 'colormap: plaid', about: 'params' });
@@ -290,7 +290,7 @@ test('items drawn over the picture follow the parameters of the shown picture', 
     assert.deepEqual([session.shown, session.shown.colormap, news()], [session.params, 'cividis', 1]);
     session.setParams({ colormap: 'plaid' });
     sockets[1].say({ type: 'error', code: 'bad_field', text: 'colormap: plaid', about: 'params' });
-    assert.equal(session.shown, session.params, 'no picture comes of what was refused');
+    assert.equal(session.shown, session.params, 'no picture is awaited for refused parameters');
 });
 
 test('a choice or a resize between hello and welcome is not lost', () => {
@@ -349,7 +349,7 @@ test('tags have values, qualities, and ages that advance by the local clock', ()
     clock.advance(5000);
     assert.equal(session.model.ageMs(0, clock.now()), 5060);
     socket.say({ type: 'pong', t: 1, time_us: 3, oldest_age_ms: 300 });
-    assert.equal(session.model.ageMs(0, clock.now()), 300, 'it was read again, and is as it was');
+    assert.equal(session.model.ageMs(0, clock.now()), 300, 'an unchanged reading that was read again is fresh');
     clock.advance(100);
     assert.equal(session.model.ageMs(0, clock.now()), 400);
 });
@@ -449,7 +449,7 @@ test('health: after a reconnect the page is live only with a picture of the new 
     connection.start();
     sockets[0].accept();
     greet(sockets[0]);
-    assert.equal(now().kind, 'live', 'no picture is no old one');
+    assert.equal(now().kind, 'live', 'without a picture, no old picture is reported');
     session.drawn({ seq: 1, cameraSeq: 0 }, 1);
     sockets[0].fail(1001);
     connection.onState = () => kinds.push(now().kind);
@@ -461,7 +461,7 @@ test('health: after a reconnect the page is live only with a picture of the new 
     assert.match(now().detail, /^This picture is 4\.4 s old\./);
     session.drawn({ seq: 1, cameraSeq: 0 }, 1);
     assert.equal(now().kind, 'live');
-    assert.deepEqual([...new Set(kinds)], ['lost'], 'nor for a moment');
+    assert.deepEqual([...new Set(kinds)], ['lost'], 'the page is never live in between');
 });
 
 test('a frame that the server gave up is skipped silently', () => {
@@ -482,7 +482,7 @@ test('a frame has the depth grids that it refers to, of both halves or of none',
     assert.equal(newest(), null);
     socket.sayBytes(grid(2));
     socket.sayBytes(withDepth);
-    assert.equal(newest(), null, 'the other half is missing');
+    assert.equal(newest(), null, 'the depth of the other half is missing');
     socket.sayBytes(grid(0));
     socket.sayBytes(withDepth);
     assert.equal(newest().messages.length, 2);
@@ -491,13 +491,13 @@ test('a frame has the depth grids that it refers to, of both halves or of none',
     const kept = newest();
     assert.equal(kept.messages.length, 1);
     socket.sayBytes(withDepth);
-    assert.equal(newest(), kept, 'the grid of an earlier picture');
+    assert.equal(newest(), kept, 'the depth grid of the earlier picture is used');
     socket.sayBytes(frame);
     assert.equal(newest(), null);
     socket.sayBytes(new ArrayBuffer(0));
     assert.equal(events.at(-1)[0], 'ignored');
     session.hello([]);
-    assert.equal(session.depth, null, 'of another connection');
+    assert.equal(session.depth, null, 'depth grids of the old connection are dropped');
 });
 
 test('a follower shows the leader\'s parameters and camera until the follower moves', () => {
@@ -510,12 +510,13 @@ test('a follower shows the leader\'s parameters and camera until the follower mo
     session.drawn({ seq: 1, cameraSeq: 0, camera, waitUs: 0, fieldUs: 0, renderUs: 0, encodeUs: 0, sentTimeUs: 0 }, 1);
     const sent = socket.sent.length;
     session.flush();
-    assert.equal(socket.sent.length, sent, 'what is seen is not sent back');
+    assert.equal(socket.sent.length, sent, 'the leader\'s view is not sent back to the server');
     clock.advance(10);
     session.setCamera(orbit(session.camera, 3, 0));
     session.flush();
     assert.deepEqual(socket.sent.slice(sent).map((m) => [m.type, m.session]), [['follow', null], ['camera', undefined]]);
-    assert.ok(Math.hypot(...last(socket.sent).eye.map((v, i) => v - camera.eye[i])) < 1, 'from where it was seen last');
+    assert.ok(Math.hypot(...last(socket.sent).eye.map((v, i) => v - camera.eye[i])) < 1,
+        'the user\'s move starts from the last shown camera');
     socket.say(vector('server/following-nobody.json'));
     assert.deepEqual([session.following, session.params.group], [null, 'pressure']);
 });
@@ -553,11 +554,11 @@ test('a user who begins to lead no longer follows; the shown camera stays until 
         assert.equal(events.at(-1)[0], 'camera', how); // the new camera is also written to the page's address
         const said = events.length, sent = socket.sent.length;
         session.flush();
-        assert.equal(socket.sent.length, sent, 'the server knows it');
+        assert.equal(socket.sent.length, sent, 'the server knows the camera, so it is not sent');
         const own = orbit(session.camera, 3, 0);
         session.setCamera(own);
         session.drawn({ seq: 20, cameraSeq: 0, ...eyes(5) }, 1);
-        assert.deepEqual(session.camera, own, 'what was on its way changes nothing');
+        assert.deepEqual(session.camera, own, 'messages under way change nothing');
         assert.equal(events.length, said + 1);
     }
 });
@@ -585,7 +586,7 @@ test('timings list the stages of the last seconds\' pictures', () => {
     assert.equal(timingOf(recent, 'sensor'), null);
     const sensor = [...recent, picture(30, 2100, 1e6 + 9000, { data: true }), picture(1, 2200, null)];
     assert.deepEqual(timingOf(sensor, 'sensor'), { p50: 42, p95: 42 });
-    assert.equal(timingOf(sensor, 'network').p50, 5, 'where the clock is not known there is none');
+    assert.equal(timingOf(sensor, 'network').p50, 5, 'without a known server clock there is no network time');
     assert.deepEqual([kbitPerS(recent, 2000), kbitPerS(recent, 6050)], [32, 16]);
 });
 
@@ -613,15 +614,15 @@ test('alarms: each tag shows its most urgent alarm, and the list is in order of 
     assert.equal(alarms.gravest(0).kind, 'HH');
     assert.deepEqual(alarms.counts(), { active: 1, waiting: 2, latched: 0, of: [0, 1, 0, 0], gone: [0, 0, 0, 1] });
     assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'operator'), ['acknowledge', 'shelve']);
-    assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'viewer'), [], 'the role does not allow it');
+    assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'viewer'), [], 'a viewer has no actions');
     socket.say(vector('server/alarms-changed.json'));
-    assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.index, kind]), [[1, 'L']], 'what is there before what has gone');
+    assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.index, kind]), [[1, 'L']], 'an active alarm comes before a returned one');
     const [{ waiting, others }] = alarms.list();
-    assert.deepEqual([waiting, others.map(({ kind }) => kind)], [true, ['BAD']], 'which nobody has seen');
-    assert.equal(alarms.gravest(0), null, 'normal again, or set aside');
+    assert.deepEqual([waiting, others.map(({ kind }) => kind)], [true, ['BAD']], 'the unacknowledged alarm of the tag is waiting');
+    assert.equal(alarms.gravest(0), null, 'a normal or shelved alarm does not count');
     assert.equal(model.worstAlarm({ tags: [model.tags[0], model.tags[1]] }).kind, 'L');
     socket.say({ ...vector('server/alarms.json'), mode: 'display' });
-    assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'engineer'), [], 'the control system has its own');
+    assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'engineer'), [], 'alarms of the control system offer no actions');
     actOnAlarm(session, 'acknowledge', [['TT-101', 'HH']]);
     assert.deepEqual(socket.sent.at(-1), { type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TT-101', 'HH']] });
 });
@@ -637,7 +638,7 @@ test('alarms: a tag counts once, by its most urgent alarm', () => {
     socket.say(alarmRows([0, 'L', 'unacknowledged', 2, 1], [0, 'LL', 'unacknowledged', 1, 2],
         [1, 'H', 'acknowledged', 4, 1], [1, 'HH', 'acknowledged', 4, 1]));
     assert.deepEqual(alarms.list().map(({ tag, kind, others }) => [tag.index, kind, others.map((other) => other.kind)]),
-        [[0, 'LL', ['L']], [1, 'HH', ['H']]], 'the outer limit, also where both are of one priority');
+        [[0, 'LL', ['L']], [1, 'HH', ['H']]], 'the outer limit comes first, also with equal priorities');
     assert.deepEqual(alarms.counts(), { active: 2, waiting: 1, latched: 0, of: [1, 0, 0, 1], gone: [0, 0, 0, 0] });
     socket.say(alarmRows([0, 'L', 'acknowledged', 2, 1], [0, 'LL', 'returned', 1, 2]));
     assert.deepEqual([alarms.gravest(0).kind, alarms.gravest(0).state, alarms.gravest(0).waiting], ['L', 'acknowledged', true]);
@@ -653,13 +654,15 @@ test('alarms: each alarm is announced once, when it is raised', () => {
         socket.say({ ...alarmRows(...rows), all });
         return alarms.raised.map(({ tag, kind }) => `${tag.index ?? tag.name} ${kind}`);
     };
-    assert.deepEqual(raised(true, [0, 'H', 'unacknowledged', 3, 10]), [], 'alarms that were there before');
+    assert.deepEqual(raised(true, [0, 'H', 'unacknowledged', 3, 10]), [], 'alarms from before the connection are not announced');
     assert.deepEqual(raised(false, [0, 'H', 'acknowledged', 3, 10]), []);
     assert.deepEqual(raised(false, [0, 'HH', 'unacknowledged', 2, 20], [1, 'L', 'unacknowledged', 3, 20]), ['0 HH', '1 L']);
     assert.deepEqual(raised(false, [0, 'HH', 'returned', 2, 20], [1, 'L', 'returned', 3, 20]), []);
-    assert.deepEqual(raised(false, [0, 'HH', 'normal'], [1, 'L', 'unacknowledged', 3, 30]), ['1 L'], 'raised again');
+    assert.deepEqual(raised(false, [0, 'HH', 'normal'], [1, 'L', 'unacknowledged', 3, 30]), ['1 L'],
+        'an alarm that is raised again is announced again');
     assert.deepEqual(raised(false, [1, 'L', 'normal'], [1, 'L', 'normal']), []);
-    assert.deepEqual(raised(true, [0, 'H', 'acknowledged', 3, 10], [1, 'L', 'unacknowledged', 3, 40]), ['1 L'], 'one message with all');
+    assert.deepEqual(raised(true, [0, 'H', 'acknowledged', 3, 10], [1, 'L', 'unacknowledged', 3, 40]), ['1 L'],
+        'a complete list announces only new alarms');
 });
 
 test('alarms raised while the connection was lost are announced once, in the same plant', () => {
@@ -725,7 +728,7 @@ test('in the past the session\'s clock is separate, ages stand still, and a new 
     socket.say(time);
     assert.deepEqual(session.time, { atUs: time.at_us, speed: 60, fromUs: time.from_us });
     socket.say({ type: 'tags', time_us: time.at_us, age_ms: 0, values: [[0, 5]] });
-    assert.ok(Math.abs(session.clockUs() - 1793500000000000) < 1e6, 'the plant’s clock is of now');
+    assert.ok(Math.abs(session.clockUs() - 1793500000000000) < 1e6, 'the plant’s clock is at the present');
     const age = session.model.ageMs(0, clock.now());
     assert.equal(session.model.ageMs(0, clock.now() + 60000), age);
     assert.equal(session.model.alarms.gravest(0), null);

@@ -73,7 +73,8 @@ test('the eye enters a room whose walls hide its tag from outside', async () => 
     const outside = away(sides[0]), pump = { id: 'pump', bounds: { min: [0.4, 0.4, 0.4], max: [0.6, 0.6, 0.6] } };
     const cameras = await arrivals(hollow(0.7 * outside, 0.2 * outside, [pump])), last = cameras.at(-1);
     assert.ok(away(cameras[0]) > 0.9 * outside);
-    assert.ok(away(last) < 0.7 * outside && away(last) > 0.6 * outside, `${away(last)} of ${outside}`);
+    assert.ok(away(last) < 0.7 * outside && away(last) > 0.6 * outside,
+        `the eye ends ${away(last)} m from the tag, after ${outside} m outside`);
     assert.deepEqual(last.target, TAG.position);
 });
 

@@ -28,5 +28,5 @@ test('every class and id in a style sheet occurs in the page', () => {
         }
     }
     assert.deepEqual(unknown, []);
-    assert.ok(known.length > 500, `${known.length} were found`);
+    assert.ok(known.length > 500, `only ${known.length} names were found`);
 });

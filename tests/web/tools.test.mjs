@@ -19,7 +19,7 @@ test('sleep is detected when the calendar advances without the monotonic clock',
     };
     pass(500, 500);
     pass(500, 2500);
-    assert.deepEqual(slept, [], 'a timer that was late, or a clock that was corrected a little');
+    assert.deepEqual(slept, [], 'a late timer or a small clock correction is no sleep');
     pass(500, 3600500);
     assert.deepEqual(slept, [3600000]);
     pass(500, 500);
@@ -36,7 +36,7 @@ test('after a sleep the picture counts as old until the server sends again', () 
     session.picture = {};
     clock.time += 3600000;
     connection.doubt();
-    assert.equal(sockets[0].sent.at(-1).type, 'ping', 'it is asked at once');
+    assert.equal(sockets[0].sent.at(-1).type, 'ping', 'the server is asked at once');
     const { kind, banner, detail } = health(session, clock.now());
     assert.deepEqual([kind, banner], ['silent', true]);
     assert.match(detail, /This picture is 60 min old/);
@@ -47,7 +47,7 @@ test('after a sleep the picture counts as old until the server sends again', () 
     assert.equal(connection.quiet, true);
     clock.time += 12000;
     clock.advance(600);
-    assert.notEqual(connection.state, 'open', 'nothing came: the line is dead');
+    assert.notEqual(connection.state, 'open', 'without an answer the connection counts as lost');
 });
 
 test('simulated values are marked on the live picture, but not on the past', () => {
@@ -74,10 +74,11 @@ test('a wall\'s capitals are at least 16 minutes of arc high, wherever the scree
         const at = readWall(wall), [width, height] = screen, scale = wallScale(at, { width, height });
         assert.ok(letterMinutes(12.5 * scale, at, { width, height }) >= MINUTES - 1e-6, wall);
     }
-    assert.equal(wallScale({ inches: 55, metres: 0.5 }, { width: 800, height: 600 }), 1, 'never smaller than on a desk');
+    assert.equal(wallScale({ inches: 55, metres: 0.5 }, { width: 800, height: 600 }), 1, 'letters are never smaller than on a desk');
     const screen = { width: 1920, height: 1080 }, far = { inches: 10, metres: 50 }, { scale, metres } = wallFit(far, screen, screen);
-    assert.ok(1920 / scale > LEAST.width - 1e-6 && 1080 / scale > LEAST.height - 1e-6, 'all of it fits');
-    assert.ok(Math.abs(letterMinutes(12.5 * scale, { ...far, metres }, screen) - MINUTES) < 1e-2, 'and is read from as far as it says');
+    assert.ok(1920 / scale > LEAST.width - 1e-6 && 1080 / scale > LEAST.height - 1e-6, 'the whole wall page fits');
+    assert.ok(Math.abs(letterMinutes(12.5 * scale, { ...far, metres }, screen) - MINUTES) < 1e-2,
+        'letters are legible from the stated distance');
     const near = { inches: 85, metres: 8 };
     assert.deepEqual(wallFit(near, screen, screen), { scale: wallScale(near, screen), metres: 8 });
 });

@@ -37,7 +37,7 @@ test('the test vectors give the same letter sizes and display brightness', () =>
     for (const { inches, metres, display, window, unit } of sizes) {
         const [width, height] = display, room = { width: window[0], height: window[1] };
         const { scale } = wallFit({ inches, metres }, { width, height }, room, { width: 560, height: 315 });
-        assert.ok(Math.abs(scale - unit) < 1e-9, `${inches} inches: ${scale}`);
+        assert.ok(Math.abs(scale - unit) < 1e-9, `letter scale for ${inches} inches: ${scale}`);
     }
     for (const { minute, calls, light, ...dim } of dimming)
         assert.equal(brightness(dim, minute, calls), light, JSON.stringify({ ...dim, minute }));
@@ -45,5 +45,5 @@ test('the test vectors give the same letter sizes and display brightness', () =>
 
 test('the test vectors give the same burn-in shift of the picture', () => {
     for (const { us, shift } of cases('shifts'))
-        assert.deepEqual(burnShift(us), shift, `${us}`);
+        assert.deepEqual(burnShift(us), shift, `shift at ${us} µs`);
 });

@@ -120,13 +120,13 @@ for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PAR
         const { bytes, near, far, all } = encode(camera), grid = await decodeGrid(bytes);
         assert.deepEqual([...grid.near], near);
         assert.deepEqual([...grid.far], far);
-        assert.ok(far.some((code) => code >= 0), 'some cells are divided');
+        assert.ok(far.some((code) => code >= 0), 'some cells of the grid are divided');
         let off = 0;
         for (let i = 0; i < all.length; i++) {
             const depth = depthAt(grid, i % WIDTH + 0.5, Math.floor(i / WIDTH) + 0.5);
             off += all[i] !== null && Math.abs((grid.parallel ? depth : 1 / depth) - all[i].z) > 0.3 ? 1 : 0;
         }
-        assert.ok(off < 0.03 * all.length, `${off} pixels are elsewhere`);
+        assert.ok(off < 0.03 * all.length, `${off} pixels differ from the encoded depth`);
         assert.equal(depthAt(grid, WIDTH + 9, 5), null);
     });
 
@@ -192,7 +192,7 @@ for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PAR
     test(`the processor draws the picture from another camera, true to its surfaces: ${name}`, async () => {
         const same = await rasterized(camera, camera);
         const changed = same.raster.pixels.filter((pixel, i) => pixel !== same.picture[i] && !isGrey(pixel)).length;
-        assert.equal(changed, 0, 'from its own camera, the picture is as it was');
+        assert.equal(changed, 0, 'from its own camera, the picture is unchanged');
         const to = { ...camera, eye: [6.5, -8.6, 5.2], target: [0.2, 0, 0.4] }, { raster } = await rasterized(camera, to);
         const drawn = raster.pixels.slice();
         let shown = 0, wrong = 0;
@@ -223,7 +223,7 @@ test('the processor draws reduced pictures, and halves of split views only in th
     const near = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [1.05, -1.6, 1] }); // the box reaches behind the eye
     assert.ok(near.raster.pixels.some((pixel) => pixel !== 0));
     const lost = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [NaN, 0, 0] });
-    assert.ok(lost.raster.pixels.every((pixel) => pixel === 0), 'a camera that is nowhere sees nothing');
+    assert.ok(lost.raster.pixels.every((pixel) => pixel === 0), 'an invalid camera sees nothing');
     lost.raster.fillUndrawn(NaN);
     assert.ok(lost.raster.pixels.every((pixel) => pixel === lost.raster.pixels[0] && isGrey(pixel)));
 });
@@ -288,16 +288,16 @@ test('pictures wait for their depth, but not for a worker that does not answer',
     };
     try {
         assert.deepEqual([waits(0, 0), waits(900, 0), draws], [true, true, 0]);
-        assert.deepEqual([waits(200, 0), draws], [false, 1], 'late');
+        assert.deepEqual([waits(200, 0), draws], [false, 1], 'a picture whose depth is late is drawn without it');
         assert.equal(waits(0, 1), false, 'the worker still owes an answer');
         warp.take({ id: 0, parts: [] });
         assert.deepEqual([waits(0, 1), waits(0, 0), waits(900, 1), waits(200, 1)], [true, false, true, false]);
         Object.assign(warp, { isShown: false, session: { cameraNews: false, cameraSeq: 1, picture: { cameraSeq: 1 } } });
         warp.take({ id: 1, parts: [] });
-        assert.ok(waits(0, 2), 'a picture in a still view: the next move is drawn from it');
+        assert.ok(waits(0, 2), 'a still view waits for the depth, because the next move is drawn from it');
         warp.take({ id: 2, parts: [] });
         const before = draws;
-        assert.deepEqual([waits(0, 2), waits(5000, 2), draws], [false, false, before], 'no timer is left in a still view');
+        assert.deepEqual([waits(0, 2), waits(5000, 2), draws], [false, false, before], 'a still view leaves no timer');
     } finally {
         calls.restore();
         mock.timers.reset();

@@ -49,7 +49,7 @@ for (const name of names('frame/')) {
 test('a frame that arrives byte by byte is incomplete until its last byte', () => {
     const whole = bytes('frame/jpeg-key.bin');
     for (let n = 0; n < whole.length; n++)
-        assert.throws(() => decodeFrame(whole.slice(0, n)), WireError, `${n} bytes`);
+        assert.throws(() => decodeFrame(whole.slice(0, n)), WireError, `a frame cut to ${n} bytes is refused`);
     assert.equal(decodeFrame(whole).seq, 1);
 });
 

@@ -25,8 +25,8 @@ test('every language has every text key, with the same placeholders', () => {
     for (const language of LANGUAGES) {
         assert.deepEqual(Object.keys(tables[language]), Object.keys(tables.en), language);
         for (const [key, entry] of Object.entries(tables[language])) {
-            assert.deepEqual(blanks(entry), blanks(tables.en[key]), `${language}: ${key}`);
-            assert.ok(typeof entry === 'string' ? entry.trim() : entry.other.trim(), `${language}: ${key} says nothing`);
+            assert.deepEqual(blanks(entry), blanks(tables.en[key]), `${language}: placeholders of ${key}`);
+            assert.ok(typeof entry === 'string' ? entry.trim() : entry.other.trim(), `${language}: the text of ${key} is empty`);
         }
     }
 });
@@ -54,7 +54,7 @@ test('texts of the server and the fleet page: every language has each key with t
                 assert.deepEqual(values(text), values(english[key]), `${name}: ${key}: ${text}`);
         }
         assert.deepEqual(Object.keys(english).filter((key) => !/^(?:look|interpolation|distance)_/.test(key) && !use(key).test(texts)), [],
-            `${name}: unused words`);
+            `${name}: unused texts`);
     }
 });
 
@@ -70,7 +70,7 @@ test('each text has the plural forms of its language, and no others', () => {
     for (const language of LANGUAGES) {
         const { pluralCategories } = new Intl.PluralRules(language).resolvedOptions();
         for (const [key, entry] of Object.entries(tables[language]).filter(([, one]) => typeof one !== 'string'))
-            assert.deepEqual(Object.keys(entry).sort(), [...pluralCategories].sort(), `${language}: ${key}`);
+            assert.deepEqual(Object.keys(entry).sort(), [...pluralCategories].sort(), `${language}: plural forms of ${key}`);
     }
 });
 
@@ -94,7 +94,7 @@ test('no text key is unused', () => assert.deepEqual(unused(tables.en, source, p
 test('no requested text key is missing', () => {
     const all = asked(source, page);
     assert.deepEqual(all.filter((key) => tables.en[key] === undefined), []);
-    assert.ok(all.length > 150, `${all.length} were found`);
+    assert.ok(all.length > 150, `only ${all.length} text keys were found`);
 });
 
 test('texts shown before the first part is loaded are in the first file, and no others', async () => {
@@ -104,7 +104,7 @@ test('texts shown before the first part is loaded are in the first file, and no 
     const first = await tableOf(filesOf('en')[0]), modules = read(...paths);
     const all = asked(modules, read('index.html'));
     assert.deepEqual(all.filter((key) => first[key] === undefined), []);
-    assert.ok(all.length > 70, `${all.length} were found`);
+    assert.ok(all.length > 70, `only ${all.length} text keys were found`);
     assert.deepEqual(unused(first, modules, read('index.html')), []);
     for (const language of LANGUAGES)
         assert.deepEqual(Object.keys(await tableOf(filesOf(language)[0])), Object.keys(first), language);
@@ -123,7 +123,7 @@ test('the language is the address\'s, or else the preferred one, or else English
     assert.deepEqual(choose('', ['fr', 'de-AT', 'en']), ['de', 'de-AT']);
     assert.deepEqual(choose('?lang=xx', ['fr-CH']), ['en', 'en']);
     assert.deepEqual(choose('?lang=%00', ['en-GB']), ['en', 'en-GB']);
-    assert.deepEqual(choose('?lang=de-%7B'), ['de', 'de'], 'a region that is none');
+    assert.deepEqual(choose('?lang=de-%7B'), ['de', 'de'], 'an invalid region is ignored');
     assert.deepEqual(choose(), ['en', 'en']);
 });
 
@@ -131,7 +131,7 @@ test('plurals and placeholders are filled in, and unknown keys are reported', ()
     const rules = new Intl.PluralRules('en');
     const table = { a: { one: '{count} pump', other: '{count} pumps' }, b: '{x} and {y}' };
     assert.deepEqual([1, 2, 0].map((count) => phrase(table, rules, 'a', { count })), ['1 pump', '2 pumps', '0 pumps']);
-    assert.equal(phrase(table, rules, 'b', { x: '{y}', y: '$&' }), '{y} and $&', 'what is put in is not read again');
+    assert.equal(phrase(table, rules, 'b', { x: '{y}', y: '$&' }), '{y} and $&', 'inserted text is not parsed again');
     assert.throws(() => phrase(table, rules, 'c'), /no words for c/);
     assert.equal(say('alarms.some', { count: 1 }), '1 active alarm');
     assert.equal(sayIfKnown('quantity.taste', 'Taste'), 'Taste');

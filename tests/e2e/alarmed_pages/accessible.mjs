@@ -229,12 +229,13 @@ test('Tab reaches every control in visual order, and the focus is visible', opti
     }
     assert.deepEqual(reached.filter(({ seen, inside }) => !seen || !inside), []);
     const bar = reached.filter(({ inToolbar }) => inToolbar);
-    assert.deepEqual(bar.map(({ left }) => left), bar.map(({ left }) => left).sort((a, b) => a - b), 'from left to right');
+    assert.deepEqual(bar.map(({ left }) => left), bar.map(({ left }) => left).sort((a, b) => a - b),
+        'Tab goes from left to right in the bar');
     const missed = await page.evaluate(() => [...document.querySelectorAll('button, select, input:not([type="radio"]), [tabindex="0"]')]
         .filter((e) => e.checkVisibility({ visibilityProperty: true }) && !e.disabled)
         .filter((e) => !globalThis.reached.has(e)).map((e) => e.id || e.textContent));
     assert.deepEqual(missed, []);
-    assert.ok(reached.length > 15, `${reached.length}`);
+    assert.ok(reached.length > 15, `Tab reached only ${reached.length} controls`);
 });
 
 test('a dialog keeps the focus inside, closes on Escape, and returns the focus', options, async () => {
@@ -271,7 +272,7 @@ test('panels open and close by keys, and the focus follows', options, async () =
         await page.keyboard.press('Enter');
         await page.keyboard.press('Tab');
         const within = await page.evaluate(() => document.activeElement.closest('.panel, .toolbar')?.id ?? document.activeElement.id);
-        assert.ok(within !== 'viewport', `${name}: ${within}`);
+        assert.ok(within !== 'viewport', `the focus is in ${within} after opening ${name}`);
         await page.keyboard.press('Escape');
         await page.locator(name === 'views' ? '#views' : '#picture-panel').waitFor({ state: 'hidden' });
         await becomes(async () => (await focused()).name, `${name}-toggle`, 'back where it came from');

@@ -63,7 +63,7 @@ async function compare(t, page, codec) {
     t.diagnostic(`${codec}: mean dE ${mean.toFixed(2)}, 99 % below ${p99.toFixed(1)}`);
     assert.ok(contrast(shown) > 10);
     await shoot(page, `codec-${codec}`);
-    assert.ok(mean <= 2, `mean dE ${mean}`);
+    assert.ok(mean <= 2, `mean colour difference (dE) ${mean}`);
 }
 
 // Draws pictures while the camera moves. Returns the growth of the browser's shared memory and the size of all pictures, in MB.

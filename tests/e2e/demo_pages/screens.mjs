@@ -79,13 +79,13 @@ test('tablet: one finger orbits, two fingers pan and zoom', options, () => withP
     await hand.drag([[x, y]], [[x + 120, y]]);
     const turned = await view(page);
     assert.notDeepEqual(turned.camera.eye, start.camera.eye);
-    assert.ok(Math.abs(distance(turned) - distance(start)) < 1e-6, 'turned, and no nearer');
+    assert.ok(Math.abs(distance(turned) - distance(start)) < 1e-6, 'one finger turns the camera without zooming');
     await hand.drag([[x - 40, y], [x + 40, y]], [[x - 120, y], [x + 120, y]]);
     const pinched = await view(page);
-    assert.ok(distance(pinched) < distance(turned) * 0.6, `${distance(turned)} -> ${distance(pinched)}`);
+    assert.ok(distance(pinched) < distance(turned) * 0.6, `pinching zooms in: distance ${distance(turned)} -> ${distance(pinched)}`);
     await hand.drag([[x - 90, y], [x, y], [x + 90, y]], [[x - 30, y + 20], [x + 60, y + 20], [x + 150, y + 20]]);
     const looked = await view(page);
-    looked.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - pinched.camera.eye[i]) < 1e-6, 'three fingers: the eye stays'));
+    looked.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - pinched.camera.eye[i]) < 1e-6, 'three fingers look around: the eye stays'));
     assert.notDeepEqual(looked.camera.target, pinched.camera.target);
     const isHome = ({ camera }) => camera.eye.every((m, i) => Math.abs(m - start.camera.eye[i]) < 1e-6);
     await settle(page);
@@ -119,7 +119,7 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
         const { scrollWidth, clientWidth } = document.getElementById(id);
         return clientWidth < 150 || (id === 'health' && scrollWidth > clientWidth);
     }));
-    assert.deepEqual(whole, [], 'name and state of the plant have room');
+    assert.deepEqual(whole, [], 'the plant\'s name and state fit');
     await page.locator('#viewport').focus();
     await page.keyboard.press('j');
     await page.locator('#split-bar').waitFor();
@@ -128,7 +128,7 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     await page.locator('#legend').waitFor({ state: 'hidden' });
     await page.locator('#legend-right').waitFor();
     assert.deepEqual(await page.locator('.legend:visible').evaluateAll((all) => all.map(({ id }) => id)), ['legend-right'],
-        'halves that say the same share one legend');
+        'halves with equal parameters share one legend');
     await choose('right-group', 'pressure');
     await choose('isolines', { index: 2 });
     await settle(page);
@@ -136,14 +136,15 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     assert.deepEqual(legends.map((text) => text.trim()), ['Temperature °C', 'Pressure bar']);
     const [left, right] = await Promise.all(['#legend', '#legend-right'].map((id) => page.locator(id).boundingBox()));
     const box = await page.locator('#viewport').boundingBox(), middle = box.x + box.width / 2;
-    assert.ok(left.x + left.width <= middle && right.x > middle, 'each legend in its half');
+    assert.ok(left.x + left.width <= middle && right.x > middle, 'each legend is in its half');
     const bar = await page.locator('#split-bar').boundingBox();
-    assert.ok(bar.x > middle && bar.x + bar.width <= box.x + box.width && bar.y + bar.height <= box.y + box.height, 'in the right half');
+    assert.ok(bar.x > middle && bar.x + bar.width <= box.x + box.width && bar.y + bar.height <= box.y + box.height,
+        'the bar is in the right half');
     const places = await page.evaluate(() =>
         globalThis.plantcast.overlay.markers.map(({ tag, x, half, alarm }) => ({ group: tag.group, x, half, alarm: Boolean(alarm) })));
     for (const { group, x, half, alarm } of places) {
         // each half marks the sensors of its own group, and tags in alarm of any group
-        assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `${group} in half ${half}`);
+        assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `a marker of group ${group} is in half ${half}`);
         assert.equal(half, box.x + x >= middle - 1 ? 1 : 0);
     }
     assert.ok(places.some(({ half }) => half === 0) && places.some(({ half }) => half === 1));
@@ -170,8 +171,9 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
             .map(({ parts, alarm }) => ({ text: parts.map(([part]) => part).join(' '), alarm: Boolean(alarm) }));
     });
     assert.ok(labels.every(({ text, alarm }) => alarm || / m$|\u202fm/.test(text)), JSON.stringify(labels)); // no label is empty
-    assert.ok(labels.some(({ text }) => text.startsWith(`${sensor} 0.00`)), `where it is measured from: ${JSON.stringify(labels)}`);
-    assert.ok(light[0] > 0.3 && Math.abs(light[1]) < 0.02, `the sun stands in the east: ${light}`);
+    assert.ok(labels.some(({ text }) => text.startsWith(`${sensor} 0.00`)),
+        `a label names the reference sensor: ${JSON.stringify(labels)}`);
+    assert.ok(light[0] > 0.3 && Math.abs(light[1]) < 0.02, `the light comes from the east: ${light}`);
     assert.equal(await page.locator('#sensor').inputValue(), sensor);
     await shoot(page, 'distance');
     await choose('show', 'difference');
@@ -192,7 +194,7 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
         legend.show(true);
         return legend.element.textContent;
     });
-    assert.doesNotMatch(notes, /error up to/, 'this view has no unit');
+    assert.doesNotMatch(notes, /error up to/, 'a view without a unit says nothing about errors');
 }));
 
 test('the right half\'s interpolation method is shown on every screen if it differs from the left half\'s',
@@ -262,7 +264,7 @@ test('legends stay readable beside an open panel, which ends above the status ba
 
 test('tablet in portrait: the equipment list is folded, and nothing sticks out',
     options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
-    assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded away');
+    assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded');
     await becomes(() => sticksOut(page), []);
     await shoot(page, 'tablet-upright');
 }));
@@ -395,7 +397,7 @@ test('phones: sheets, time bar and trends leave room for the picture; the sheet\
         await visible(page, '#alarms');
         await leaves('alarms-time', 0.2);
         const [stage, list] = await Promise.all(['.stage', '#alarms'].map((one) => boxOf(page, one)));
-        assert.ok(Math.abs(stage.y + stage.height - list.y - list.height) < 1, `${name}: nothing below the list`);
+        assert.ok(Math.abs(stage.y + stage.height - list.y - list.height) < 1, `${name}: there is no gap below the list`);
 
         const isAt = (part) => page.waitForFunction((px) => Math.abs(document.getElementById('alarms').offsetHeight - px) < 2,
             part * height);
@@ -456,7 +458,7 @@ test('phone: two fingers pinch, twist and pan', options, () => withPage(PHONE, a
     const start = await view(page);
     await hand.drag([[x - 40, y], [x + 40, y]], [[x - 110, y], [x + 110, y]]);
     const pinched = await view(page);
-    assert.ok(distance(pinched) < distance(start) * 0.6, 'nearer');
+    assert.ok(distance(pinched) < distance(start) * 0.6, 'pinching zooms in');
     assert.ok(Math.abs(azimuth(pinched) - azimuth(start)) < 1e-6, 'a pinch does not turn');
     await hand.drag([[x - 80, y], [x + 80, y]], [[x, y - 80], [x, y + 80]], 20);
     const twisted = await view(page), turned = ((azimuth(twisted) - azimuth(pinched)) * 180) / Math.PI;
@@ -497,7 +499,7 @@ test('phones: names and states are readable and complete, and controls are finge
         const [more, ...others] = await Promise.all(['#more', '#legend', '#alarm-strip'].map((id) => page.locator(id).boundingBox()));
         for (const other of others)
             assert.ok(more.x >= other.x + other.width || more.y >= other.y + other.height,
-                `${name}: legend and alarms are read beside it: ${JSON.stringify([more, other])}`);
+                `${name}: legend and alarms are beside the sheet: ${JSON.stringify([more, other])}`);
         assert.ok(more.y >= 0 && more.x >= 0 && more.y + more.height <= height && more.x + more.width <= width, name);
         await becomes(() => tooSmall(page), [], name);
         await page.keyboard.press('Escape');
@@ -509,7 +511,7 @@ test('phones: names and states are readable and complete, and controls are finge
     await page.locator('#more-toggle').tap();
     const [ink, ground] = await page.locator('#measure').evaluate((e) =>
         [getComputedStyle(e.querySelector('.words')).color, getComputedStyle(e).backgroundColor]);
-    assert.ok(contrastRatio(rgb(ink), rgb(ground)) >= 4.5, `${ink} on ${ground}`);
+    assert.ok(contrastRatio(rgb(ink), rgb(ground)) >= 4.5, `contrast of ${ink} on ${ground} is too low`);
     await page.locator('#measure').tap();
 
     await page.setViewportSize({ width: 390, height: 844 });

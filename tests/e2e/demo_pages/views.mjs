@@ -67,10 +67,10 @@ test('a click opens a card of the place clicked, and the card stays open while v
     assert.match(await page.locator('#place .state').textContent(), /Between sensors|Measured here/);
     assert.ok(await page.locator('#place .nearest li').count() >= 2);
     await comeIn(1);
-    assert.equal(await page.locator('#place').isVisible(), true, 'it stays while values come in');
+    assert.equal(await page.locator('#place').isVisible(), true, 'the card stays while values come in');
     await page.keyboard.press('Escape');
     await comeIn(2);
-    assert.equal(await page.locator('#place').isVisible(), false, 'and does not come back');
+    assert.equal(await page.locator('#place').isVisible(), false, 'the closed card does not come back');
 });
 
 test('keys set the standard views and the parallel projection', options, async () => {
@@ -82,9 +82,10 @@ test('keys set the standard views and the parallel projection', options, async (
         return high && Math.abs(eye[0] - target[0]) < 1 && eye[2] > target[2] + 20;
     });
     const { camera } = await view(page);
-    assert.ok(camera.height_m > 20 && camera.height_m < 200, `${camera.height_m} m`);
+    assert.ok(camera.height_m > 20 && camera.height_m < 200, `the camera's height is ${camera.height_m} m`);
     assert.ok(camera.eye[2] > camera.target[2] + 20 && Math.abs(camera.eye[0] - camera.target[0]) < 1);
-    assert.equal(await page.evaluate(() => globalThis.plantcast.session.picture.camera.height_m > 20), true, 'the frame says so');
+    assert.equal(await page.evaluate(() => globalThis.plantcast.session.picture.camera.height_m > 20), true,
+        'the frame has the same projection');
     await shoot(page, 'plan');
     await page.keyboard.press('o');
     await page.keyboard.press('h');
@@ -102,7 +103,7 @@ test('sections, ghosts and hidden equipment are drawn', options, async () => {
     await waitFor((before) => globalThis.plantcast.session.confirmed.clip.planes[0][3] !== before, clip.planes[0][3]);
     await settle(page);
     const [legend, panel] = await Promise.all(['#legend', '#views'].map((id) => page.locator(id).boundingBox()));
-    assert.ok(legend.x + legend.width <= panel.x, 'the legend is read beside the panel');
+    assert.ok(legend.x + legend.width <= panel.x, 'the legend is beside the panel');
     await shoot(page, 'cut');
     await page.locator('#cut label', { hasText: 'Off' }).click();
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'T-101' }));

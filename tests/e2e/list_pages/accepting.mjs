@@ -78,7 +78,7 @@ test('the filter shows how many locations would be accepted and why others are n
     await page.getByLabel('Minimum confidence').fill('7');
     await page.getByRole('button', { name: /^Accept/, disabled: true }).waitFor();
     await page.getByLabel('Minimum confidence').fill('0.9');
-    assert.equal(assumed(), ASSUMED, 'nothing is written before');
+    assert.equal(assumed(), ASSUMED, 'nothing is written before the confirmation');
 });
 
 test('accepting five hundred locations writes one list and one audit line, and leaves the other rows unchanged', options, async () => {
@@ -116,7 +116,7 @@ test('undo restores the old list byte for byte, also after a reload of the page'
     await says('#engineer .accept .accepted', 'Undone. tags.csv.1 applies again.');
     assert.equal(await page.locator('dialog.diff[open]').count(), 0, 'the answer to the confirmation does not open the dialog again');
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
-    assert.notEqual(readFileSync(`${tagsFile}.2`, 'utf8'), original, 'what was undone is kept, too');
+    assert.notEqual(readFileSync(`${tagsFile}.2`, 'utf8'), original, 'the undone list is kept, too');
     assert.deepEqual(browser.errors, []);
 });
 

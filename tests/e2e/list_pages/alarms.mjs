@@ -62,7 +62,7 @@ test('readings beyond a limit are counted, marked and listed, the most urgent fi
     await page.locator('#alarms-list tr:first-child', { hasText: new RegExp(`${HOT}High-high.*${limitOf(HOT).HH + 1}`) }).waitFor();
     await settle(page);
     const [legend, list] = await Promise.all(['#legend', '#alarms'].map((id) => page.locator(id).boundingBox()));
-    assert.ok(legend.x + legend.width <= list.x, 'the legend is read beside the list');
+    assert.ok(legend.x + legend.width <= list.x, 'the legend is beside the list');
     await shoot(page, 'alarms-desktop');
 });
 
@@ -106,7 +106,7 @@ test('an acknowledgement by one user is shown to everybody', options, async () =
         await other.page.waitForFunction(
             (alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
         await page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
-        assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'on a wall too');
+        assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'the wall shows the alarm strip, too');
         await page.locator(`tr[data-alarm="${id}"]`, { hasText: /Acknowledged.*by local/s }).waitFor();
         await page.locator(`tr[data-alarm="${id}"] button[data-action="acknowledge"]`).waitFor({ state: 'detached' });
         await becomes(() => page.evaluate(() => document.activeElement.closest('tr')?.dataset.alarm), id, 'the keyboard stays there');
@@ -125,7 +125,7 @@ test('an alarm\'s row stays under the pressed pointer while other alarms arrive'
     await page.mouse.down();
     await plant.ask(`set ${name} ${limits.H + 0.1}`);
     await page.locator('#alarms-list tr', { hasText: `${name}High` }).waitFor();
-    assert.ok(await held.evaluate((tr) => tr.isConnected), 'it is the same');
+    assert.ok(await held.evaluate((tr) => tr.isConnected), 'the pressed row is still in the page');
     const now = await row.locator('button[data-action="shelve"]').boundingBox();
     await page.mouse.move(now.x + now.width / 2, now.y + now.height / 2);
     await page.mouse.up();
@@ -208,7 +208,7 @@ test('a tag has one row and counts once; a returned alarm is not active, and is 
         const px = [(x - box.left) * ratio, (y - box.top - 10 * unit) * ratio].map(Math.round);
         return [...canvas.getContext('2d').getImageData(px[0], px[1], 1, 1).data];
     }, at);
-    assert.ok(Math.min(r, g, b) > 200, `${[r, g, b]}`);
+    assert.ok(Math.min(r, g, b) > 200, `colour of the ring's middle: ${[r, g, b]}`);
     await shoot(page, 'alarms-returned');
     await rowOf(LOW).locator('button[data-action="acknowledge"]').click();
     await waitForWords('^No active alarms$');
@@ -280,8 +280,8 @@ test('in forced colours active and returned alarms still look different', option
     const [, chosen] = grounds.find(([isChecked]) => isChecked);
     await shoot(page, 'alarms-forced-colours');
     await page.emulateMedia({ forcedColors: 'none' });
-    assert.ok(grounds.every(([isChecked, ground]) => isChecked === (ground === chosen)), `the chosen quantity: ${grounds}`);
-    assert.deepEqual(frames, [true, true], 'frames around the past');
+    assert.ok(grounds.every(([isChecked, ground]) => isChecked === (ground === chosen)), `background of the chosen quantity: ${grounds}`);
+    assert.deepEqual(frames, [true, true], 'the past is framed');
     const [ink, ground] = ['rgb(0, 0, 0)', 'rgb(255, 255, 255)'];
     assert.deepEqual(looks, [1, 2, 3, 4].flatMap(() => [`${ink},${ground},none,none,none`, `${ground},${ink},dashed,none,none`]));
 });
@@ -341,7 +341,7 @@ test('the list\'s edge can be dragged and moved by keys; its size survives a rel
         await on.mouse.move(x + 204, 400, { steps: 3 });
         await on.mouse.up();
         const dragged = await width();
-        assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `${usual} to ${dragged}`);
+        assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `the list's edge moved from ${usual} to ${dragged}`);
         await edge.press('ArrowLeft');
         assert.equal(await width(), dragged + 40);
         for (const screen of [740, 1280]) { // a narrow window does not change the stored width

@@ -61,7 +61,7 @@ test('the list shows areas, assets and tags, and a search finds each of 20,000',
     assert.equal(model, ASSETS * TAGS_EACH);
     const list = page.locator('#assets-list');
     assert.equal(await list.locator('.area').first().textContent(), 'Unit 029');
-    assert.ok(await list.locator('[role="treeitem"]').count() < 60, 'only what is in sight is in the page');
+    assert.ok(await list.locator('[role="treeitem"]').count() < 60, 'the page contains only visible rows');
     await page.locator('#assets-search').fill('TI-137-42');
     await list.locator('.reading', { hasText: 'TI-137-42' }).waitFor();
     assert.deepEqual(await list.locator('b').allTextContents(), ['Unit 4', 'E 137']);
@@ -130,7 +130,7 @@ test('the list can be used by the keyboard alone', options, async () => {
     await page.waitForFunction((eye) =>
         Math.hypot(...globalThis.plantcast.session.picture.camera.eye.map((x, i) => x - eye[i])) > 10, camera.eye);
     await page.keyboard.press('End');
-    assert.ok(await page.evaluate(() => document.activeElement.getBoundingClientRect().bottom <= innerHeight), 'the last is in sight');
+    assert.ok(await page.evaluate(() => document.activeElement.getBoundingClientRect().bottom <= innerHeight), 'the last row is visible');
     assert.deepEqual(browser.errors, []);
 });
 
@@ -159,8 +159,8 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     t.diagnostic(`pictures every ${middle(frames).toFixed(1)} ms (95 %: ${middle(frames, 0.95).toFixed(1)}), of which the list takes ` +
         `${middle(work).toFixed(2)} ms (95 %: ${middle(work, 0.95).toFixed(2)}); ${rows} rows in the page`);
     // 20 % quantile: in slower frames the page was waiting for the processor
-    assert.ok(middle(work, 0.2) < 16, `more than a picture has: ${middle(work, 0.2)} ms`);
-    assert.ok(rows < 80, `${rows} rows`);
+    assert.ok(middle(work, 0.2) < 16, `scrolling takes more than one frame: ${middle(work, 0.2)} ms`);
+    assert.ok(rows < 80, `the page contains ${rows} rows`);
     await shoot(page, 'assets-20000');
 });
 
@@ -211,6 +211,6 @@ test('memory does not grow while the list is used', { ...options, timeout: optio
         after = await heap();
     }
     t.diagnostic(`${USE_S} s: ${before.megabytes.toFixed(1)} -> ${after.megabytes.toFixed(1)} MB, ${before.nodes} -> ${after.nodes} nodes`);
-    assert.ok(isSteady(before, after), `${JSON.stringify(before)} -> ${JSON.stringify(after)}`);
+    assert.ok(isSteady(before, after), `the page grew: ${JSON.stringify(before)} -> ${JSON.stringify(after)}`);
     assert.deepEqual(browser.errors, []);
 });

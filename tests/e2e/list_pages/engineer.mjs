@@ -66,7 +66,7 @@ test('a click puts an unplaced tag onto the surface, and its field appears', opt
     await page.mouse.click(x, y);
     await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}distances along the surface');
     const place = await moved();
-    assert.ok(Math.hypot(place[0] - 0.2, place[1] + 0.5, place[2] - 0.2) < 0.02, `${place}`);
+    assert.ok(Math.hypot(place[0] - 0.2, place[1] + 0.5, place[2] - 0.2) < 0.02, `the tag was placed at ${place}`);
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag }) => tag.name === 'TI-9'));
     await settle(page);
     await shoot(page, 'engineer-placed');
@@ -194,7 +194,7 @@ test('a failed or missing loop check is shown to everybody, also after a reload 
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) =>
         globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', null]);
     await says('#legend .keys', 'Not loop-checked');
-    assert.notDeepEqual(await snapshot(), plain, 'in the server\'s pictures too, whose plant was loaded again before');
+    assert.notDeepEqual(await snapshot(), plain, 'the server\'s pictures show the loop check, too');
     await settle(page);
     await shoot(page, 'engineer-unproven');
     assert.deepEqual(browser.errors, []);
@@ -251,7 +251,7 @@ test('a read-only folder of the tag list is reported, and nothing changes', opti
         chmodSync(plant.folder, 0o755);
     }
     assert.equal(readFileSync(tagsFile, 'utf8'), before);
-    assert.ok(await moved(), 'what was tried is still there');
+    assert.ok(await moved(), 'the trial positions are still there');
     await settle(page);
     await shoot(page, 'engineer-refused');
     await button('Save …').click();

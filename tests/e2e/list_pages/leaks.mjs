@@ -165,6 +165,6 @@ test('repeating all actions leaves as many DOM nodes and listeners as before', o
     const said = JSON.stringify({ first, last, grown });
     t.diagnostic(said);
     assert.ok(last.nodes <= first.nodes && last.listeners <= first.listeners, said);
-    assert.ok(grownKb < HEAP_KB, `${grownKb} kB a cycle, ${said}`);
+    assert.ok(grownKb < HEAP_KB, `memory grows by ${grownKb} kB per cycle, ${said}`);
     assert.deepEqual(browser.errors, []);
 });

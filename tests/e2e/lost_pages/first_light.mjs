@@ -54,7 +54,7 @@ test('live frames arrive, and the page says that they are live', options, async 
     await waitForHealth(page, 'live');
     await arrive(page);
     const picture = await grab(page);
-    assert.ok(contrast(picture) > 10, `contrast ${contrast(picture)}`);
+    assert.ok(contrast(picture) > 10, `contrast of the picture is ${contrast(picture)}`);
     const box = await page.locator('#viewport').boundingBox();
     await waitForWhole(Math.round(box.width), Math.round(box.height)); // the picture has one pixel per screen pixel
     await page.locator('#clock', { hasText: /^\w{3} \d+, \d{4} \d\d:\d\d:\d\d UTC/ }).waitFor();
@@ -72,7 +72,7 @@ test('a changed reading changes the picture at its sensor, and nowhere but on it
     const inside = seen.filter((m) => !m.occluded && m.quality === 'good' && off(m) < before.height / 2 - 40);
     inside.sort((a, b) => off(a) - off(b));
     const one = inside[0];
-    assert.ok(one, 'a sensor in sight');
+    assert.ok(one, 'no sensor is visible');
     const wanted = one.value > 100 ? 40 : 160;
     t.diagnostic(`${one.name} on ${one.asset}: ${one.value} -> ${wanted}`);
 
@@ -86,14 +86,14 @@ test('a changed reading changes the picture at its sensor, and nowhere but on it
 
     assert.ok(meanAround(change, one.x, one.y, 2) > 30, `at the sensor the colour changed by ${meanAround(change, one.x, one.y, 2)}`);
     const others = inside.filter((m) => m.asset !== one.asset);
-    assert.ok(others.length >= 3, 'other equipment is in sight');
+    assert.ok(others.length >= 3, 'fewer than three other assets are visible');
     const box = await assetBox(one.asset);
     for (const other of others) {
         const here = meanAround(change, other.x, other.y, 3);
         if (other.x < box.left || other.x > box.right || other.y < box.top || other.y > box.bottom)
-            assert.ok(here < 6, `${other.name} on ${other.asset}: ${here}`);
+            assert.ok(here < 6, `the colour of ${other.name} on ${other.asset} changed by ${here}`);
     }
-    assert.equal(countOutside(change, 24, box), 0, 'pixels that changed elsewhere');
+    assert.equal(countOutside(change, 24, box), 0, 'number of pixels that changed elsewhere');
     await page.mouse.move(one.pageX, one.pageY);
     await page.locator('#card', { hasText: new RegExp(`^${one.name}`) }).waitFor();
     await page.locator('#card .value', { hasText: new RegExp(`^${wanted}\\.\\d °C$`) }).waitFor();
@@ -110,7 +110,7 @@ test('mouse, wheel and keys move the camera, and the picture follows', options, 
     await page.mouse.move(centre[0] + 220, centre[1] + 40, { steps: 12 });
     await page.mouse.up();
     const turned = await view(page), stays = await pageOf(page, pivot);
-    assert.ok(Math.hypot(stays[0] - centre[0], stays[1] - centre[1]) < 2, `what was under the pointer stays there: ${stays}`);
+    assert.ok(Math.hypot(stays[0] - centre[0], stays[1] - centre[1]) < 2, `the point under the pointer moved to ${stays}`);
     assert.notDeepEqual(turned.camera.eye, start.camera.eye);
     await page.mouse.wheel(0, -400);
     const distance = ({ camera }) => Math.hypot(...camera.eye.map((x, i) => x - camera.target[i]));
@@ -155,9 +155,9 @@ test('the daemon dies: a message says so and the picture stays; when the daemon 
     assert.deepEqual(now.camera, asked.camera);
     for (const name of ['group', 'distance', 'interpolation', 'ramp_interval', 'colormap', 'look'])
         assert.equal(now.params[name], asked.params[name], name);
-    assert.equal(await codec(), coded, 'coded in the same way');
+    assert.equal(await codec(), coded, 'the codec is the same as before');
     const again = difference(before, await grab(page));
-    assert.ok(countOutside(again, 32, {}) < again.at.length * 0.01, 'the same picture again');
+    assert.ok(countOutside(again, 32, {}) < again.at.length * 0.01, 'the picture is the same again');
     await shoot(page, 'reconnected');
 });
 

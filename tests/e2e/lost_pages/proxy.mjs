@@ -62,14 +62,15 @@ test('a page behind nginx without WebSocket lines names nginx and the lines; wit
                 await shown(page, words);
                 await shown(page, LINES);
                 await shoot(page, `proxy-${name}`);
-                assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name}: nothing sticks out`);
+                assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth),
+                    `${name}: nothing extends beyond the page`);
             } finally {
                 await close();
             }
         }
         await plant.daemon.line(/stream: a request from 127\.0\.0\.1 came without Upgrade: websocket, although it is a WebSocket/);
         const minutes = Math.floor((performance.now() - began) / 60000);
-        assert.ok(plant.daemon.said.match(/came without Upgrade/g).length <= 1 + minutes, 'one line a minute');
+        assert.ok(plant.daemon.said.match(/came without Upgrade/g).length <= 1 + minutes, 'the daemon logs one line a minute');
         const answer = await fetch(`http://127.0.0.1:${plant.port}/stream`);
         assert.equal(answer.status, 426);
         assert.match(await answer.text(), /^426 Upgrade Required: /);

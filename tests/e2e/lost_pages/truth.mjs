@@ -71,10 +71,10 @@ test(`on a wall of ${SIZE.width} pixels, all text is legible from 3 m, alarms ar
         await settle(page);
         const { readWall } = await import('../../../clients/web/core/wall.js');
         const seen = await letters(page);
-        assert.ok(seen.length > 12, `${seen.length} texts`);
+        assert.ok(seen.length > 12, `only ${seen.length} texts found`);
         const small = seen.map(({ text, px }) => ({ text, minutes: letterMinutes(px, readWall('?wall'), WALL.screen) }))
             .filter(({ minutes }) => minutes < 14.5);
-        assert.deepEqual(small, [], 'minutes of arc');
+        assert.deepEqual(small, [], 'texts smaller than 14.5 minutes of arc');
         assert.ok(await page.evaluate(() => globalThis.plantcast.overlay.unit) > SIZE.width / 960);
         assert.equal(await page.evaluate(() => [...document.querySelectorAll('button, select, input')]
             .filter((e) => e.id !== 'alarm-strip' && e.checkVisibility() && e.getBoundingClientRect().width > 1 &&
@@ -123,7 +123,7 @@ test('a tablet with a wrong date still shows correct ages and the plant\'s time'
     withPage(url, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         const far = () => page.evaluate(() => Date.now() - globalThis.plantcast.session.clockUs() / 1000);
-        assert.ok(await far() < -3 * 86400e3 + 60000, 'its date is wrong');
+        assert.ok(await far() < -3 * 86400e3 + 60000, 'the tablet\'s date is wrong');
         const told = () => page.evaluate(() => ({ clock: document.getElementById('clock').textContent,
             age: document.getElementById('age').textContent }));
         // the age must stay right even when the clock is set back; setting it forward would look like a sleep
@@ -137,7 +137,7 @@ test('a tablet with a wrong date still shows correct ages and the plant\'s time'
                 }
             }, 150);
         }));
-        assert.deepEqual(ages.filter((age) => !/^[\d.]+ s$/.test(age)), [], 'seconds old, and never days');
+        assert.deepEqual(ages.filter((age) => !/^[\d.]+ s$/.test(age)), [], 'ages are in seconds, never in days');
         await waitForHealth(page, 'live');
         const { clock, age } = await told(), now = new Date();
         assert.match(age, /^[\d.]+ s$/);
@@ -186,8 +186,8 @@ test('a slow link that stalls: the last picture stays, marked as old, and the vi
             await page.waitForFunction(() => document.getElementById('viewport').classList.contains('is-old'));
             await page.locator('#banner', { hasText: /This picture is [\d.]+ s old/ }).waitFor();
             const now = await samples(page);
-            assert.ok(now.every(([r, g, b]) => r + g + b > 30), 'nowhere black');
-            assert.ok(new Set(now.map(String)).size > 20, 'and still the picture');
+            assert.ok(now.every(([r, g, b]) => r + g + b > 30), 'no part of the picture is black');
+            assert.ok(new Set(now.map(String)).size > 20, 'the picture is still shown');
             await shoot(page, 'halted');
         } finally {
             relay.child.kill('SIGCONT');
@@ -252,7 +252,7 @@ test('a cached page of another version reloads itself, once', options, async () 
         await page.waitForFunction(() => globalThis.plantcast?.session.picture);
         await waitForHealth(page, 'live');
         await page.waitForTimeout(1000);
-        assert.equal(asked.length, 2, 'asked for, and once more by itself');
+        assert.equal(asked.length, 2, 'the page was requested, and reloaded itself once');
     });
 });
 
@@ -302,7 +302,7 @@ test('installed over https, the page opens without its server, says so, and is l
             (await caches.open(name)).keys()))).flat().map(({ url: of }) => new URL(of).pathname));
         // the worker keeps a file before it answers
         assert.deepEqual(['/', '/app/main.js', '/words/en.js'].filter((path) => !kept.includes(path)), []);
-        assert.deepEqual(kept.filter((of) => /api|snapshot|stream/.test(of)), [], 'nothing that the plant says is kept');
+        assert.deepEqual(kept.filter((of) => /api|snapshot|stream/.test(of)), [], 'no answer with plant data is cached');
         await secure.daemon.stop('SIGKILL');
         await page.reload();
         await waitForHealth(page, 'lost');

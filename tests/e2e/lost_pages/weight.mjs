@@ -69,7 +69,7 @@ for (const [name, language, screen] of PAGES) {
             const files = await browser.fetched(), requests = browser.answers.map((answer) => `${answer.status()} ${answer.url()}`);
             assert.deepEqual(requests.filter((text) => !text.startsWith('200')), []);
             assert.ok(requests.length <= MOST_REQUESTS, requests.join('\n'));
-            assert.equal(files.filter(([path]) => path.includes('watchdog')).length, 3, 'module, words and worker');
+            assert.equal(files.filter(([path]) => path.includes('watchdog')).length, 3, 'module, words and worker are loaded');
             t.diagnostic(`${kB(sum(files))} in ${files.length} files; first picture after ` +
                 `${(await page.evaluate(() => globalThis.firstPictureMs)).toFixed(0)} ms`);
             assert.ok(sum(files) <= most, files.sort((a, b) => b[1] - a[1]).map((file) => file.join(' ')).join('\n'));
@@ -183,7 +183,7 @@ test('the first input by mouse, keys or buttons moves the camera, though the cam
     ];
     for (const act of firsts)
         await withPage(async (page) => {
-            assert.equal(await isCameraControllerThere(page), false, 'nobody needed it yet');
+            assert.equal(await isCameraControllerThere(page), false, 'the camera controller is not loaded before it is needed');
             await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
             const began = performance.now();
             await act(page);
@@ -250,7 +250,8 @@ test('a page whose server changed version meanwhile reloads itself instead of mi
         version = 'bbbbbbbbbbbb';
         await press(page, 'v');
         await page.waitForFunction(() => !globalThis.isBefore && globalThis.plantcast?.session.picture);
-        assert.equal(await page.evaluate(() => globalThis.plantcast.session.params.distance), 'euclidean', 'the same view');
+        assert.equal(await page.evaluate(() => globalThis.plantcast.session.params.distance), 'euclidean',
+            'the view is the same after the reload');
         await press(page, 'v');
         await page.locator('#views.open').waitFor();
     }, (page) => page.route('**/made/version.js', serve));

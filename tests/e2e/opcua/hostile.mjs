@@ -53,7 +53,7 @@ test('a server that announces false sizes is disconnected, named, and costs no m
                 await plant.daemon.stop();
                 moreMb = Math.min(moreMb, await meet(before));
             }
-            assert.ok(liar.seen() > 0 && moreMb < MOST_MB, `${name}: ${moreMb} MB`);
+            assert.ok(liar.seen() > 0 && moreMb < MOST_MB, `${name}: memory grew by ${moreMb} MB`);
         } finally {
             await plant.daemon.stop();
             await liar.stop();
@@ -70,10 +70,10 @@ test('a real server\'s messages with invalid sizes cost no extra memory', option
         const liar = await distort(server.port, real, spared);
         await plant.start('security: none', ROWS);
         for (const end = performance.now() + 20000; liar.seen() < 3; await sleep(50))
-            assert.ok(performance.now() < end, `${spared}: ${liar.seen()} lies`);
+            assert.ok(performance.now() < end, `${spared}: only ${liar.seen()} false sizes were sent`);
         await sleep(500);
         assert.equal(plant.daemon.child.exitCode, null, plant.daemon.said);
-        assert.ok(peakMb() < 400, `${peakMb()} MB`);
+        assert.ok(peakMb() < 400, `peak memory is ${peakMb()} MB`);
         await plant.daemon.stop();
         await liar.stop();
         server.port = real;
@@ -85,7 +85,7 @@ test('a reading timestamped an hour ahead is shown, but not with that future tim
     await plant.run('security: none', ROWS);
     await server.set('TI-1', 33, { at: Date.now() + 3600000 });
     const ahead = await plant.until('TI-1', { ...good, value: 33 });
-    assert.ok(ahead.age_ms >= 0 && ahead.age_ms < 5000, `${ahead.age_ms} ms`);
+    assert.ok(ahead.age_ms >= 0 && ahead.age_ms < 5000, `the reading is ${ahead.age_ms} ms old`);
 });
 
 // The first of its two addresses refuses connections.
@@ -131,10 +131,10 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         await server.set('TI-1', 34);
         const { age_ms } = await plant.until('TI-1', { ...good, value: 34 });
         const past_s = off_s < 0 ? -off_s : 0;
-        assert.ok(age_ms >= past_s * 1000 && age_ms < (past_s + 9) * 1000, `${age_ms} ms`);
+        assert.ok(age_ms >= past_s * 1000 && age_ms < (past_s + 9) * 1000, `the reading is ${age_ms} ms old`);
         await plant.until('OLD', off_s < 0 ? { quality_name: 'Bad_CommunicationError', value: null } : good, 20);
         await plant.said(new RegExp(`source plc: the server's timestamps are 3[56]\\d\\d\\.\\d s ${word} this machine's clock`));
-        assert.equal(plant.daemon.said.match(/timestamps are/g).length, 1, 'it is said once');
+        assert.equal(plant.daemon.said.match(/timestamps are/g).length, 1, 'the clock difference is logged once');
     });
 
 // If the server's clock is slow, new certificates are not valid yet: neither the server's nor the client's.
@@ -153,6 +153,6 @@ test('a server whose clock is before its certificate is read and reported; a cer
     await plant.run(server.security('', 'us'), ROWS);
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });
-    assert.ok(age_ms >= 3600e3 && age_ms < 3609e3, `${age_ms} ms`);
+    assert.ok(age_ms >= 3600e3 && age_ms < 3609e3, `the reading is ${age_ms} ms old`);
     await plant.said(/source plc: the server's timestamps are 3[56]\d\d\.\d s behind this machine's clock/);
 });

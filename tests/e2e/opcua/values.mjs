@@ -53,7 +53,7 @@ test('values, status codes and times arrive unchanged, and nothing is ever writt
     await sleep(Math.max(0, first + 1600 - performance.now())); // waits, because a value older than the tag's last one would be ignored
     await server.set('TI-2', 43, { at: Date.now() - 1500 });
     const old = await until('TI-2', { ...good, value: 43 });
-    assert.ok(old.age_ms >= 1500 && old.age_ms < 9000, `${old.age_ms} ms`);
+    assert.ok(old.age_ms >= 1500 && old.age_ms < 9000, `the reading is ${old.age_ms} ms old`);
     await server.set('Temps', [4, 5, 6]);
     await until('T-2', { ...good, value: 6 });
     assert.equal(await plant.metric('up{source="plc"}'), 1);
@@ -108,7 +108,7 @@ test('the server applies deadbands; a node that cannot have a deadband is read w
     await server.set('XS-1', false);
     await until('XS-1', { ...good, value: 0 });
     await sleep(500);
-    assert.equal((await plant.tags()).B.value, 50, 'within 10 % of 0 to 100');
+    assert.equal((await plant.tags()).B.value, 50, 'a change within 10 % of the range 0 to 100 is not reported');
     await server.set('Bounded', 65);
     await until('B', { ...good, value: 65 });
 });
@@ -129,7 +129,7 @@ test('a tag may have its own deadband; a deadband that the server refuses is log
     while ((await plant.tags())['PI-1'].value === 5)
         await sleep(20);
     const tags = await plant.tags();
-    assert.deepEqual([tags['TI-1'].value, tags.B.value], [20, 50], 'changes within the deadband');
+    assert.deepEqual([tags['TI-1'].value, tags.B.value], [20, 50], 'changes within the deadband are not reported');
     await server.set('TI-1', 26);
     await until('TI-1', { ...good, value: 26 });
     await server.set('Bounded', 71);
@@ -165,7 +165,7 @@ test(`changes of ${MANY} nodes at once all arrive`, options, async () => {
             const tags = await plant.tags();
             if (rows.every((_, i) => tags[`N${i}`].value === each + i))
                 break;
-            assert.ok(performance.now() < end, 'all have changed');
+            assert.ok(performance.now() < end, 'not all values have changed');
         }
     }
     assert.ok(await plant.metric('samples_total{source="plc"}') >= 3 * MANY);
@@ -181,9 +181,9 @@ test('plantcast tags --browse writes a tag list that the daemon reads unchanged'
     assert.equal(lines[0], 'Tag Name,Address,Data Type,Description');
     for (const line of [`Plant.TI-1,${NODE}TI-1,,`, `Plant.XS-1,${NODE}XS-1,bool,`, `Plant.Row[3],${NODE}Row[3],,`,
         `Plant.Temps[2],[2]${NODE}Temps,,`, `Plant.N${MANY - 1},${NODE}N${MANY - 1},,`, `Plant.Bounded,${NODE}Bounded,,of 0 to 100 °C`])
-        assert.ok(lines.includes(line), `${line} in\n${out}`);
+        assert.ok(lines.includes(line), `the line ${line} is missing in\n${out}`);
     assert.doesNotMatch(out, /Text|EURange/);
-    assert.equal(browse(url).out, out, 'without security, too');
+    assert.equal(browse(url).out, out, 'browsing without security gives the same');
     plant.write('security: none', []);
     writeFileSync(join(plant.folder, 'tags.csv'), out);
     assert.equal(runProgram('plantcastd', ['--check', plant.file]).code, 0);

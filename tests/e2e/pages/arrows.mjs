@@ -106,17 +106,17 @@ test('arrows follow the wind around the tank, near sensors and away from them', 
     const { rows, width, height } = await until('directions known', known);
     let front = 0;
     for (const [x, y, dx, dy, value, uncertain] of rows) {
-        assert.ok(value >= 6 && value <= 12 && uncertain === 0, `${value}`);
+        assert.ok(value >= 6 && value <= 12 && uncertain === 0, `the speed is ${value}`);
         assert.ok(Math.hypot(dx, dy) < 1.01);
         if (Math.abs(x - width / 2) > height / 8 || Math.abs(y - height / 2) > height / 8)
             continue;
-        assert.ok(dx > 0.7 && Math.abs(dy) < 0.4, `seen from outside, to the right: at ${x}, ${y}: ${dx}, ${dy}`);
+        assert.ok(dx > 0.7 && Math.abs(dy) < 0.4, `the arrow on the outside points right: at ${x}, ${y}: ${dx}, ${dy}`);
         front++;
     }
     console.log(`# ${rows.length} arrows, ${front} in front`);
     assert.ok(front > 2);
     const apart = Math.min(...rows.flatMap(([x, y], i) => rows.slice(i + 1).map(([u, v]) => Math.hypot(u - x, v - y))));
-    assert.ok(apart >= Math.max(48, width / 24) - 0.2, `${apart}`);
+    assert.ok(apart >= Math.max(48, width / 24) - 0.2, `two arrows are only ${apart} px apart`);
 });
 
 test('the page draws the arrows, and its legend states their length', options, async () => {
@@ -141,9 +141,9 @@ test('streaks follow the wind around the tank, move, and point the way that is s
             if (long < 4 || Math.hypot(dx, dy) < 0.3)
                 continue; // skip an arrow that points towards the eye
             const along = ((x - px) * dx + (y - py) * dy) / long / Math.hypot(dx, dy);
-            assert.ok(along > 0.8, `goes where its direction says: ${along} at ${px}, ${py}`);
+            assert.ok(along > 0.8, `the streak follows its direction: ${along} at ${px}, ${py}`);
             if (Math.abs(px - width / 2) < height / 8 && Math.abs(py - height / 2) < height / 8) {
-                assert.ok(x > px, `${px} ${x}`);
+                assert.ok(x > px, `the streak runs from ${px} to ${x}, not to the right`);
                 front++;
             }
         }
@@ -157,9 +157,9 @@ test('streaks follow the wind around the tank, move, and point the way that is s
     });
     const seen = new Set();
     for (const end = Date.now() + 20000; seen.size < 3; seen.add(await pixels()))
-        assert.ok(Date.now() < end, 'dashes run');
+        assert.ok(Date.now() < end, 'the streaks\' dashes do not move');
     for (const points of strokes.values())
-        assert.ok(points.length > 1, 'a head alone is no stroke');
+        assert.ok(points.length > 1, 'a streak has more than one point');
     await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas')); // the legend has no length scale for strokes
     await shoot(browser.page, 'strokes');
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=960&height=540&arrows=strokes`);

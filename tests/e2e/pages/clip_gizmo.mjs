@@ -51,7 +51,7 @@ test('a section plane dragged by its arrow follows the pointer, and the camera s
     await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.params.clip.planes[0][3] + 0.4) < 0.02);
     assert.equal(await page.locator('.cut-label').textContent(), `Keep X ≥ ${(-(await readClip(page)).planes[0][3]).toFixed(2)} m`);
     const now = await gripAt(page, 'plane0');
-    assert.ok(Math.hypot(now[0] - to.x, now[1] - to.y) < 6, `${now} is not under the hand at ${to.x}, ${to.y}`);
+    assert.ok(Math.hypot(now[0] - to.x, now[1] - to.y) < 6, `the handle at ${now} is not under the pointer at ${to.x}, ${to.y}`);
     await settle(page);
     await shoot(page, 'grip-plane');
     await page.mouse.up();
@@ -74,7 +74,7 @@ test('keys move a section plane within its range; a screen reader announces its 
     assert.equal(await slider.getAttribute('aria-valuetext'), 'Keep X ≥ 3.50 m');
     await page.keyboard.press('Home');
     assert.equal(await said('now'), await said('min'));
-    assert.equal(await slider.isVisible(), true, 'and is not lost');
+    assert.equal(await slider.isVisible(), true, 'the handle is still visible');
     assert.deepEqual(await readCamera(page), camera);
 });
 
@@ -98,7 +98,7 @@ test('a section box has an arrow on each side; Escape cancels a drag', options, 
     await lower(0.03);
     await page.mouse.up();
     await page.keyboard.press('v');
-    assert.match(await page.locator('#cut-text').textContent(), /^1\.0 × 1\.4 × \d\.\d m$/, 'the panel says how large it is');
+    assert.match(await page.locator('#cut-text').textContent(), /^1\.0 × 1\.4 × \d\.\d m$/, 'the panel states the box\'s size');
     await page.keyboard.press('v');
     assert.deepEqual(browser.errors, []);
 });
@@ -115,19 +115,19 @@ test('the whole box follows the pointer or the keys, and keeps its size', option
         box.min);
     await settle(page);
     const now = await gripAt(page, 'whole');
-    assert.ok(Math.hypot(now[0] - x - 60, now[1] - y + 30) < 6, `${now} is not under the hand`);
+    assert.ok(Math.hypot(now[0] - x - 60, now[1] - y + 30) < 6, `the handle at ${now} is not under the pointer`);
     await shoot(page, 'grip-whole');
     await page.mouse.up();
     const moved = (await readClip(page)).box;
     for (const i of [0, 1, 2])
-        assert.ok(Math.abs((moved.max[i] - moved.min[i]) - 0.8) < 1e-6, 'as large as it was');
+        assert.ok(Math.abs((moved.max[i] - moved.min[i]) - 0.8) < 1e-6, 'the box keeps its size');
     await page.getByRole('button', { name: 'Move the box' }).focus();
     await page.keyboard.press('PageUp');
     assert.ok(middle((await readClip(page)).box)[2] > middle(moved)[2]);
     for (let i = 0; i < 12; i++)
         await page.keyboard.press('Shift+ArrowRight');
     const most = await page.evaluate(() => globalThis.plantcast.session.model.plant.bounds.max[0]);
-    assert.ok(Math.abs(middle((await readClip(page)).box)[0] - most) < 1e-6, 'it is not lost beyond the plant');
+    assert.ok(Math.abs(middle((await readClip(page)).box)[0] - most) < 1e-6, 'the box stays in the plant');
     assert.deepEqual(await readCamera(page), camera);
     await setClip(page, null);
 });
@@ -139,8 +139,8 @@ test('in a split view the right half has arrows, too, and both halves are cut al
     await settle(page);
     const boxes = await page.locator('.grip').evaluateAll((all) => all.map((e) => e.getBoundingClientRect()).map((b) => b.x + b.width / 2));
     const picture = await page.locator('#viewport').boundingBox(), middle = picture.x + picture.width / 2;
-    assert.ok(boxes[0] < middle && boxes[1] > middle, `${boxes} about ${middle}`);
-    assert.equal(await page.getByRole('slider', { name: 'Move the section: X' }).count(), 1, 'once for who does not see them');
+    assert.ok(boxes[0] < middle && boxes[1] > middle, `the handles at ${boxes} are not on both sides of ${middle}`);
+    assert.equal(await page.getByRole('slider', { name: 'Move the section: X' }).count(), 1, 'a screen reader finds one slider');
     const right = page.locator('.grip').nth(1), at = await right.boundingBox();
     const to = await page.evaluate(async () => {
         const { spotsOf } = await import('/core/clip_gizmo.js'), { grip, spot, half } = document.querySelectorAll('.grip')[1];

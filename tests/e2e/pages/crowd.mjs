@@ -54,12 +54,12 @@ test('some markers of a crowd are left out, and reappear when the user zooms in'
         globalThis.plantcast.overlay.markers.length < many, MANY);
     const { all, drawn, free } = await look(page);
     await shoot(page, 'crowd');
-    assert.ok(drawn.length < 0.9 * all.length && drawn.length > 0.2 * all.length, `${drawn.length} of ${all.length}`);
-    assert.ok(free, 'one of those left out has none beside it');
+    assert.ok(drawn.length < 0.9 * all.length && drawn.length > 0.2 * all.length, `${drawn.length} of ${all.length} markers are drawn`);
+    assert.ok(free, 'a left-out marker has no other beside it');
     const [name, x, y] = free, { x: left, y: top } = await page.locator('#viewport').boundingBox();
     await page.mouse.click(left + x, top + y);
     await page.locator('#place').waitFor();
-    assert.equal(await page.evaluate(() => globalThis.plantcast.selection.tag), null, `${name} is not there to be clicked`);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.selection.tag), null, `the left-out marker ${name} cannot be clicked`);
 
     await page.evaluate((chosen) => {
         const { selection, refresh } = globalThis.plantcast;

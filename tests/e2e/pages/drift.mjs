@@ -57,8 +57,8 @@ test('the daemon finds the one drifting sensor, and no other', options, async ()
     assert.deepEqual([group, unit, to - from], ['temperature', '°C', HOURS * HOUR * 1e6]);
     assert.deepEqual(sensors.map(({ tag, verdict }) => [tag, verdict]),
         [['TI-1', 'none'], ['TI-2', 'none'], ['TI-3', 'found'], ['TI-4', 'none']]);
-    assert.ok(Math.abs(sensors[2].change - 8) < 1, `${sensors[2].change} of 8 K`);
-    assert.ok(sensors[3].hours >= HOURS - 26 && sensors[3].hours < HOURS - 20, 'a lost day is missing');
+    assert.ok(Math.abs(sensors[2].change - 8) < 1, `the found drift is ${sensors[2].change} of 8 K`);
+    assert.ok(sensors[3].hours >= HOURS - 26 && sensors[3].hours < HOURS - 20, 'the hours of the lost day are missing');
     const [, { sensors: [one] }] = await ask('tag=TI-3');
     assert.equal(one.by_hour.length, HOURS);
     assert.equal(one.by_hour[0][0], from);
@@ -102,13 +102,13 @@ test('the page lists the drifting sensor, and its card shows the week', options,
         await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-3')));
         await page.locator('#card .drifts .drift-curve').waitFor();
         assert.match(await page.locator('#card .drifts').textContent(), found);
-        assert.ok(await overhang(page) <= 1, `${language}: ${await overhang(page)}`);
+        assert.ok(await overhang(page) <= 1, `${language}: the card of a drifting sensor is ${await overhang(page)} px too wide`);
         await settle(page);
         await shoot(page, `drift-card-${language}`);
         await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-1')));
         await page.waitForFunction(() => document.querySelector('#card .drift-curve') && !document.querySelector('#card .drifts'));
         assert.match(await page.locator('#card').textContent(), none);
-        assert.ok(await overhang(page) <= 1, `${language}: ${await overhang(page)}`);
+        assert.ok(await overhang(page) <= 1, `${language}: the card of another sensor is ${await overhang(page)} px too wide`);
         await page.locator('#picture-toggle').click();
         await page.locator('#drifting:not([hidden]) .line').first().waitFor();
         assert.equal(await page.locator('#drifting .line').count(), 1);

@@ -128,6 +128,6 @@ for (const [name, [most, task, end = () => {}]] of Object.entries(TASKS))
     test(`a new user needs ${most} clicks: ${name}`, options, async () => {
         clicks = 0;
         await task();
-        assert.ok(clicks === most && clicks <= MOST, `${clicks} clicks`);
+        assert.ok(clicks === most && clicks <= MOST, `the task took ${clicks} clicks`);
         await end();
     });

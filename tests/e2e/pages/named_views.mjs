@@ -38,8 +38,8 @@ test('the views of the plant file are listed, each with its picture', options, a
     await page.click('#named-list li .named-open');
     await isFrom(page, [8, 2, 30]);
     const { clip, selected, colormap } = await page.evaluate(() => globalThis.plantcast.session.params);
-    assert.deepEqual([clip, selected, colormap], [null, null, 'turbo'], 'nothing is left of what was shown');
-    assert.equal(await page.locator('#named summary').count(), 0, 'the plant file keeps it');
+    assert.deepEqual([clip, selected, colormap], [null, null, 'turbo'], 'parameters of the earlier view are reset');
+    assert.equal(await page.locator('#named summary').count(), 0, 'views of the plant file cannot be edited');
 });
 
 test('the current view is saved under a name, for all users', options, async () => {

@@ -52,7 +52,7 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
         assert.deepEqual(await sets(), { hidden: ['HOUSE'], isolate: [], ghost: ['P-101A'] });
         assert.equal(await page.locator('#shown span').textContent(), '1 of 3 hidden, 1 transparent');
         const { outline } = await page.evaluate(() => globalThis.plantcast.session.model.plant);
-        assert.ok(outline.every((place) => Math.abs(place[1]) < 0.6), 'what starts hidden is not in the first view');
+        assert.ok(outline.every((place) => Math.abs(place[1]) < 0.6), 'assets that start hidden are not in the first view');
         await shoot(page, 'start');
 
         // Pictures without further parameters use the same start.
@@ -61,7 +61,8 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
             return (await answer.arrayBuffer()).byteLength;
         };
         const [begun, said, all] = [await picture(), await picture('&hidden=HOUSE&ghost=P-101A'), await picture('&hidden=&ghost=')];
-        assert.ok(Math.abs(begun - said) < 0.1 * said && Math.abs(all - said) > 0.1 * said, `${begun}, ${said} and ${all} bytes`);
+        assert.ok(Math.abs(begun - said) < 0.1 * said && Math.abs(all - said) > 0.1 * said,
+            `pictures of ${begun}, ${said} and ${all} bytes`);
         const files = [[], ['--hide', 'HOUSE', '--ghost', 'P-101A'], ['--hide', '', '--ghost', '']].map((more, i) => {
             const out = join(tiny.folder, `${i}.png`);
             const args = ['snapshot', tiny.file, '--size', '320x200', '--no-overlay', '--out', out, ...more];
@@ -80,7 +81,7 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
         await page.reload();
         await waitForPicture(page);
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed);
-        assert.deepEqual(await sets(), NONE, 'the link says so');
+        assert.deepEqual(await sets(), NONE, 'the link shows all assets');
 
         // A changed start applies to new sessions.
         await page.evaluate(() => globalThis.plantcast.session.setParams({ hidden: ['E-101', 'HOUSE'] }));
@@ -92,13 +93,13 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
         assert.deepEqual(changes, ['asset HOUSE removed', 'asset ROOF added']);
         await page.waitForFunction((was) => globalThis.plantcast.session.model.plant.configuration !== was, before);
         assert.deepEqual(await sets(), { ...NONE, hidden: ['E-101'], ghost: ['ROOF'] },
-            'who is there keeps what he asked for, and sees what is new as it starts');
+            'a connected user keeps the own choice, and new assets start as configured');
         const ghosts = () => page.evaluate(() => globalThis.plantcast.session.confirmed.ghost);
         write('ROOF', 'hidden');
         assert.equal(tiny.prepare().code, 0);
         assert.equal((await fetch(`${url}api/v1/reload`, { method: 'POST' })).status, 200);
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.includes('ROOF'));
-        assert.deepEqual(await ghosts(), [], 'nobody had asked for it as a ghost');
+        assert.deepEqual(await ghosts(), [], 'no asset is a ghost without a request');
         await page.goto(`${url}?again`);
         await waitForPicture(page);
         await sign();

@@ -73,7 +73,7 @@ tags: tags.csv
             const tag = (await this.tags())[name];
             if (Object.entries(wanted).every(([key, value]) => tag[key] === value))
                 return tag;
-            assert.ok(performance.now() < end, `${name} is ${JSON.stringify(tag)}, wanted ${JSON.stringify(wanted)}`);
+            assert.ok(performance.now() < end, `${name} is ${JSON.stringify(tag)} instead of ${JSON.stringify(wanted)}`);
         }
     }
 

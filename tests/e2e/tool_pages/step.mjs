@@ -127,11 +127,11 @@ async function judge(page, t) {
     const edge = edges[edges.length >> 1];
     t.diagnostic(`${frames.length} frames of ${views} cameras, up to ${behind.toFixed(0)} px behind the hand; ` +
         `markers ${worst.toFixed(2)} px, edges of the picture ${edge.toFixed(1)} px from where the frame's camera has them`);
-    assert.ok(views >= LEAST_VIEWS, `${views} cameras`);
-    assert.ok(behind > 10, 'the hand was ahead of the picture: else this shows nothing');
+    assert.ok(views >= LEAST_VIEWS, `only ${views} different cameras`);
+    assert.ok(behind > 10, 'the pointer was ahead of the picture; otherwise the test proves nothing');
     assert.ok(worst <= MARK_PX, `a marker ${worst} px off`);
-    assert.deepEqual(seen.filter(({ white }) => !white), [], 'the marker is drawn there');
-    assert.ok(edge <= PICTURE_PX, `the picture: ${edges}`);
+    assert.deepEqual(seen.filter(({ white }) => !white), [], 'markers are drawn at their places');
+    assert.ok(edge <= PICTURE_PX, `the picture's edges are off: ${edges}`);
 }
 
 const url = (codec) => `http://127.0.0.1:${relay.port}/?codec=${codec}`;
@@ -308,7 +308,7 @@ async function loseContext(page) {
     await page.evaluate(() => { globalThis.warped = []; });
     await page.mouse.wheel(0, 120);
     await page.waitForFunction(() => globalThis.warped.length > 0);
-    assert.ok(await page.evaluate(() => globalThis.warped.every(({ runs }) => runs.length > 50)), 'the box is seen again');
+    assert.ok(await page.evaluate(() => globalThis.warped.every(({ runs }) => runs.length > 50)), 'the box is visible again');
     await settle(page);
 }
 
@@ -348,14 +348,15 @@ const followsHand = (painter, ...script) => async (t) => {
             beyond = Math.max(beyond, partBeyond(runs, places));
         }
         t.diagnostic(`${seen.length} drawings; markers ${off.toFixed(2)} px off, ${(100 * beyond).toFixed(3)} % of the colours beyond`);
-        assert.ok(seen.length >= 10, `${seen.length} drawings`);
-        assert.ok(seen.every(({ isNewest, isAhead }) => isNewest && isAhead), 'each shows the newest camera, before the server does');
+        assert.ok(seen.length >= 10, `only ${seen.length} drawings`);
+        assert.ok(seen.every(({ isNewest, isAhead }) => isNewest && isAhead),
+            'each drawing shows the newest camera, before the server does');
         const frames = seen.map((one) => one.frames).sort((a, b) => a - b);
-        assert.ok(frames[Math.floor(frames.length / 2)] <= 1, `frames from hand to picture: ${frames}`);
+        assert.ok(frames[Math.floor(frames.length / 2)] <= 1, `frames from input to picture: ${frames}`);
         promise(t, 'from hand to picture, the latest', FRAME_MS * frames.at(-1), 2 * FRAME_MS);
-        assert.ok(seen.every(({ runs }) => runs.length > 50), 'the box is seen');
+        assert.ok(seen.every(({ runs }) => runs.length > 50), 'the box is visible');
         assert.ok(off <= MARK_PX, `a marker ${off} px off`);
-        assert.ok(beyond <= WARPED_SHARE, `${beyond} of the colours are beyond the box`);
+        assert.ok(beyond <= WARPED_SHARE, `share of colours beyond the box: ${beyond}`);
         await settle(page);
         // waits until the server's own picture replaces the warped one
         await page.waitForFunction(() => !globalThis.plantcast.viewport.warp.isShown);
@@ -365,7 +366,7 @@ const followsHand = (painter, ...script) => async (t) => {
         do
             rest = await still(page);
         while (rest.news > 0); // repeats if a message arrived, for example about a reading that a busy machine read late
-        assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view costs nothing');
+        assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view causes no frames, draws or timers');
         if (painter === 'GlPainter')
             await loseContext(page);
         assert.deepEqual(errors, []);

@@ -78,7 +78,7 @@ test('a click on a marker opens its trend, with unit and gap; a chart library th
     assert.equal(requests, 2);
     assert.match(await page.locator('#trend-tags').textContent(), /TI-1.*°C/);
     await page.waitForFunction(() => document.getElementById('trend-note').textContent.includes('TI-1'));
-    assert.equal(await page.locator('#trend-range').inputValue(), 'last 1 h', 'a new trend shows the 50 minutes that are recorded');
+    assert.equal(await page.locator('#trend-range').inputValue(), 'last 1 h', 'a new trend shows the recorded 50 minutes');
     const ink = await page.evaluate(() => {
         const canvas = document.querySelector('#trend-chart canvas');
         const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -87,7 +87,7 @@ test('a click on a marker opens its trend, with unit and gap; a chart library th
             blue += data[i + 3] > 128 && data[i] < 60 && data[i + 2] > 120;
         return blue;
     });
-    assert.ok(ink > 300, `a line of ${ink} pixels`);
+    assert.ok(ink > 300, `the line has only ${ink} pixels`);
     const names = await page.evaluate(() => { // records the texts in the chart and their positions
         const { chart } = globalThis.plantcast.trends, { prototype } = CanvasRenderingContext2D, { fillText } = prototype, found = {};
         prototype.fillText = function write(words, x, y) {
@@ -101,16 +101,17 @@ test('a click on a marker opens its trend, with unit and gap; a chart library th
                 Math.abs(found[words].y - chart.valToPos(Number(words.split(' ')[1]), '°C', true))));
         }));
     });
-    assert.ok(names.every((away) => away < 8), `each limit's name stands at its line: ${names}`);
+    assert.ok(names.every((away) => away < 8), `distances of limit names from their lines: ${names}`);
     await settle(page);
     await shoot(page, 'trend');
 });
 
 test('several tags are compared, each with its unit, and exported', options, async () => {
-    assert.ok(await page.locator('#card .add-trend').isHidden(), 'it is there already');
+    assert.ok(await page.locator('#card .add-trend').isHidden(), 'no button adds a tag that the chart already has');
     for (const name of ['TI-2', 'PI-1']) {
         await page.evaluate((tag) => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag(tag)), name);
-        assert.equal(await page.locator('#trend-tags tbody tr').count(), name === 'TI-2' ? 1 : 2, 'what is only chosen replaces nothing');
+        assert.equal(await page.locator('#trend-tags tbody tr').count(), name === 'TI-2' ? 1 : 2,
+            'selecting a tag replaces nothing in the chart');
         await page.locator('#card .add-trend').click();
     }
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3);
@@ -132,7 +133,7 @@ test('several tags are compared, each with its unit, and exported', options, asy
     await shoot(page, 'trends');
     await page.locator('#trend-span label', { hasText: '1 h' }).click();
     await page.locator('#card .trend').click();
-    assert.deepEqual(await page.locator('#trend-tags tbody b').allTextContents(), ['PI-1'], 'alone again');
+    assert.deepEqual(await page.locator('#trend-tags tbody b').allTextContents(), ['PI-1'], 'only PI-1 is left in the chart');
     await page.evaluate(() => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tag('TI-1')));
     for (const name of ['TI-2', 'PI-1'])
         await page.evaluate((tag) => globalThis.plantcast.addTrend(globalThis.plantcast.session.model.tag(tag)), name);
@@ -157,7 +158,7 @@ test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, a
     await page.mouse.up();
     const zoomed = await rangeOf();
     assert.ok([a, b].every((x, i) => Math.abs(at(x) - zoomed[i]) < 12e6), JSON.stringify([[a, b].map(at), zoomed]));
-    assert.equal((await shown()).past, false, 'a drag is no click');
+    assert.equal((await shown()).past, false, 'a drag does not count as a click');
     await drawn(zoomed);
     assert.match(await page.locator('#trend-range').inputValue(), /^\d{4}-\d\d-\d\d \d\d:\d\d.* to /);
     await settle(page); // the labels of the new range may change the widths of the axes
@@ -167,14 +168,15 @@ test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, a
     await page.waitForFunction((long) => { const [begin, end] = globalThis.plantcast.trends.range; return end - begin < long; },
         (zoomed[1] - zoomed[0]) * 0.9);
     const closer = await rangeOf(), kept = (range) => range[0] + (range[1] - range[0]) / 4;
-    assert.ok(Math.abs(kept(closer) - kept(zoomed)) < 1e6, 'about the pointer');
+    assert.ok(Math.abs(kept(closer) - kept(zoomed)) < 1e6, 'zoom keeps the instant under the pointer');
     const axis = await page.locator('#trend-chart .u-axis').first().boundingBox();
     await page.mouse.move(axis.x + 300, axis.y + axis.height / 2);
     await page.mouse.down();
     await page.mouse.move(axis.x + 400, axis.y + axis.height / 2, { steps: 4 });
     await page.mouse.up();
     const moved = await rangeOf();
-    assert.ok(moved[0] < closer[0] && Math.abs(moved[1] - moved[0] - closer[1] + closer[0]) < 1, 'earlier, and as long');
+    assert.ok(moved[0] < closer[0] && Math.abs(moved[1] - moved[0] - closer[1] + closer[0]) < 1,
+        'the range moves to earlier times and keeps its length');
     await drawn(moved);
     await shoot(page, 'trend-zoomed');
     for (let i = 0; i < 4 && await page.locator('#trend-back').isEnabled(); i++)
@@ -191,8 +193,10 @@ test('a typed time range is shown, with its statistics, and the crosshair is sha
     const [, , min, mean, max, known] = cells.map((text) => Number(text.replace('−', '-').replace(' %', '')));
     const wave = Array.from({ length: 500 }, (_, i) => 1100 + i).filter((s) => s < 1200 || s >= 1500)
         .map((s) => 50 + 30 * Math.sin(s / 300));
-    assert.ok(Math.abs(min - Math.min(...wave)) < 1 && Math.abs(max - Math.max(...wave)) < 1, `${cells}`);
-    assert.ok(Math.abs(mean - wave.reduce((sum, value) => sum + value) / wave.length) < 1 && Math.abs(known - 40) <= 2, `${cells}`);
+    assert.ok(Math.abs(min - Math.min(...wave)) < 1 && Math.abs(max - Math.max(...wave)) < 1,
+        `statistics of minimum and maximum: ${cells}`);
+    assert.ok(Math.abs(mean - wave.reduce((sum, value) => sum + value) / wave.length) < 1 && Math.abs(known - 40) <= 2,
+        `statistics of mean and known share: ${cells}`);
     await page.locator('#trend-range').fill('noon');
     await page.keyboard.press('Enter');
     const field = page.locator('#trend-range'), isRed = () => field.evaluate((e) => e.matches('[aria-invalid="true"]'));
@@ -201,13 +205,13 @@ test('a typed time range is shown, with its statistics, and the crosshair is sha
     assert.equal(await isRed(), true);
     await field.fill('');
     await page.keyboard.press('Enter');
-    assert.equal(await isRed(), false, 'a cleared field is not wrong');
+    assert.equal(await isRed(), false, 'a cleared field is not marked as wrong');
     assert.doesNotMatch(await page.locator('#trend-note').textContent(), unread);
     await field.fill('noon');
     await page.keyboard.press('Enter');
     assert.equal(await isRed(), true);
     await page.locator('#trend-span label', { hasText: 'Shift' }).click();
-    assert.deepEqual([await isRed(), await field.inputValue()], [false, 'last 8 h'], 'another range takes the place of the wrong text');
+    assert.deepEqual([await isRed(), await field.inputValue()], [false, 'last 8 h'], 'another range replaces the wrong text');
     await page.locator('#time-toggle').click();
     await page.locator('#time-track').waitFor();
     await page.locator('#trend-span label', { hasText: '1 h' }).click();
@@ -257,7 +261,7 @@ test('tags are added by typing, and by dragging a marker or a row of the list', 
     assert.deepEqual(await names(), ['TI-1']);
     await page.locator('#trend-add').fill('pump');
     await page.keyboard.press('Enter');
-    assert.deepEqual(await names(), ['TI-1', 'PI-1'], 'by its description');
+    assert.deepEqual(await names(), ['TI-1', 'PI-1'], 'the tag is found by its description');
     await page.evaluate(() => {
         globalThis.plantcast.session.setParams({ group: 'temperature' });
         globalThis.plantcast.selectTag(null); // closes the tag's card, which may cover the marker
@@ -320,7 +324,7 @@ test('in the dark theme the chart is dark, and its lines and limits are legible'
         `rgb(${rgbOf(ground).join(', ')})`); // waits for the panel's style sheet, which gives the panel the colour `ground`
     assert.ok(Math.max(...rgbOf(ground)) < 90, ground);
     for (const colour of [...lines, limit, grave, ink])
-        assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `${colour} on ${ground}`);
+        assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `contrast of ${colour} on ${ground} is too low`);
     await settle(page);
     await shoot(page, 'trends-dark');
     await page.locator('#theme').click();
@@ -343,7 +347,8 @@ test('the slider goes to a past instant, which is clearly marked as the past', o
     assert.match(await slider.getAttribute('aria-valuetext'), /\d\d:\d\d:\d\d/);
     assert.match(await page.locator('#alarm-words').textContent(), /^Now: /);
     await page.locator('#alarm-strip').click();
-    assert.match(await page.locator('#alarms-then').textContent(), /shows the past.*current alarms/, 'the list is not of then');
+    assert.match(await page.locator('#alarms-then').textContent(), /shows the past.*current alarms/,
+        'the list says that its alarms are current');
     await shoot(page, 'past-alarms');
     await page.locator('#alarms-close').click();
     await page.waitForFunction(() => location.hash.includes('at='));
@@ -445,7 +450,7 @@ test('marks and buttons lead to an alarm\'s instant, from alarm to alarm, and to
     await waitForHealth(page, 'live');
     await page.locator('#time-before').click();
     await instantOf(raises.at(-1));
-    assert.match(await page.locator('#moment').textContent(), /TI-2 High/, 'it names the alarm');
+    assert.match(await page.locator('#moment').textContent(), /TI-2 High/, 'the moment\'s title names the alarm');
     await page.waitForFunction(() => globalThis.plantcast.selection.tag === 'TI-2');
     await page.locator('#time-track .bar').first().waitFor({ state: 'attached' });
     await shoot(page, 'time-before');
@@ -498,7 +503,7 @@ test('two times are compared side by side, with one camera', options, async () =
 });
 
 test('times without a running daemon are hatched, without data and without earlier alarm rings', options, async () => {
-    assert.ok(await page.evaluate(() => globalThis.plantcast.session.model.alarms.list().length > 0), 'there is one that could linger');
+    assert.ok(await page.evaluate(() => globalThis.plantcast.session.model.alarms.list().length > 0), 'an alarm exists that could linger');
     const stopping = Date.now() * 1e3;
     await plant.daemon.stop();
     const stopped = Date.now() * 1e3;
@@ -558,7 +563,7 @@ test('the time bar is hatched while a PLC was lost, and names the PLC; not while
     await own.locator('#time-span').selectOption('28800');
     await own.waitForFunction(() => document.querySelectorAll('#time-track .lost').length > 0);
     await askMarks();
-    assert.ok(!(await strips('lost')).some(holds((BEGIN_S + 1350) * 1e6)), 'TI-1 alone was bad');
+    assert.ok(!(await strips('lost')).some(holds((BEGIN_S + 1350) * 1e6)), 'only TI-1 was bad');
     assert.deepEqual(errors, []);
     await close();
 });
@@ -570,7 +575,7 @@ test('the time bar fits on a phone', options, async () => {
     await settle(phone.page);
     await shoot(phone.page, 'past-phone');
     const wide = await phone.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-    assert.ok(wide <= 0, `${wide} px too wide`);
+    assert.ok(wide <= 0, `the time bar is ${wide} px too wide`);
     const box = await phone.page.locator('#time-live').boundingBox();
     assert.ok(box.x + box.width <= 390 && box.height >= 40, JSON.stringify(box));
     await phone.close();

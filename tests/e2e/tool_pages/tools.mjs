@@ -50,7 +50,7 @@ test('a button freezes the values, and lets them go on', options, async () => {
     assert.equal(await page.locator('#hold').getAttribute('aria-label'), 'Resume live values');
     await plant.tell('set TI-1 30');
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 6e6, then);
-    assert.equal(await page.evaluate(() => globalThis.plantcast.session.picture.dataTimeUs), then, 'nothing moves');
+    assert.equal(await page.evaluate(() => globalThis.plantcast.session.picture.dataTimeUs), then, 'the picture is frozen');
     assert.equal(await page.evaluate(() => globalThis.plantcast.session.model.readings[0].value), 80);
     await page.locator('#viewport').focus();
     await page.keyboard.press(' ');
@@ -75,16 +75,16 @@ test('the distance between two points is measured', options, async () => {
     await page.locator('#measured').waitFor();
     const said = await page.locator('#measured').textContent();
     const [, metres] = said.match(/^(0\.\d{3}) m horizontal 0\.0\d\d m, vertical −0\.\d{3} m$/);
-    assert.ok(Math.abs(metres - 0.4) < 0.012, `${metres} m`);
+    assert.ok(Math.abs(metres - 0.4) < 0.012, `the distance is ${metres} m`);
     await shoot(page, 'measure');
     const before = await page.locator('#measured').boundingBox();
     await page.keyboard.press('ArrowRight');
     await page.keyboard.press('-');
     await settle(page);
-    assert.notDeepEqual(await page.locator('#measured').boundingBox(), before, 'it goes with the picture');
+    assert.notDeepEqual(await page.locator('#measured').boundingBox(), before, 'the measurement moves with the picture');
     await page.keyboard.press('Escape');
     assert.equal(await page.locator('#measured').isVisible(), false);
-    assert.equal(await page.locator('#card').isVisible(), false, 'a click that measures selects nothing');
+    assert.equal(await page.locator('#card').isVisible(), false, 'a measuring click selects nothing');
 });
 
 test('on a tablet in portrait, the tools behind More work by taps', options, async () => {
@@ -164,7 +164,7 @@ test('the saved picture equals the picture on the screen', options, async () => 
     const kept = await readPng(page, readFileSync(await file.path()));
     assert.ok(contrast(kept) > 5);
     const { mean } = deltaE(shown, kept); // CIELAB difference: only the saved picture contains markers, legend and clock
-    assert.ok(mean < 4, `they differ by ${mean}`);
+    assert.ok(mean < 4, `mean difference between the saved and the shown picture: ${mean}`);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'difference', baseline: 'now' }));
     await page.locator('#snapshot').click();
     await page.waitForFunction(() => /under a name/.test(document.getElementById('toast').textContent));
@@ -194,8 +194,8 @@ test('a saved picture has the page\'s theme, and the active notes below', option
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 2);
     const light = await save('saved-notes');
     assert.equal(light.width, plain.width);
-    assert.ok(light.height > plain.height + 60, `${plain.height} and ${light.height} px high`);
-    assert.ok(Math.min(...at(light, light.width - 3, light.height - 3)) > 230, 'a light list');
+    assert.ok(light.height > plain.height + 60, `with notes the picture is ${light.height} px high, without ${plain.height}`);
+    assert.ok(Math.min(...at(light, light.width - 3, light.height - 3)) > 230, 'the list of notes is light');
     const turn = async (surface) => {
         await page.keyboard.press('z');
         await page.waitForFunction((is) => getComputedStyle(document.documentElement).getPropertyValue('--surface').trim() === is, surface);
@@ -203,13 +203,14 @@ test('a saved picture has the page\'s theme, and the active notes below', option
     await turn('#2b3137');
     const dark = await save('saved-notes-dark');
     assert.equal(dark.height, light.height);
-    assert.ok(Math.max(...at(dark, dark.width - 3, dark.height - 3)) < 80, 'a dark list');
-    assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'a dark card'); // the header's card covers this corner of the picture
+    assert.ok(Math.max(...at(dark, dark.width - 3, dark.height - 3)) < 80, 'the list of notes is dark');
+    assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'the card is dark'); // the header's card covers this corner of the picture
     await turn('#f4f5f6');
     await post({ type: 'note', text: `https://permits.example/${'valve-4711-'.repeat(30)}end` });
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 3);
     const long = await save('saved-notes-long');
-    assert.ok(long.height > light.height + 48, `a word longer than a line: ${light.height} and ${long.height} px high`);
+    assert.ok(long.height > light.height + 48,
+        `a word longer than a line makes the picture ${long.height} px high instead of ${light.height}`);
     for (const id of await noteIds())
         await post({ type: 'remove_note', id });
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);
@@ -285,7 +286,7 @@ test('links to the view, the tag and the equipment, each with a QR code that a c
     const links = {}, sent = () => page.evaluate(() => globalThis.plantcast.session.toldSeq), sentBefore = await sent();
     for (const kind of ['This tag', 'This view', 'This equipment']) {
         if (kind === 'This view')
-            assert.equal(await sent(), sentBefore, 'a link that nobody sees is not stored');
+            assert.equal(await sent(), sentBefore, 'a link that the user does not see is not stored');
         await page.locator('#share-kind label', { hasText: kind }).click();
         if (kind === 'This view') // the server's short link takes the place of the long one
             await page.waitForFunction(() => /\/v\/\w{8}$/.test(document.getElementById('share-link').value));
@@ -293,7 +294,7 @@ test('links to the view, the tag and the equipment, each with a QR code that a c
         await page.waitForFunction(() => document.querySelector('#share-code svg path'));
         assert.equal(await scan(page), link, kind);
         const width = Number((await page.locator('#share-code svg').getAttribute('viewBox')).split(' ')[2]);
-        assert.ok(width - 2 * 4 <= 33, `${width} modules with margins`);
+        assert.ok(width - 2 * 4 <= 33, `the QR code has ${width} modules with margins`);
         links[kind] = link;
     }
     assert.equal(links['This tag'], `${url}#tag=TI-1`);
@@ -307,7 +308,7 @@ test('links to the view, the tag and the equipment, each with a QR code that a c
     await waitForPicture(other.page);
     assert.match(other.page.url(), /#group=.*colormap=cividis.*range=0,120.*camera=/);
     const there = await view(other.page);
-    there.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - asked.camera.eye[i]) < 1e-3, 'the same camera'));
+    there.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - asked.camera.eye[i]) < 1e-3, 'the link has the same camera'));
     for (const name of ['group', 'colormap', 'range', 'selected', 'show'])
         assert.deepEqual(there.params[name], asked.params[name], name);
     await other.page.goto(`${url}v/nosuch`);
@@ -390,15 +391,16 @@ test('a leader may reload the page: the followers stay, and continue', options, 
             await second.page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
             await leader.page.goto('about:blank');
             await follows(true);
-            assert.equal(await second.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'what is shown stays');
+            assert.equal(await second.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'the shown group stays');
             assert.match(await second.page.locator('#following').textContent(), /has ended: this is its last view/);
             assert.equal(second.page.url(), link);
             await settle(second.page);
             await shoot(second.page, 'following-gone');
             await leader.page.goto(url);
             await waitForPicture(leader.page);
-            assert.equal(await leader.page.evaluate(() => globalThis.plantcast.session.id), id, 'its number is its own');
-            assert.notEqual(await leader.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'of its link');
+            assert.equal(await leader.page.evaluate(() => globalThis.plantcast.session.id), id, 'the leader has the same session number');
+            assert.notEqual(await leader.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure',
+                'the view is that of the opened address');
             await follows(false);
             await second.page.reload();
             await follows(false);
@@ -437,7 +439,7 @@ test('others follow; handing over the lead keeps the shown view', options, async
         });
         const after = await view(second.page), seen = await second.page.evaluate(() => globalThis.plantcast.session.picture.camera.eye);
         for (const eye of [after.camera.eye, seen])
-            eye.forEach((m, i) => assert.ok(Math.abs(m - before.camera.eye[i]) < 1e-3, `what is shown stays: ${eye}`));
+            eye.forEach((m, i) => assert.ok(Math.abs(m - before.camera.eye[i]) < 1e-3, `the shown camera stays: ${eye}`));
         await page.keyboard.press('Escape');
         await shoot(page, 'following');
         await page.locator('#following button').click();
@@ -464,7 +466,7 @@ test('the theme switches to dark and back to light, and survives a reload', opti
         return Math.max(...canvas.getContext('2d').getImageData(4, Math.floor(canvas.height / 2), 1, 1).data.slice(0, 3)) < 110;
     });
     const rim = await page.locator('#legend .end.below canvas').evaluate((e) => getComputedStyle(e).outline);
-    assert.match(rim, /rgba\(255, 255, 255.*solid/, 'the colour below the range is as dark as the legend');
+    assert.match(rim, /rgba\(255, 255, 255.*solid/, 'the rim of the colour below the range is visible in the legend');
     await shoot(page, 'dark');
     await page.reload();
     await waitForPicture(page);
