@@ -218,7 +218,7 @@ test('the kernel ends a frozen leader, and the leader polls not one block more',
     await two.restart(core);
 });
 
-test('a standby that is loading its plant takes over as fast', options, async (t) => {
+test('a standby that is loading its plant takes over as fast as an idle one', options, async (t) => {
     const core = await two.leader(), other = two.other(core), list = `${two.plant.folder}/tags.csv`;
     await two.followed(core);
     renameSync(list, `${list}.kept`);

@@ -91,7 +91,7 @@ test('a reloaded leader goes on with the lease confirmed by a standby that has n
     await two.goesOn(t, core, 1);
 });
 
-test('a leader reloads while the database does not answer and its standby keeps asking', options, async (t) => {
+test('a leader\'s reload succeeds while the database does not answer and its standby keeps asking', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     await core.toDatabase.freeze();

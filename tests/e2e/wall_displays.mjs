@@ -140,7 +140,7 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
         await plant.ask(`set ${tag} 20`);
 });
 
-test('another display has its own panes', options, async () => {
+test('a second display shows its own panes', options, async () => {
     let answer; // holds back the module for trends, so that the pane has no trend for a while
     const held = new Promise((done) => { answer = done; });
     const arrange = (one) => one.route(/app\/trends\/trends\.js/, async (route) => { await held; await route.continue(); });

@@ -376,6 +376,6 @@ const followsHand = (painter, ...script) => async (t) => {
     }
 };
 
-const name = 'the picture follows the hand before the server answers; nothing is coloured where nothing was drawn';
+const name = 'the picture follows the pointer before the server answers, and undrawn areas stay uncoloured';
 test(`${name}, by WebGL`, options, followsHand('GlPainter', asGpu));
 test(`${name}, by the processor`, options, followsHand('CpuPainter'));
