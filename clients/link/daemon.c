@@ -200,7 +200,7 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
         lws_service(context, 0);
     if (!exchange.status)
         fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
-                exchange.why[0] ? exchange.why : "no answer",
+                exchange.why[0] ? exchange.why : "the server does not answer",
                 strstr(exchange.why, "SSL") ? "; pass the certificate of the daemon or of its authority with --ca FILE" : "");
     if (context)
         lws_context_destroy(context);

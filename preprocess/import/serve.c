@@ -68,7 +68,7 @@ static int prepare(const char *plant)
         return import_fail(program, strerror(error));
     while (waitpid(child, &status, 0) < 0 && errno == EINTR)
         ;
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : import_fail(plant, "cannot be prepared");
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : import_fail(plant, "the plant cannot be prepared: the errors above say why");
 }
 
 static int run_daemon(const struct serve_params *params, const char *plant)

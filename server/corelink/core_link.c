@@ -650,7 +650,7 @@ static void watch_silence(struct core_link *link)
 {
     int64_t now_ns = clock_mono_ns();
     if (!link->introduced && now_ns - link->begun_ns > CONNECT_NS)
-        end(link, "no answer");
+        end(link, "the core did not answer within 4 s");
     if (link->introduced && now_ns - link->heard_ns > CORE_SILENT_NS)
         end(link, "nothing received for 2 s");
     if (link->is_up && now_ns - link->readings_ns > CORE_SILENT_NS)

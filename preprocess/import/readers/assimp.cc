@@ -487,7 +487,7 @@ const format &format_of(const char *path)
     for (const format &known : formats)
         if (dot && !strcasecmp(known.ending, dot))
             return known;
-    refuse("unknown file ending");
+    refuse("unknown file ending: `plantcast import --formats` prints the known ones");
 }
 
 /* Rejects a truncated STL text file, because Assimp would silently read the part that is there. */
