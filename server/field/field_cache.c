@@ -58,7 +58,8 @@ static bool weights_may_go(const struct weights *weights)
     return weights->users == 0 || weights->columns;
 }
 
-/* Returns the tick of the last use of the least recently used entry that may be evicted; UINT64_MAX: none may be evicted. */
+/* Returns the last use of the least recently used entry that may be evicted, as a number of calls (field->tick); UINT64_MAX:
+   none may be evicted. */
 static uint64_t oldest_use(const struct field *field, const struct field_params *keep)
 {
     uint64_t oldest = UINT64_MAX;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the values of lost sensors (influence_fill.h) with a dense Cholesky factor of the lost sensors' block of the precision
-   matrix. */
+/* Computes the values of lost sensors, those without a usable reading (influence_fill.h). Uses a dense Cholesky factor of the
+   precision matrix's block that belongs to the lost sensors. */
 #include "field/influence_fill.h"
 
 #include <math.h>

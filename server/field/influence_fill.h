@@ -14,7 +14,8 @@ struct influence_fill;
 struct influence_fill *influence_fill_create(const double *precision, size_t count, const uint8_t *used);
 /* Frees the factorisation. Accepts a pointer to NULL; sets the pointer to NULL. */
 void influence_fill_destroy(struct influence_fill **fill);
-/* Replaces the lost sensors' elements of `values` with the values that follow from the used sensors. Takes (lost * sensors) steps. */
+/* Replaces the elements of `values` that belong to lost sensors (those without a usable reading) with the values that follow
+   from the used sensors. Takes (lost * sensors) steps. */
 void influence_fill_values(const struct influence_fill *fill, double *values);
 
 /* Writes each sensor's precision given the used sensors: P_ii - P_iL (P_LL)^-1 P_Li, with L the lost sensors; for a lost sensor

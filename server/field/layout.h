@@ -14,8 +14,9 @@ struct layout_sensor {
     uint32_t column;
     float surface_m[3];    /* position of the sensor in metres, in the coordinates of the asset file */
     uint32_t vertex;       /* index of the asset file's vertex that is nearest to the sensor */
-    bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m instead of the file */
-    const float *tried_m;  /* [vertex]: geodesic distance from a trial sensor; NULL: not computed yet */
+    /* true: a user is trying out the sensor's position, so its geodesic distances are in tried_m instead of the file */
+    bool tried;
+    const float *tried_m;  /* [vertex]: geodesic distance from the position that a user is trying out; NULL: not computed yet */
     /* by vertex: distance from the sensor in metres along the surface, computed by the heat method; NULL: plantcast-prep has
        not computed heat distances for this group */
     const float *heat_m;

@@ -11,8 +11,9 @@
 #include "value/quality.h"
 
 #define FLAG 255
-#define FILLED_DOUBT 0.1   /* a value computed for a lost sensor is flagged as uncertain if more than this fraction comes from
-                              Uncertain sensors */
+/* A lost sensor (one without a usable reading) gets a value computed from the others, which is flagged as uncertain if Uncertain
+   sensors contribute more than this fraction. */
+#define FILLED_DOUBT 0.1
 #define READING_LIMIT 1e30 /* readings are limited to this magnitude, because larger ones would overflow sums of floats */
 
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params)
@@ -217,7 +218,8 @@ void state_fill(struct field_state *state)
         doubts[i] = state->now[i].uncertain;
     }
     influence_fill_values(weights->fill, values);
-    influence_fill_values(weights->fill, doubts); /* computes the fraction of each lost sensor's value that comes from Uncertain readings */
+    /* computes which fraction of the value of each lost sensor (one without a usable reading) comes from Uncertain readings */
+    influence_fill_values(weights->fill, doubts);
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (!weights->takes_part[i]) {
             state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);

@@ -128,7 +128,7 @@ uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, s
     return id;
 }
 
-/* Returns the trial with this id, or NULL. The caller holds the lock. */
+/* Returns the trial (set of sensor positions that a user tries out) with this id, or NULL. The caller holds the lock. */
 static struct kept_trial *find(const struct trials *trials, uint32_t id)
 {
     struct kept_trial *kept = trials->kept;

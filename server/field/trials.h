@@ -50,9 +50,10 @@ enum { TRIALS_KEPT = 16 };
 /* Marks a trial as dropped: its user no longer needs it. The newest TRIALS_KEPT dropped trials stay, because frames in progress
    may use them. id 0 is a no-op. */
 void trials_drop(struct trials *trials, uint32_t id);
-/* Returns true if the trial exists and has not been dropped. */
+/* Returns true if the trial exists and its user still needs it (trials_drop() was not called). */
 bool trials_live(struct trials *trials, uint32_t id);
-/* Returns the trial with this id, which stays valid until trials_give(); NULL: there is none. */
+/* Returns the trial (set of sensor positions that a user tries out) with this id, which stays valid until trials_give(); NULL:
+   there is none. */
 const struct trial *trials_take(struct trials *trials, uint32_t id);
 /* Ends the caller's use of a trial from trials_take(), which may be freed afterwards. Accepts a pointer to NULL; sets the
    pointer to NULL. */

@@ -225,7 +225,8 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    bool blind = state->params.show == SHOW_BLIND; /* if the field shows SHOW_BLIND, vertices around lost sensors have data, too */
+    /* if the field shows SHOW_BLIND, vertices around lost sensors (those without a usable reading) have data, too */
+    bool blind = state->params.show == SHOW_BLIND;
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
     at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;

@@ -58,12 +58,14 @@ struct weights {
     float *near_m, *top;
     float *total;                /* [vertex]: sum of its weights */
     uint8_t *place;              /* by vertex: enum place */
-    uint8_t *lost;               /* [vertex]: how much nearer the nearest lost sensor is than the nearest usable one, encoded by
-                                    encode_lacking() in weights.c */
+    /* [vertex]: by how much the nearest lost sensor (one without a usable reading) is nearer than the nearest usable one,
+       encoded by encode_lacking() in weights.c */
+    uint8_t *lost;
     uint8_t *known; /* [block]: which of its arrays near_m, place, top and total are filled (bits of enum weights_known) */
     const float *prepared;       /* [member][vertex]: prepared weights from the asset's influence file; NULL: weights are computed from
                                     distances */
-    /* for prepared interpolations: factorised matrix from which lost sensors get values (influence_fill.h); NULL: no sensor is lost */
+    /* for prepared interpolations: factorised matrix from which lost sensors (those without a usable reading) get values,
+       influence_fill.h; NULL: no sensor is lost */
     struct influence_fill *fill;
     /* [sensor], for prepared interpolations: 1 for a used sensor; for a lost one the value that the interpolation predicts if
        all used sensors read 1. NULL: the interpolation is not prepared */
@@ -89,7 +91,9 @@ struct weights {
     uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */
     size_t kept_blocks;
     int users;           /* number of computed fields (struct field_state) that use these weights */
-    uint64_t used, sums; /* used: tick (field_impl.h) of the last use; sums: number of times that the weights were summed */
+    /* used: number of the field's calls (tick, field_impl.h) at the last use; sums: number of times that the weights were
+       summed */
+    uint64_t used, sums;
     struct weights *next;
 };
 
@@ -123,7 +127,7 @@ size_t weights_keep(struct weights *weights, size_t bytes);
 void weights_drop_columns(struct weights *weights);
 
 /* Returns how far a vertex is beyond the border of the data, encoded as struct scalar's `lacking`. filled: areas around lost
-   sensors have data. Call weights_prepare() for the vertex's block first. */
+   sensors (those without a usable reading) count as having data. Call weights_prepare() for the vertex's block first. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
 /* Computes those of the arrays near_m, top and place that a block of vertices lacks (begin: a multiple of KERNEL_BLOCK; count
    <= KERNEL_BLOCK). Call from any thread; different threads need different blocks. */

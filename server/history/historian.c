@@ -75,7 +75,8 @@ struct historian {
     struct thread thread;
     /* --- below: under thread.lock */
     struct historian_queue queue;
-    /* the plant after a reload, whose historian continues the recorded lines; NULL: the daemon ends instead */
+    /* the plant after a reload: its historian continues the recorded lines (each joins the recorded points of a tag); NULL: the
+       daemon ends instead, so the lines end */
     const struct plant *next;
     /* receives the time spans whose points the next historian must still read from PostgreSQL; NULL: not needed */
     struct postgres_owed *owed;
@@ -183,8 +184,8 @@ static void repeat_readings(struct historian *historian, int64_t before_us, int6
             put_reading(historian, (int)i, mono_ns, utc_ns);
 }
 
-/* Adds a point without a value just after last_us to every tag's series, so that its recorded line ends there: later values are
-   unknown. */
+/* Adds a point without a value just after last_us to every tag's series. The line that joins the tag's recorded points thus
+   ends there, and later values are unknown. */
 static void leave_out(struct historian *historian, int64_t last_us)
 {
     for (size_t i = 0; i < historian->plant->tag_count; i++)
@@ -293,8 +294,8 @@ static void say_gap(struct historian *historian, struct month_file *file, int64_
     mem_free(text);
 }
 
-/* Called after a start: if the previous daemon was killed, records each tag's newest sample, ends the recorded lines there, and
-   notes the gap in recording in the month file's table of events. */
+/* Called after a start. If the previous daemon was killed: records each tag's newest sample, ends the line through the tag's
+   recorded points there, and notes the gap in recording in the month file's table of events. */
 static int recover(struct historian *historian)
 {
     size_t count;

@@ -148,7 +148,7 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
 }
 
 /* Computes buckets from points that no bucket of a file includes yet. Of the points before done_us only the last matters,
-   because the line to the next point starts there. */
+   because the straight line from it to the next point crosses done_us. */
 static void put_points(struct gather *gather, const struct history_points *points)
 {
     struct history_bucket closed;
@@ -168,8 +168,9 @@ static void put_rest(struct gather *gather)
         put_bucket(gather, &rest);
 }
 
-/* Recomputes the first bucket of a month's file if the line from the previous month's last point crosses it, because the file's
-   own bucket begins only at its first point. *joined: true if the recomputed bucket was merged. */
+/* Recomputes the first bucket of a month's file if the straight line from the previous month's last point to this month's first
+   point crosses it, because the file's own bucket begins only at its first point. *joined: true if the recomputed bucket was
+   merged. */
 static int join_month(struct month_file *file, const char *tag, const struct history_bucket *first, struct gather *gather, bool *joined)
 {
     struct history_points points = { 0 };
@@ -275,8 +276,8 @@ static int read_month(struct history_reader *reader, int month, const struct mon
     return error;
 }
 
-/* Returns true if the months read so far contain a point of the tag, so that earlier months need not be searched for the point
-   where the line begins. */
+/* Returns true if the months read so far contain a point of the tag. Otherwise earlier months must be searched for the point
+   from which a straight line leads into the time span. */
 static bool has_begun(const struct gather *gather)
 {
     return gather->out->points.count > 0 || gather->out->buckets.count > 0 || gather->rollup.open;
@@ -301,8 +302,8 @@ static int read_months(struct history_reader *reader, const struct month_request
     int *months = month_list(reader->folder, &count), error = 0, first = month_of(of->from_us), last = month_of(of->to_us);
     while (begin < count && months[begin] < first)
         begin++;
-    /* Searches earlier months, one by one, for the point from which the line enters the time span. If one of these months
-       cannot be read, the search ends, but the query does not fail. */
+    /* Searches earlier months, one by one, for the last point before the time span: the recorded line enters the span on the
+       straight line from that point. If one of these months cannot be read, the search ends, but the query does not fail. */
     for (size_t i = begin; i > 0 && !error && !has_begun(gather); i--)
         if ((error = read_month(reader, months[i - 1], of, gather, left_out)) && i < begin) {
             error = 0;

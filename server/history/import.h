@@ -22,7 +22,7 @@ struct import_params {
 struct import_counts {
     long long samples, points; /* samples: number of samples read; points: number of points recorded */
     /* bad: samples without a usable value; duplicates: samples replaced by a later row with the same time; gaps: times without
-       samples, which interrupt the lines */
+       samples, which interrupt the line through the tag's recorded points */
     long long bad, duplicates, gaps;
     int tags;
     struct charset_choice encoding;

@@ -17,7 +17,9 @@ extern const int64_t history_level_us[LEVEL_COUNT];
 struct history_tag {
     const char *name, *unit;
     bool step;        /* true: the tag is a switch, whose values hold until the next point */
-    double within;    /* largest allowed difference between the recorded line and any reading, in the tag's unit */
+    /* largest allowed difference, in the tag's unit, between any reading and the recorded line (straight from each recorded
+       point to the next) */
+    double within;
     int64_t stale_us; /* microseconds for which a reading stays usable after its arrival; INT64_MAX: always */
 };
 

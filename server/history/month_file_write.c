@@ -427,7 +427,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     struct month_rollups rollups;
     struct history_point before;
     int error = find_before(file, id, from_us - 1, &before);
-    /* the line from the last point before from_us now ends at an imported point, so the buckets in between change, too */
+    /* the straight line from the last point before from_us now ends at an imported point, so buckets in between change, too */
     if (before.t_us != INT64_MIN)
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];

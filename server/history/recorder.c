@@ -77,8 +77,8 @@ struct recorder *recorder_create(const struct plant *plant, int64_t begin_us)
         recorder->lanes[i].sampling_us = (int64_t)plant_tag_scan_ms(plant, &plant->tags[i]) * 1000;
         recorder->lanes[i].silence_us = begin_us == INT64_MIN ? INT64_MAX : silence_of(plant, &plant->tags[i]);
         recorder->lanes[i].params = (struct swinging_door_params){
-            /* the recorded line may differ from the samples by at most `within`. swinging_door.h guarantees at most
-               2 * deadband + deviation, which is 2 * within/4 + within/2 = within here */
+            /* The recorded line (straight between recorded points) may differ from the samples by at most `within`.
+               swinging_door.h guarantees at most 2 * deadband + deviation, which is 2 * within/4 + within/2 = within here. */
             .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),
@@ -180,8 +180,8 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* also when the newest sample was just recorded: that point becomes the tag's held row, so that the end of the line is
-           known after a crash */
+        /* also when the newest sample was just recorded: that point becomes the tag's held row, so that the end of the tag's
+           recorded line is known after a crash */
         recorder_newest(recorder, recorder->touched[i], &point);
         add_points(held, recorder->touched[i], &point, 1);
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes rollups by integrating the line through the recorded points of one tag, segment by segment. */
+/* Computes rollups (minimum, maximum and mean of time intervals) from the straight lines between the recorded points of one
+   tag, one line after the other. */
 #include "history/rollup.h"
 
 static int64_t floor_to(int64_t t_us, int64_t length_us)
@@ -27,8 +28,8 @@ static void take_value(struct history_bucket *bucket, double value)
     bucket->high = fmax(bucket->high, value);
 }
 
-/* Adds the part of the line from rollup->last to `next` between t0_us and t1_us to the current bucket. next NULL: the value of
-   rollup->last holds over that time. */
+/* Adds to the current bucket the part between t0_us and t1_us of the straight line from the point rollup->last to the point
+   `next`. next NULL: the value of rollup->last holds over that time. */
 static void take_part(struct rollup *rollup, const struct history_point *next, int64_t t0_us, int64_t t1_us)
 {
     struct history_bucket *bucket = &rollup->bucket;

@@ -88,8 +88,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
         door->has_skipped = true;
         return due ? keep_last(door, params, kept, count) : count;
     }
-    /* first passes the skipped sample (the last one within the deadband) to the door: otherwise the recorded line would begin
-       to rise before the values did */
+    /* First passes the skipped sample (the last one within the deadband) to the door. Otherwise the line through the recorded
+       points would begin to rise before the values did. */
     if (door->has_skipped) {
         struct history_point skipped = door->skipped;
         count = params->step ? 0 : swing(door, params, &skipped, kept, count);

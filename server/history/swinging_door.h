@@ -9,7 +9,8 @@
 #include "history/point.h"
 
 struct swinging_door_params {
-    /* in the tag's unit, >= 0; deadband: changes below it are ignored; deviation: largest allowed distance of samples from the line */
+    /* in the tag's unit, >= 0; deadband: changes below it are ignored; deviation: largest allowed distance of samples from the
+       straight line between two recorded points */
     double deadband, deviation;
     int64_t override_us; /* maximum time between two recorded points while samples arrive */
     bool step;           /* true: the tag is a switch: values hold until the next point, and every change beyond the deadband is
@@ -34,7 +35,7 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
 /* Records the newest sample now, as if override_us had passed since the last recorded point. Returns the number of points in `kept`. */
 int swinging_door_end(struct swinging_door *door, const struct swinging_door_params *params,
                       struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
-/* If the newest sample is not recorded yet, writes it to *out and returns true. Readers of history extend the line to that
+/* If the newest sample is not recorded yet, writes it to *out and returns true. Readers of history draw the line on to that
    sample, and the caller stores it so that it survives a crash. */
 bool swinging_door_held(const struct swinging_door *door, struct history_point *out);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The event loop: its libwebsockets context, its ticks and its shutdown. */
+/* The event loop: its libwebsockets context, its periodic work (ticks) and its shutdown. */
 #include "net/net.h"
 
 #include <arpa/inet.h>
@@ -29,7 +29,8 @@
 static const int64_t SETTLE_NS = 5 * NS_PER_MS;
 /* longest wait at shutdown for users' actions to reach the disk; long enough, because settling_end() gives each action at most a second */
 static const int64_t SETTLED_NS = 1500 * NS_PER_MS;
-/* TICK_NS: interval between ticks of the sessions; REST_NS: the same while no session has timed work within the next second */
+/* TICK_NS: interval between two runs (ticks) of the sessions' periodic work; REST_NS: the same while no session has timed work
+   within the next second */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* how long shutdown waits for close frames and answers to be sent */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about throttled addresses */

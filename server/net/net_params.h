@@ -22,7 +22,7 @@
 #include "service/render_service.h"
 #include "session/plant_services.h"
 
-struct net_status { /* state of the event loop, passed to the callback at each tick */
+struct net_status { /* state of the event loop, passed to the callback net_params.tick, which is called once a second or more often */
     struct render_service *render_service;
     size_t sessions;
     int busy_percent;           /* percentage of the render thread's time spent on frames that a client waits for */

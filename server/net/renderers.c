@@ -53,7 +53,7 @@ struct renderer_peer {
     /* true: the last message with samples had all waiting samples, so the next message has readings, which resets the flag */
     bool samples_sent;
     bool reloads; /* true: the peer must still be told that this core loads the plant */
-    bool asks;    /* true: the peer must still be sent the question whether it promises not to take the lead (corelink/lease.h) */
+    bool asks;    /* true: the peer must still be asked whether it promises not to take the lead for a while (lease, corelink/lease.h) */
     /* standby: when this core ends, it asks the standby a last time, after all other messages, to promise not to take the lead.
        Number of this question; 0: not sent */
     uint64_t last_question;
@@ -104,8 +104,8 @@ static struct core_identity own_identity(const struct server_context *server)
     return (struct core_identity){ server->params.version, plant->name, plant->files.hash };
 }
 
-/* Returns whether the other core's promises not to take the lead (corelink/lease.h) count. A core with other plant files cannot be a
-   standby, but its promise is just as valid. */
+/* Returns whether the other core's promises not to take the lead for a while (corelink/lease.h) count. A core with other plant
+   files cannot be a standby, but its promise is just as valid. */
 static bool is_witness(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);

@@ -77,8 +77,12 @@ struct server_context {
         size_t by_client_capacity;
         int count;
         uint64_t next_client;
-        bool restless;    /* true: a session has timed work within the next second, so the event loop ticks at the short interval */
-        int64_t still_ns; /* duration of the last refined frame that was drawn for only one session */
+        /* true: a session has timed work within the next second, so the event loop does the sessions' periodic work at the
+           short interval */
+        bool restless;
+        /* time for drawing and reading back the last refined frame (detailed, for a camera at rest) that was drawn for only one
+           session */
+        int64_t still_ns;
     } streams;
     struct {
         struct view_token_keys token_keys;      /* renderers only: keys that sign view tokens */

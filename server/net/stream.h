@@ -72,8 +72,8 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 /* Requests the next picture of a tile's wall. (A tile is one display's part of a wall's picture.) Also presents a picture that
    all tiles have received, if its time has come. */
 void tiles_pump(struct server_context *server, const struct stream *stream);
-/* Chooses the leading tile of a wall and informs all tiles. Call it when tiles connected, disconnected or were dropped.
-   leaving: a stream that is being closed, or NULL. */
+/* Chooses the tile (display with a part of one picture) that leads its wall, and informs all tiles. Call it when tiles
+   connected, disconnected or were dropped. leaving: a stream that is being closed, or NULL. */
 void tiles_gather(struct server_context *server, const char *wall, const struct stream *leaving);
 /* Drops tiles (displays that together show one picture) that delay the others of their wall, and readmits them once they keep
    up. Call it every tick. */

@@ -95,7 +95,8 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
         }
 }
 
-/* Applies the burn-in shift to all tiles of a wall. A new tile gets the shift before its first picture. */
+/* Shifts the pictures of all tiles (displays that show parts of one picture) of a wall by the same few pixels, against burn-in.
+   A new tile gets the shift before its first picture. */
 static void move_all(struct server_context *server, const char *wall)
 {
     struct burn_shift shift = burn_shift_at(clock_plant_ns(server->params.plant.clock));

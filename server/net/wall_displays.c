@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures how current each wall display is, by the age of its oldest pane. A disconnected display stays listed, and its age
-   keeps growing. */
+/* Measures how current each wall display is, by the age of the oldest picture among its panes (areas of the screen). A
+   disconnected display stays listed, and its age keeps growing. */
 #include "net/wall_displays.h"
 
 #include <stdio.h>

@@ -46,7 +46,8 @@ struct session_context {
     /* monotonic time until which a session's camera counts as moving; refined frames of other sessions wait until then, because
        they would make that session's pictures stutter */
     int64_t moving_until_ns;
-    bool overloaded;  /* true: drawing is too slow to send all sessions a refined frame after each change of readings */
+    /* true: drawing is too slow to send all sessions a refined (detailed) frame after each change of readings */
+    bool overloaded;
     unsigned codecs;  /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */
     double cpu_used;  /* busy share of all processors of the machine, 0..1 */
     const char *node; /* this daemon's name behind a load balancer; NULL: it runs alone */

@@ -7,14 +7,15 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due once the camera has not moved for this long */
+/* a refined (detailed) frame is due once the camera has not moved for this long; until then, previews are sent */
+static const int64_t STILL_NS = 200 * NS_PER_MS;
 /* like STILL_NS while the render thread is overloaded or the network is slow: a refined frame is due once no preview was
    requested for this long */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
 /* while the render thread is overloaded or the network is slow: age of the last refined frame at which another one is requested
    although previews continue */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
-/* how long a refined frame is postponed at most while other sessions' cameras move */
+/* how long a refined (detailed) frame is postponed at most while the cameras of other sessions move */
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
 /* a refined frame whose expected transfer takes longer than this is sent twice: first as a draft of low quality, then in full quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
@@ -26,7 +27,7 @@ static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
    longer than this */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before repeating the request for a frame that failed for lack of memory */
-/* assumed size ratio of a refined frame to a preview, until a refined frame was sent */
+/* assumed ratio of the bytes of a refined (detailed) frame to those of a preview, until a refined frame was sent */
 static const double STILL_OVER_MOVING = 3;
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
@@ -121,7 +122,7 @@ void session_on_data(struct session *session, int64_t data_ns)
 
 /* --- requests --------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the transfer of a refined frame would occupy the network for longer than SLOW_STILL_NS. */
+/* Returns whether the network would take longer than SLOW_STILL_NS to carry a refined (detailed) frame. */
 static bool is_slow(const struct session *session)
 {
     double bytes =

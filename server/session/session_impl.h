@@ -13,7 +13,7 @@ void session_reply(struct session *session, char *text);
 void session_reply_error(struct session *session, const struct message_error *error);
 /* Drops the frames that are encoded and not sent yet. */
 void session_drop_ready(struct session *session);
-/* Notes that an input changed the view: a preview is due, and later a refined frame. */
+/* Notes that an input changed the view: a preview is due now, and a refined (detailed) frame once the camera rests. */
 void session_on_input(struct session *session, int64_t now_ns);
 /* Returns the user's name for journals and lists; "local" without a token. */
 const char *session_who(const struct session *session);
@@ -166,8 +166,8 @@ bool session_tile_fit(const struct session *session, const struct wall_place *pl
    because the client already shows the content. session_tile_sent(): call it when a frame is being sent. */
 void session_tile_unchanged(struct session *session, uint64_t picture);
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq);
-/* For tiles: call it when a frame arrived from the render service. If an earlier answer "unchanged" referred to this frame, the
-   frame also gets the picture id of that answer. */
+/* For tiles (displays that show parts of one picture): call it when a frame arrived from the render service. If an earlier
+   answer "unchanged" referred to this frame, the frame also gets the picture id of that answer. */
 void session_tile_came(struct session *session, struct frame_request *request, int64_t made_ns);
 
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */

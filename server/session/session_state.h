@@ -79,8 +79,8 @@ struct frame_demand {
     bool input, data, any;
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
-    int64_t preview_ns, refined_ns; /* monotonic times when the newest preview, and the newest refined frame, was requested */
-    /* quality of the best refined frame requested for the present view */
+    int64_t preview_ns, refined_ns; /* monotonic times when the newest preview, and the newest refined (detailed) frame, was requested */
+    /* quality of the best refined (detailed) frame that was requested for the present view */
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined;
     /* true: a refined frame is requested and has not arrived; this may take a minute, because the render thread draws it
        between other sessions' frames */
@@ -100,7 +100,8 @@ struct frame_demand {
 struct frame_delivery {
     struct pacer pacer;
     uint64_t newest_number;          /* sequence number of the newest frame received from the render service */
-    bool newest_refined;             /* true: the frame with the number newest_number is refined */
+    /* true: the newest frame received (newest_number) is a refined one, drawn in detail for a camera at rest */
+    bool newest_refined;
     /* frames that are ready to be sent, oldest first. A frame that arrives and decodes without earlier frames replaces the
        whole list */
     struct encoded_frame *ready;
@@ -169,7 +170,7 @@ struct owed_texts {
     int reply_count;
 };
 
-/* Sensors that an engineer moves on trial (session_place.c). */
+/* Sensors whose positions an engineer is trying out (session_place.c). */
 struct session_placement {
     struct place_set *set; /* trial positions of the sensors that this session moved; NULL: none was moved */
     uint32_t seq;          /* sequence number of the newest `place` message of the client */
@@ -188,7 +189,7 @@ struct session_tile {
     /* layout of the wall's picture, from the size of this session's display; only the leading session's layout is used */
     struct tile_layout layout;
     struct tile_held {
-        uint64_t picture; /* number that identifies one picture of the wall, the same for all its tiles */
+        uint64_t picture; /* number that identifies one picture of the wall, the same for all displays that show its parts (tiles) */
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */
     } held[TILE_HELD];    /* frames sent but not yet shown at the wall's common instant, oldest first */
     int held_count;
@@ -198,11 +199,11 @@ struct session_tile {
     uint64_t unchanged;
     uint32_t presented_seq;
     int64_t made_ns; /* smoothed time in nanoseconds from the request for a preview to the encoded frame; 0: not known */
-    int64_t late_us; /* UTC microseconds when the tile was dropped from the wall; 0: it takes part */
-    /* out_ns: how long the tile stays dropped. in_ns: monotonic; of a dropped tile: the earliest time of its readmission; of a
-       tile that takes part: the time of its last readmission */
+    int64_t late_us; /* UTC microseconds when this display was dropped from the wall's picture because it was slow; 0: it takes part */
+    /* out_ns: how long this tile (display with a part of a wall's picture) stays dropped. in_ns: monotonic; while the tile is
+       dropped: the earliest time of its readmission; otherwise: the time of its last readmission */
     int64_t out_ns, in_ns;
-    char *told; /* last `tiles` message sent to the client; NULL: none */
+    char *told; /* last message `tiles` (state of the wall's displays) sent to the client; NULL: none */
 };
 
 struct message_rate {
@@ -251,7 +252,8 @@ struct session {
     struct wall_place display; /* wall display that the client has introduced itself as; display 0: none */
     struct session_tile tile;
     int64_t heard_ns;   /* monotonic time when the last message from the client arrived */
-    int64_t settled_ns; /* value of heard_ns at the last tick at which the client showed the newest picture (none was owed to it) */
+    /* value of heard_ns when session_on_tick() last found that the client showed the newest picture (none was owed to it) */
+    int64_t settled_ns;
 };
 
 /* Returns whether the session is an open viewer, without a token: it gets frames, but no readings, tags or names of people. */

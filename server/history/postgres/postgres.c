@@ -146,8 +146,8 @@ static void restore(struct postgres *postgres)
         postgres->params.restored(postgres->params.arg);
 }
 
-/* If this daemon has become the leader: reconnects with the lock that makes it the only writer, and ends the lines in the
-   database that no daemon continues. */
+/* If this daemon has become the leader: reconnects with the lock that makes it the only writer. Then ends in the database, with
+   a point without a value, the recorded line (through a tag's points) of each tag that no daemon continues. */
 static void take_lead(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -395,8 +395,8 @@ static void *postgres_main(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            /* if this machine's files are being restored: sends nothing until the restore has ended the lines that earlier
-               recordings left open in the database */
+            /* If this machine's files are being restored, sends nothing yet. The restore must first end each tag's recorded
+               line that earlier recordings left open in the database, with a point without a value. */
             if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX)
                 send_all(postgres);
         } else {

@@ -71,8 +71,9 @@ static void end(struct postgres_restore *restore)
 
 /* --- ending lines in the database --------------------------------------------------------------------------------------------- */
 
-/* Ends the recorded lines in the database at their last points, as month_file_recover() does in files. Each tag's newest sample
-   becomes a recorded point, even if later points exist, because a standby may already have sent its first points. */
+/* Ends each tag's recorded line (through its points) in the database at the last point, as month_file_recover() does in files.
+   Each tag's newest sample becomes a recorded point, even if later points exist, because a standby may already have sent its
+   first points. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =

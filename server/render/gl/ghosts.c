@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws ghosted assets: writes their depth into a separate depth buffer; a full-screen pass then finds the edges to draw in it. */
+/* Draws ghosted assets (assets drawn as an outline with a faint tint). Writes their depth into a separate depth buffer; a
+   full-screen pass then finds the edges to draw in it. */
 #include "render/gl/ghosts.h"
 
 #include <math.h>

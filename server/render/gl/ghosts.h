@@ -15,10 +15,10 @@ struct ghosts {
    asset is. */
 bool ghosts_shows(const struct frame_context *context, size_t asset);
 bool ghosts_any(const struct frame_context *context);
-/* Compiles the shader programs of the pass. On failure, logs the reason and returns false. */
+/* Compiles the shader programs that draw ghosts (outlined assets). On failure, logs the reason and returns false. */
 bool ghosts_init(struct ghosts *ghosts, struct log *log);
 void ghosts_finish(struct ghosts *ghosts);
-/* Draws all ghosts into the resolved picture; does nothing if there are none. */
+/* Draws all ghosts (assets shown as an outline with a faint tint) over the resolved picture; does nothing if there are none. */
 void ghosts_draw(struct ghosts *ghosts, const struct frame_context *context);
 
 #endif

@@ -91,7 +91,8 @@ bool markers_start(struct point_visibility *queries, const struct frame_context 
     return point_visibility_start(queries, context, count);
 }
 
-/* Returns the sensor of a tag on this asset. NULL: the tag has no sensor there, or a trial moves that sensor. */
+/* Returns the sensor of a tag on this asset, at its configured position. NULL: the tag has no sensor there, or a user tries out
+   another position for it. */
 static const struct scene_sensor *sensor_on(const struct marker_iterator *iterator, int asset, int tag)
 {
     const struct scene_asset *on = &iterator->scene->assets[asset];

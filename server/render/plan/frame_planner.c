@@ -27,8 +27,8 @@ static int by_distance(const void *a, const void *b, void *distance_m)
     return (first > second) - (first < second);
 }
 
-/* Returns whether any part of the asset is drawn normally: it is neither hidden nor ghosted, and section planes do not cut it away
-   entirely. */
+/* Returns whether any part of the asset is drawn normally: it is neither hidden nor drawn as an outline only (ghosted), and
+   section planes do not cut it away entirely. */
 static bool is_left(const struct visibility *visibility, int index, const struct scene_asset *asset)
 {
     return visibility_of(visibility, index) == ASSET_SHOWN && !clip_drops(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);

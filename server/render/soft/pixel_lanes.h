@@ -29,8 +29,8 @@ SOFT_INLINE lanes pixel_square(const struct pixel_sensor *sensor, const lanes at
     return x * x + y * y + z * z;
 }
 
-/* Returns the squared distances from each of eight points to the nearest used sensor, the nearest lost sensor and the nearest
-   sensor without alarm limits, of those in the list. */
+/* Returns, for each of eight points, three squared distances to sensors of the list: to the nearest one whose reading is used,
+   the nearest one without a usable reading (lost), and the nearest one without alarm limits. */
 SOFT_INLINE struct eight_nearest pixel_nearest(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3])
 {
     lanes far2 = (lanes){ 0 } + PIXEL_FAR2;

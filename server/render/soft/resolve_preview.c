@@ -255,8 +255,8 @@ SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struc
     return pattern_marks(marks, values.no_data, values.uncertain, no_limits, light, x, (float)row + 0.5f, ink);
 }
 
-/* Among eight pixels, replaces each mark MARK_PIXELS (field to be evaluated at the pixel) by the MARK_FIELD of the evaluated field. Pixels
-   that show the same field are evaluated together. */
+/* Finds those of eight pixels whose mark (colour code) is MARK_PIXELS, which means that the field must be evaluated at the
+   pixel. Replaces the mark by MARK_FIELD with the evaluated colour. Pixels that show the same field are evaluated together. */
 SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_rect *rect, const struct mark_ink *ink, int column, int row)
 {
     lanes_int *at = (lanes_int *)(raster->marks + (size_t)row * (size_t)raster->pitch_px + (size_t)column), marks = *at, out = marks;

@@ -18,16 +18,16 @@ enum { BAND_ROWS = 32, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, S
 
 /* A mark is a 32-bit code, one per pixel, which is converted to the pixel's colour later. 0: no surface. Otherwise it holds an
    entry of the colour map, or a material and its light; the top bits tell which. */
-/* mark of a pixel that shows the field: MARK_FIELD | row * COLORMAP_COLUMNS + column of the colour map (bits of MARK_PLACE) | coverage by
-   an isoline, 0..255 << MARK_LINE */
+/* mark (colour code) of a pixel that shows the field: MARK_FIELD | row * COLORMAP_COLUMNS + column of the colour map (bits of
+   MARK_PLACE) | coverage by an isoline, 0..255 << MARK_LINE */
 #define MARK_FIELD 0x40000000u
 #define MARK_PLACE 0x1ffffu
 enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
-/* mark of a pixel that shows an asset without a field: MARK_CONTEXT | row of the colour ramps << 16 (14 bits) | ambient light << 8 (8 bits)
-   | sunlight (8 bits) */
+/* mark (colour code) of a pixel that shows an asset without a field: MARK_CONTEXT | row of the colour ramps << 16 (14 bits) |
+   ambient light << 8 (8 bits) | sunlight (8 bits) */
 #define MARK_CONTEXT 0x80000000u
-/* marks of section cuts: MARK_CAP for the cap of a closed body; MARK_SECTION | encoded normal for the inner side of a surface
-   (section_colors.h) */
+/* marks (colour codes of pixels) of section cuts: MARK_CAP for the cap of a closed body; MARK_SECTION | encoded normal for the
+   inner side of a surface (section_colors.h) */
 #define MARK_SECTION 0xc0000000u
 #define MARK_CAP 0xe0000000u
 #define MARK_KIND 0xc0000000u

@@ -10,7 +10,9 @@
 enum { ADMISSION_WINDOWS = 3, ADMISSION_RETRY_S = 10 };
 
 struct admission_window { /* statistics of one second of drawing */
-    int64_t drawing_ns;   /* render time of frames that clients wait for; excludes refined frames, which yield to others */
+    /* render time of frames that clients wait for; excludes refined frames (detailed ones, for a camera at rest), which yield
+       to others */
+    int64_t drawing_ns;
     int64_t moving_ns;    /* part of drawing_ns spent on frames of sessions whose camera moves */
     int64_t drawn;        /* number of frames in moving_ns; a frame shared by several sessions counts once */
     int64_t moving;       /* number of frames delivered to sessions with a moving camera */

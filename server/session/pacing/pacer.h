@@ -11,8 +11,8 @@
 enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
 struct pacer_note {    /* properties of a sent frame that are needed when the client acknowledges the frame */
-    /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is a refined one in full
-       quality */
+    /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is a refined one (detailed,
+       for a camera at rest) in full quality */
     bool moving, full;
     int step;
     bool of_data; /* true: the frame was made because a reading changed; false: because of an input */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds short messages to clients: lists of followers, answers to picks (clicks on the picture), errors, and messages to the tiles of a
-   wall. */
+/* Builds short messages to clients: lists of followers, answers to picks (clicks on the picture), errors, and messages to the
+   tiles of a wall (displays that show parts of one picture). */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"

@@ -16,8 +16,8 @@ int tile_layout_height(const struct tile_layout *layout)
     return layout->rows * layout->height_px + (layout->rows - 1) * layout->gap_px[1] + 2 * layout->margin_px[1];
 }
 
-/* Scales a tile's width or height to an even number of pixels, because encoders with chroma subsampling would blend an odd
-   column with the next tile's pixels. */
+/* Scales the width or height of a tile (one display's part of the picture) to an even number of pixels, because encoders with
+   chroma subsampling would blend an odd column with the next tile's pixels. */
 static int scaled(int px, double scale)
 {
     int less = (int)(px * scale) & ~1;
@@ -29,8 +29,8 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    /* gaps and margin shrink by `scale`, or by the factor of the tile's size if rounding to whole pixels made that factor
-       smaller */
+    /* Scales the gaps between tiles, and the margin. Uses the factor by which the tile itself shrank, if rounding to whole
+       pixels made that smaller than `scale`. */
     double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);

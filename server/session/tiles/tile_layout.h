@@ -23,9 +23,10 @@ struct tile_layout {
 /* Lays out the tiles of a wall, which must have tiles, for displays of that size. If the picture would have more than most_px
    pixels or too long a side, all tiles shrink by one factor. */
 void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int width_px, int height_px, int64_t most_px);
-/* Returns the layout with tiles, gaps and margin scaled by `scale`, which is at most 1. */
+/* Returns the layout of the picture with the sizes of the displays' parts (tiles), the gaps between them and the margin
+   multiplied by `scale`, which is at most 1. */
 struct tile_layout tile_layout_scale(const struct tile_layout *layout, double scale);
-/* Returns the width, or the height, of the whole picture in pixels. */
+/* Returns the width, or the height, in pixels of the whole picture: all tiles, the gaps between them and the margins. */
 int tile_layout_width(const struct tile_layout *layout);
 int tile_layout_height(const struct tile_layout *layout);
 /* Returns the rectangle of one tile in the picture. display: counts from 1, row by row. */

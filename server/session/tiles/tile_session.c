@@ -11,7 +11,8 @@
 static const int64_t MAX_LATE_NS = 3 * NS_PER_S;
 /* OUT_NS: how long a slow tile (display) is dropped from the wall's picture; doubled each time up to MAX_OUT_NS */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
-/* time for which a tile must have kept up for its next dropping to last only OUT_NS again */
+/* A tile that was dropped for a long time has this long to prove itself: if it keeps up for this time after its readmission,
+   its next dropping lasts only OUT_NS again. */
 static const int64_t KEPT_UP_NS = 60 * NS_PER_S;
 
 bool session_is_tile(const struct session *session)
@@ -42,7 +43,8 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    /* requests a picture even if its content is unchanged, because the burn-in shift has moved the pixels that the tile shows */
+    /* requests a picture even if its content is unchanged, because the burn-in shift has moved the part of the wall's picture
+       that this display shows */
     session->demand.data = true;
 }
 

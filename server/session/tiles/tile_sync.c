@@ -29,7 +29,8 @@ static bool goes_first(const struct frame_request *a, const struct frame_request
     return a->urgency < b->urgency;
 }
 
-/* Returns the worst quality that any of the wall's tiles needs, because tiles of different quality would not look like one picture. */
+/* Returns the worst encoding quality that any of the wall's displays needs. All get this quality, because parts of different
+   quality would not look like one picture. */
 static struct rung worst_rung(const struct session_tiles *tiles, int *step)
 {
     struct quality_ladder worst = tiles->members[0]->delivery.pacer.ladder;
@@ -102,8 +103,8 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         requests[i].codec = member->codec.current;
         requests[i].account = member->room.share ? member->room.share->account : 0;
         requests[i].view.camera_seq = member->view.camera_seq;
-        /* members show the leader's parameters. Their frames therefore have the leader's params_seq, which the client knows
-           from the message `following` */
+        /* All displays of the wall show the leader's parameters. Their frames therefore have the leader's sequence number of
+           parameters (params_seq), which the client knows from the message `following`. */
         requests[i].view.params_seq = tiles->leader->view.params_seq;
         requests[i].part = tile_layout_part(&layout, member->tile.place.display);
     }
@@ -131,7 +132,8 @@ static void drop_to(struct session_tile *tile, uint64_t picture)
     tile->held_count = kept;
 }
 
-/* Returns the id of the newest picture after `presented` that the clients of all members have received; 0: none. */
+/* Returns the id of the newest picture after `presented` that the clients of all members (displays of the wall that take part)
+   have received; 0: none. */
 static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
 {
     const struct session_tile *first = tiles->count > 0 ? &tiles->members[0]->tile : NULL;

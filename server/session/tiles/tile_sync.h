@@ -7,14 +7,17 @@
 #define SESSION_TILES_TILE_SYNC_H
 #include "session/session.h"
 
-/* Returns whether a tile takes part now: its page is visible, and it keeps up. */
+/* Returns whether a tile (display with a part of the wall's picture) takes part now: its page is visible, and it acknowledges
+   pictures fast enough. */
 bool session_tile_takes_part(const struct session *session, int64_t now_ns);
 
 struct session_tiles { /* tiles that take part in a wall's picture (neither dropped nor hidden), and the session that leads them */
     struct session *const *members;
     size_t count;
     const struct session *leader;
-    struct quality_ladder *made; /* quality ladder of the wall, whose picture size depends on how long the server takes to make pictures */
+    /* quality ladder (choice of quality and size) of the wall's picture; the size depends on how long the server takes to make
+       pictures */
+    struct quality_ladder *made;
 };
 
 /* Returns true if a new picture may be requested (or may replace one in flight) and a member wants it; fills requests[] with

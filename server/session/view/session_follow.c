@@ -9,7 +9,8 @@
 
 void session_ask_follow(struct session *session, const struct message *message)
 {
-    if (session_is_tile(session)) /* ignores the message: a tile always follows its wall's leader */
+    /* ignores the message: a tile (display with a part of a wall's picture) always follows its wall's leader */
+    if (session_is_tile(session))
         return;
     session->following.wanted = message->follow;
     session->following.asked = true;
