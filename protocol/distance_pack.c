@@ -14,7 +14,9 @@
 #define LANES 8u
 #define GROUP 128u
 #define GROUPS (BLOCK / GROUP)
-#define NO_PARENT 0xffffu /* value of `parent` in packed_row: codes are predicted from distances of the same sensor only */
+/* value of `parent` in packed_row if a sensor's codes are predicted only from its own earlier codes, not from a similar
+   sensor's */
+#define NO_PARENT 0xffffu
 #define PLAIN 0xfffeu     /* value of `parent` in packed_row: codes are not predicted, because some vertices have no path to the sensor */
 #define SAMPLES 16u       /* number of vertices compared between two sensors' distances to find similar sensors */
 

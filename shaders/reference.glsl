@@ -94,8 +94,8 @@ float nearness(float distance_m)
     return max(0.0, 1.0 - distance_m / numbers.y);
 }
 
-// Returns the factor that reduces a sensor's weight towards the end of its reach: 1 at the nearest sensor's distance, 0 beyond
-// the reach.
+// Returns the factor that reduces a sensor's weight towards its reach (maximum distance of influence): 1 at the nearest
+// sensor's distance, 0 beyond the reach.
 float faded(float distance_m, float near_m)
 {
     float left = isinf(numbers.z) || distance_m <= near_m ? 1.0 : max(0.0, numbers.z - distance_m) / (numbers.z - near_m);

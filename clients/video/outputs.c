@@ -8,7 +8,8 @@ static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 struct output {
     GstAppSrc *src;
     bool begun, timed;
-    /* added to the time of each encoded frame: running time of this output's pipeline minus that of the encoder's pipeline */
+    /* added to the time of each encoded frame, in nanoseconds: running time of this output's pipeline minus that of the
+       encoder's pipeline */
     GstClockTimeDiff offset;
 };
 

@@ -14,12 +14,20 @@
 /* Kinds of entries. For each kind, the comment names the source file that packs and unpacks its contents. */
 enum build_cache_kind {
     BUILD_CACHE_MODELS,   /* model data: one file for all models, with key 0 (cache/model_cache.c) */
-    BUILD_CACHE_GEOMETRY, /* mesh and levels of detail, by geometry key (pipeline/geometry_cache.c) */
-    /* surface on which distances are computed, by geometry key; the daemon reads this file too (surface/surface_store.c) */
+    /* mesh and levels of detail, by geometry key, which does not depend on the asset's sensors (pipeline/geometry_cache.c) */
+    BUILD_CACHE_GEOMETRY,
+    /* surface on which distances are computed, by geometry key (does not depend on sensors); the daemon reads this file too
+       (surface/surface_store.c) */
     BUILD_CACHE_SURFACE,
-    BUILD_CACHE_SAMPLES,     /* triangles that sample points project onto, by geometry key (subdivision/sample_cache.c) */
-    BUILD_CACHE_DISTANCES,   /* distances from sensors, by distances key; cache/distance_cache.c writes parts of the file in place */
-    BUILD_CACHE_SUBDIVISION, /* measured errors of edges and triangles, by distances key (subdivision/subdiv_cache.c) */
+    /* triangles onto which sample points are projected, by geometry key, which does not depend on sensors
+       (subdivision/sample_cache.c) */
+    BUILD_CACHE_SAMPLES,
+    /* distances from sensors, by distances key, which depends on the asset's sensors; cache/distance_cache.c writes parts of
+       the file in place */
+    BUILD_CACHE_DISTANCES,
+    /* measured interpolation errors of edges and triangles, by distances key, which depends on the asset's sensors
+       (subdivision/subdiv_cache.c) */
+    BUILD_CACHE_SUBDIVISION,
     BUILD_CACHE_KINDS
 };
 

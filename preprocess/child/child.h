@@ -20,7 +20,7 @@ struct child_params {
     const char *name;        /* name of the child in error messages, such as "the STEP reader" */
     const char *folder;      /* working directory of the child; also its TMPDIR and HOME */
     int timeout_s;
-    size_t memory_bytes; /* limit of data memory, for the child and for each process it starts */
+    size_t memory_bytes; /* limit of data memory in bytes, for the child and for each process it starts */
     /* options that raise the limits, such as "--timeout", for messages about an exceeded limit; memory_option may be NULL */
     const char *timeout_option, *memory_option;
     enum confine_role role;

@@ -10,7 +10,7 @@
 struct debug_view {
     const char *name;              /* name of the asset */
     const struct surface *surface; /* surface of the asset; Z is up */
-    const float *distances_m;      /* distance of each surface point from the chosen sensor; NULL: no sensor is chosen */
+    const float *distances_m;      /* distance in metres of each surface point from the chosen sensor; NULL: no sensor is chosen */
     const char *sensor;            /* name of the chosen sensor */
     const double (*sensors_m)[3];  /* positions of all sensors */
     size_t sensor_count, chosen;

@@ -279,7 +279,7 @@ static void add_circular_torus(struct cad_node *node, const struct primitive_fra
 }
 
 struct dome {          /* part of an ellipsoid of revolution about the Z axis: from the angle `low` above the equator to the pole */
-    double across, up; /* across: radius of the ellipsoid; up: its height */
+    double across, up; /* across: radius of the ellipsoid in X and Y; up: its radius along Z */
     double centre_z, low, phase;
     int corners;
 };
@@ -446,7 +446,7 @@ static void on_combine(GLdouble at[3], void *of[4], GLfloat weight[4], void **ou
     (void)of;
     (void)weight;
     struct tessellated_polygon *polygon = user;
-    if (polygon->made_count == MAX_CROSSINGS) { /* do not reallocate the array: GLU keeps pointers into it */
+    if (polygon->made_count == MAX_CROSSINGS) { /* does not enlarge the array polygon->made, because GLU keeps pointers to its elements */
         *out = polygon->made[MAX_CROSSINGS - 1];
         return;
     }

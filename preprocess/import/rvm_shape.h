@@ -42,8 +42,8 @@ extern const int rvm_numbers[RVM_FACETS + 1]; /* by kind of primitive: number of
 /* A flat face of a primitive in the plant's frame: a circle or a rectangle. */
 struct rvm_face {
     double centre_m[3], outward[3];
-    double radius_m;                    /* radius of a circular face; 0: the face is a rectangle */
-    double half_m[2], directions[2][3]; /* rectangle: half side lengths, and directions of the sides */
+    double radius_m;                    /* radius of a circular face in metres; 0: the face is a rectangle */
+    double half_m[2], directions[2][3]; /* rectangle: half of its side lengths in metres, and unit vectors along its sides */
 };
 enum { RVM_MAX_FACES = 6 };
 

@@ -485,7 +485,7 @@ bool cloud_heat_distances(const struct cloud_heat *cloud, const double source_m[
         double start = values[near.at[0]];
         for (size_t i = 0; i < cloud->count; i++)
             slope_at(cloud, i, values, slopes[i]);
-        double zero = near.away_m[0]; /* distance between the source and the nearest sample point */
+        double zero = near.away_m[0]; /* distance in metres between the source and the nearest sample point */
         for (size_t v = 0; v < count; v++) {
             const double p[3] = { (double)positions_m[v][0], (double)positions_m[v][1], (double)positions_m[v][2] };
             find_nearby(cloud, p, &near);

@@ -115,7 +115,8 @@ static void find_scatter(struct gaussian_fit *fit)
     const struct readings_table *table = fit->table;
     const size_t n = table->count;
     double *less = mem_array(n, sizeof(*less)), level = 0;
-    /* subtract the mean to avoid cancellation; the result is unchanged, because the precision matrix removes any constant */
+    /* subtracts the mean of all readings, to avoid cancellation; the result does not change, because the precision matrix
+       removes any constant */
     for (size_t i = 0; i < n; i++)
         level += table->values[i] / (double)n;
     for (size_t t = 0; t < table->instants; t++) {

@@ -262,7 +262,7 @@ static void find_by_heat(void *arg, size_t begin, size_t end)
 }
 
 /* Computes distances by heat on a point cloud for a group. For the report, compares those of the first CLOUD_CHECKED sensors
- * with our mesh distances. */
+   with the distances along the mesh that plantcast-prep computes otherwise. */
 static bool add_heat(struct influence_making *making, int group, const double (*places_m)[3], size_t count)
 {
     const struct influence_input *input = making->input;

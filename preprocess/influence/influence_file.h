@@ -10,14 +10,14 @@
 #include "preprocess/influence/influence_bend.h"
 #include "surface/surface.h"
 
-/* Differences between point-cloud heat distances and our mesh distances at all vertices, as shares of the largest distance, for
- * CLOUD_CHECKED sensors. */
+/* Differences between distances by heat on the point cloud and plantcast-prep's usual distances along the mesh. They are taken
+   at all vertices, as shares of the largest distance, for CLOUD_CHECKED sensors. */
 struct cloud_report {
     size_t points;
     int k;
     double spacing_m, mean, worst;
-    /* reached: number of vertices that only heat distances reach, through thin walls; unreached: number of vertices that only
-     * our distances reach */
+    /* reached: number of vertices that heat distances reach, through thin walls, but distances along the mesh do not;
+       unreached: number of vertices for which the reverse is true */
     size_t reached, unreached;
 };
 enum { CLOUD_CHECKED = 4 };

@@ -18,7 +18,7 @@
  * triangle's tip (the corner opposite the edge) differs from a linear continuation of the edge's other triangles. */
 struct edge_form {
     uint32_t first, count; /* index of the form's first term; number of terms */
-    float low_m, sum_m;    /* heights of the adjacent triangles above the edge: the smallest, and the sum */
+    float low_m, sum_m;    /* heights of the edge's adjacent triangles above the edge: the smallest, and the sum of all */
 };
 struct edge_term {
     uint32_t point;

@@ -181,7 +181,7 @@ struct near { /* cache of one thread: the triangles that were nearest to recent 
     /* indices of the triangles of part `part` of surface `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty
      * entry */
     uint32_t part, tris[RECENT];
-    double known_m; /* largest distance of the part (connected component) found so far by this thread */
+    double known_m; /* metres; largest distance of the part (connected component) found so far by this thread */
 };
 
 struct deviation_probe {   /* state of one distance measurement ("probe"): a point, and the surface from which its distance is measured */

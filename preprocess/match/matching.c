@@ -308,7 +308,8 @@ static void keep_left(struct matching_run *run)
 
 /* --- the plant file --------------------------------------------------------------------------------------------------------- */
 
-/* Appends a group to the plant file's lines. The group's colour scale is derived from the scaled limits of its tags. */
+/* Appends a group of sensors to the plant file's lines. The range of the group's colour scale is derived from the scaled limits
+   (lowest and highest measurable values) of its tags. */
 static void add_group(const struct quantity *quantity, struct text *lines)
 {
     bool known = quantity->low < quantity->high;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assigns tags to groups by unit and, if the unit is ambiguous, by their ISA-5.1 letters; derives value ranges from scaled
- * limits. Call from one thread only. */
+/* Assigns tags to groups by unit and, if the unit is ambiguous, by their ISA-5.1 letters. Derives value ranges from the tags'
+   scaled limits (lowest and highest measurable values). Call from one thread only. */
 #ifndef PREPROCESS_MATCH_QUANTITIES_H
 #define PREPROCESS_MATCH_QUANTITIES_H
 #include "plant/plant.h"
@@ -9,7 +9,8 @@
 struct quantity { /* a group of tags: an existing one, or one to add to the plant file */
     char *id, *name, *unit;
     bool is_new;        /* true: the group will be added to the plant file; false: the plant file already has the group */
-    double low, high;   /* lowest and highest scaled limit of the group's tags, in the group's unit; low > high: no tag has any */
+    /* lowest and highest scaled limit (measurable value) of the group's tags, in the group's unit; low > high: none */
+    double low, high;
     size_t tags, blank; /* tags: number of tags in the group; blank: number of tags without a unit */
 };
 

@@ -394,7 +394,7 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
     }
     mem_free(bytes);
     if (good && list->count == 0) {
-        /* add the first remark to the error message, because it often says why the file has no tags */
+        /* adds the first remark about the exported file to the error message, because it often says why the file has no tags */
         size_t length = strcspn(list->remarks.at ? list->remarks.at : "", "\n");
         snprintf(why, why_bytes, "the file contains no tags%s%.*s", length > 0 ? ": " : "", (int)length,
                  length > 0 ? list->remarks.at : "");

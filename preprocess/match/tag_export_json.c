@@ -398,7 +398,9 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
         set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
-    if (tag->fields[EXPORT_SCALED_HIGH]) /* use Ignition's defaults for the scaled limits, 0 and 100: exports omit default values */
+    /* takes Ignition's default values for the scaled limits (lowest and highest measurable values), 0 and 100, because exports
+       omit default values */
+    if (tag->fields[EXPORT_SCALED_HIGH])
         export_tag_set(tag, EXPORT_SCALED_LOW, "0");
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");

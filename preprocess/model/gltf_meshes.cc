@@ -69,7 +69,9 @@ std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
         return used;
     auto ends = std::minmax_element(indices->begin(), indices->end());
     uint32_t low = *ends.first, range = *ends.second - low + 1;
-    if (range / 8 > indices->size()) { /* few indices over a wide range: sort them, because an array over the range would be large */
+    /* few indices spread over a wide range: sorts them, because an array with an element for each number of the range would be
+       large */
+    if (range / 8 > indices->size()) {
         used = *indices;
         std::sort(used.begin(), used.end());
         used.erase(std::unique(used.begin(), used.end()), used.end());

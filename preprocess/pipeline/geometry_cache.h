@@ -16,8 +16,8 @@ struct geometry_cache { /* an asset's cached geometry files, mapped into memory 
     struct build_report report;
 };
 
-/* Maps and checks the cache files of a geometry key. Returns false if either is missing or damaged; geometry_cache_close() then
- * need not be called. */
+/* Maps and checks an asset's two cache files (KEY.stock, KEY.surface) for a geometry key, which does not depend on the asset's
+   sensors. Returns false if either is missing or damaged; geometry_cache_close() then need not be called. */
 bool geometry_cache_open(struct geometry_cache *cache, struct log *log, const char *folder, uint64_t key);
 /* Unmaps the files of the geometry cache. The cache may be open or zeroed. */
 void geometry_cache_close(struct geometry_cache *cache);

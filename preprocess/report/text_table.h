@@ -11,7 +11,7 @@ struct text_table_column {
     bool right; /* true: the column is right-aligned, as is usual for numbers */
 };
 
-struct text_table { /* zero-initialise, then set the columns, which the caller keeps */
+struct text_table { /* A table under construction: zero-initialise it, then set `columns`, an array that the caller owns. */
     const struct text_table_column *columns;
     size_t column_count;
     char **cells; /* texts of the cells, row by row */

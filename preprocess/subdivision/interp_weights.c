@@ -96,8 +96,9 @@ SIMD_BODY void raise_lanes(lanes *x, float power)
             (*x)[l] = powf(base[l], power);
 }
 
-/* Fades a sensor's weight smoothly to 0 towards the group's reach: multiplies it by the square of (reach - distance) / (reach -
- * distance of the nearest sensor). Beyond the reach the weight is 0; only the nearest sensor's stays 1. */
+/* Fades a sensor's weight smoothly to 0 towards the group's reach (distance beyond which a sensor has no influence). Multiplies
+   the weight by the square of (reach - distance) / (reach - distance of the nearest sensor). Beyond the reach the weight is 0;
+   only the nearest sensor's stays 1. */
 SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes *far, lanes *weight)
 {
     const lanes zero = { 0 }, near = zero + near_m;
@@ -125,7 +126,8 @@ SIMD_BODY void shepard_weight(const struct interp_group *group, size_t i, float 
         fade(group, near_m, &far, weight);
 }
 
-/* Computes the relative decrease of a weight per metre of distance due to the fade towards the reach: 2 / (reach - distance). */
+/* Computes the relative decrease of a weight per metre of distance that is due to its fade towards the reach (distance beyond
+   which a sensor has no influence): 2 / (reach - distance). */
 SIMD_BODY void per_left(const struct interp_group *group, const lanes *far, lanes *out)
 {
     const lanes least_m = (lanes){ 0 } + MIN_M;
@@ -222,7 +224,8 @@ SIMD_BODY void exponential(lanes *x)
 }
 
 struct softmax {
-    /* 1 / radius; largest exponent of any sensor, which is subtracted from all so that exp() cannot overflow */
+    /* per_m: 1 / radius of Algorithm 1, in 1/m; largest: largest exponent of any sensor, which is subtracted from all exponents
+       so that exp() cannot overflow */
     float per_m, largest;
     /* distance to the nearest sensor, metres; used only if the group has a reach (distance beyond which a sensor has no weight) */
     float near_m;

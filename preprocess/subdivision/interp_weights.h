@@ -30,7 +30,8 @@ struct interp_group {
 };
 /* factors that convert Shepard weights relative to the nearest sensor's into weights that sum to 1 */
 struct interp_norm {
-    /* near_m: distance to the nearest sensor, metres; per: 1 / sum of the relative weights; INFINITY: no sensor is within reach */
+    /* near_m: distance to the nearest sensor, metres; per: 1 / sum of the relative weights, INFINITY if no sensor is within
+       reach (the group's maximum distance of influence) */
     float near_m, per;
 };
 /* Writes the inverse-distance (Shepard) weights of a group's sensors at a point to `interp`, and their normalisation to *norm.

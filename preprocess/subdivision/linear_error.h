@@ -60,8 +60,9 @@ void linear_error_norms(const struct linear_error *linear, const float point_m[3
  * with Algorithm 1. Does not write the changes per metre. */
 void linear_error_weights_again(const struct linear_error *linear, const float point_m[3], const float *geodesic_m,
                                 const struct interp_norm *norms, float *interp);
-/* Computes, from a sample's normalisations, the distance to the nearest point where a group's data ends because all its sensors
- * are out of reach. Returns a lower bound in metres. The field may peak there, so edges near such a point must be short. */
+/* Computes, from a sample's normalisations, the distance to the nearest point where a group's data ends, because all its
+   sensors are farther away than the group's reach (maximum distance of influence). Returns a lower bound in metres. The
+   interpolated value may peak there, so edges near such a point must be short. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Returns, from a sample's normalisations, the shorter of two distances in metres: straight to the nearest sensor, and to the
  * nearest point where a group's data ends. */

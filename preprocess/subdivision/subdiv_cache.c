@@ -315,8 +315,8 @@ uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, 
 
 /* Distances in metres between an edge or triangle and a sensor that was added or removed. */
 struct change_range {
-    double wide_m; /* largest distance from the centre of the edge or triangle to a corner */
-    double near_m; /* largest distance from a corner to the nearest sensor of the group */
+    double wide_m; /* largest distance from the centre of the edge or triangle to one of its corners */
+    double near_m; /* distance from a corner to the nearest sensor of the group, the largest of all corners */
     double far_m;  /* lower bound of the distance from the edge or triangle to the changed sensor */
 };
 

@@ -562,8 +562,8 @@ static void try_insides(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Rounds distances beyond a group's reach to the asset file's precision. There the nearest sensor has all the weight, and where
- * two sensors are about equally near, rounding must choose the same one as in the file. */
+/* Rounds distances beyond a group's reach (maximum distance of influence) to the asset file's precision. There the nearest
+   sensor has all the weight, and where two sensors are about equally near, rounding must choose the same one as in the file. */
 static void round_beyond_reach(const struct linear_error *linear, float *geodesic_m)
 {
     for (size_t g = 0; g < linear->group_count; g++) {

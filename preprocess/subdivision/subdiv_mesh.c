@@ -183,7 +183,8 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    /* edges not proven to need no split must be measured again for this level of detail, because the error limit depends on the level */
+    /* Forgets the measured error of each edge that was not proven to need no split in any level: it must be measured again,
+       because the error limit depends on the level of detail. */
     for (size_t e = 0; e < mesh->edges.count; e++) {
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;

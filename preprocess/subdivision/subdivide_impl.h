@@ -34,8 +34,9 @@ struct subdiv {
     double on_surface_m; /* points farther than this from the surface count as hidden inside another part */
     double error_m, shortest_m, slack_m;
     double jump_m;    /* metres; shorter edges are not split where the distance along the surface jumps */
-    bool finest_full; /* true: the finest level reached its triangle limit */
-    bool full;        /* true: the current level of detail has almost reached its triangle limit, or certainly would */
+    bool finest_full; /* true: the finest level of detail has as many triangles as its limit allows */
+    /* true: the current level of detail has almost as many triangles as its limit allows, or would certainly exceed it */
+    bool full;
     /* number of triangle blocks in the current sample (subdiv_take_sample()); 0: the whole level of detail is processed */
     size_t sample_blocks;
     double sample_of; /* number of the level's triangles per triangle of the sample */

@@ -11,7 +11,8 @@
 #include "viewer_impl.h"
 
 enum { MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES };
-static const int64_t FRAME_TIMEOUT_NS = 20 * NS_PER_S; /* timeout for the first frame, and for each further frame while the camera orbits */
+/* longest wait for the first frame and, while the camera orbits, for each further frame; then the viewer fails */
+static const int64_t FRAME_TIMEOUT_NS = 20 * NS_PER_S;
 
 static void add_sample(struct latency_samples *samples, double ms)
 {

@@ -138,7 +138,8 @@ export function enterBox(origin, direction, box) {
     let near = -Infinity, far = Infinity;
     for (let i = 0; i < 3; i++) {
         const a = (box.min[i] - origin[i]) / direction[i], b = (box.max[i] - origin[i]) / direction[i];
-        // 0/0: the ray lies in the plane of one of these two parallel faces, so the pair does not limit it
+        // NaN is the result of 0/0: the ray lies in the plane of one of the box's two faces across this axis, so these faces do
+        // not limit the ray
         if (Number.isNaN(a) || Number.isNaN(b))
             continue;
         near = Math.max(near, Math.min(a, b));

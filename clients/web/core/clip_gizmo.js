@@ -122,7 +122,7 @@ export function alongSight(point, direction, { origin, direction: towards }) {
     const w = subtract(point, origin), c = dot(towards, towards), b = dot(direction, towards), sine2 = 1 - (b * b) / c;
     if (sine2 < STEEP)
         return null;
-    // distance along the viewing ray; positive means in front of the camera
+    // distance along the viewing ray to its point nearest to the line, in metres; positive means in front of the camera
     const ahead = (dot(w, towards) - b * dot(w, direction)) / (c * sine2);
     const way = (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2);
     return ahead > 0 && Number.isFinite(way) ? way : null;

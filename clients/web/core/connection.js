@@ -7,13 +7,14 @@ export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
 // longest wait between attempts during the first EAGER_MS after the loss of a good connection: if the server has failed, a
 // standby server takes over within 5 s
 export const EAGER_WAIT_MS = 1500, EAGER_MS = 15000;
-// interval of pings, which the server answers even if it sends nothing else
+// milliseconds between pings, which the server answers even if it sends nothing else
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
 // The page reconnects if the server is silent for DEAD_MS. deploy/pages/CAPACITY.md explains how this adds to the duration of a
 // failover.
 export const DEAD_MS = 7000, CHECK_MS = 500;
-// timeout for opening the WebSocket, and for the server's first message, which may contain long lists of tags
+// milliseconds after which the page gives up opening a WebSocket, or waiting for the server's first message, which may contain
+// long lists of tags
 export const OPENING_MS = 10000;
 
 const GOING = 1001, FULL = 1013, FULL_MS = 10000, ANSWER_MS = 1000;
@@ -137,7 +138,7 @@ export class Connection {
         this.blocked = '';
         this.deadMs = OPENING_MS;
         this.lastHeard = this.clock.now();
-        // Time of the first unanswered ping.
+        // time at which the first unanswered ping was sent; null: all pings are answered
         this.pingAt = null;
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();

@@ -133,7 +133,7 @@ export function hitOf(grid, camera, origin, direction) {
         return [width / 2 + dot(v, right) / z * px, height / 2 - dot(v, up) / z * px, h / z];
     };
     const from = subtract(origin, camera.eye), near = dot(from, forward), slope = dot(direction, forward);
-    // distance along the ray to its first point that the picture's camera can see
+    // distance along the ray, in units of `direction`, to the first point that the picture's camera can see
     const skip = near < NEAREST_M ? (NEAREST_M - near) / slope : 0;
     if (!(skip >= 0 && skip < Infinity))
         return null;

@@ -35,7 +35,8 @@ export function placePin({ x, y, wide, high }, area, fixed, rings, marks = []) {
         .filter((at) => at >= area.left && at + wide <= area.right), lefts = [left, ...sides];
     const far = (box) => Math.hypot(box.left - left, box.top - top);
     const least = (boxes, cost) => boxes.map((box) => [cost(box), box]).reduce((best, one) => (one[0] < best[0] ? one : best))[1];
-    // space around the ring of the pin's own point, in which the stem stays visible
+    // rings that surround the pin's own point, enlarged by the stem's length: the pin avoids them, so that its stem stays
+    // visible
     const room = rings.filter((ring) => meets(ring, { left: x, right: x, top: y, bottom: y })).map((ring) => enlarge(ring, STEM));
     const avoided = [...marks, ...room];
     const slid = (boxes) => lefts.flatMap((at) => [-1, 1].map((step) => slide(boxAt(at), boxes, step, area))).filter(Boolean);

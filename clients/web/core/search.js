@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Search in the equipment list.
 
-const known = new WeakMap(); // asset or tag -> the text that the search looks in
+const known = new WeakMap(); // asset or tag -> its texts in lower case, in which the search looks for words
 function textOf(item, ...texts) {
     if (!known.has(item))
         known.set(item, texts.filter(Boolean).join(' ').toLowerCase());

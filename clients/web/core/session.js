@@ -56,7 +56,7 @@ export class Session {
         this.asked = new Map();
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
         this.cameraNews = false; // true: the camera has changed but has not been sent yet
-        this.cameraInput = null; // time of the input that set the camera; latency is measured from it
+        this.cameraInput = null; // time of the user's input that set the camera; the latency of its picture is measured from that time
         this.markers = new Map();
         // { us, at }: the server's time, and the page's time when it arrived
         this.serverTime = null;

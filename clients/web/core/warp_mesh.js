@@ -245,7 +245,8 @@ export function moveBy(matrix, { width, height }, point) {
 
 const MOST_TURN = Math.cos(50 * RADIANS), MOST_STEP = 0.8, MOST_ZOOM = 2.5;
 
-// Returns true if a picture from one camera may be shown from another. It may not after a large jump, nor with the other projection.
+// Returns true if a picture from one camera may be shown from another. It may not after a large jump of the camera, nor if one
+// camera is perspective and the other orthographic.
 export function isNear(from, to) {
     if (isParallel(from) !== isParallel(to) || dot(basis(from).forward, basis(to).forward) < MOST_TURN)
         return false;

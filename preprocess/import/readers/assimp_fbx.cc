@@ -19,7 +19,7 @@ static std::string name_before(const std::string &bytes, size_t end)
         const char *head = bytes.data() + end - length - HEAD;
         uint32_t said;
         memcpy(&said, head + 1, sizeof(said));
-        /* the length includes two control characters and the class name "Model", which follow the name */
+        /* the length in the file also counts two control characters and the class name "Model", which follow the name */
         if (*head == 'S' && said == length + strlen("??Model"))
             return bytes.substr(end - length, length);
     }

@@ -72,7 +72,8 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
 /* dimensions of a parametrised profile in millimetres: its statement's values from the third on; 0: absent */
 using lengths = std::vector<double>;
 
-/* Dimensions of an I profile, whose flanges may differ in width. Each fillet radius is that between the web and one flange. */
+/* Dimensions of an I profile in millimetres; its top and bottom flanges may differ. Each fillet is the radius of the rounding
+   between the web and that flange. */
 struct i_profile {
     double depth, web, bottom, bottom_thick, bottom_fillet, top, top_thick, top_fillet;
 };

@@ -200,7 +200,8 @@ gp_GTrsf section_place(const section_frame &from)
     for (int row = 1; row <= 3; row++)
         for (int column = 1; column <= 3; column++)
             shear.SetValue(row, column, (row == column) - from.along.Coord(row) * from.plane.Coord(column) / share);
-    /* add a translation so that the shear does not move the corner point */
+    /* adds a translation to the shear that moves the profile into the section's plane, so that the corner point of the curve
+       stays in place */
     gp_XYZ at = from.at.XYZ(), moved = at;
     shear.Transforms(moved);
     shear.SetTranslationPart(at - moved);

@@ -50,7 +50,8 @@ namespace
 /* maximum number of nodes in the GLB file; assemblies that contain others several times can expand to exponentially many nodes */
 constexpr size_t MAX_NODES = 2'000'000;
 constexpr size_t MOST_NAMED = 20;
-/* the chord error is at most the model's size divided by this, so that tiny models keep their shape */
+/* the chord error (distance between facets and the true surface) is at most the model's size divided by this, so that tiny
+   models keep their shape */
 constexpr double CHORDS_PER_MODEL = 100;
 constexpr double ANGLE_RAD = 0.5; /* largest angle in radians between neighbouring facets, even where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };

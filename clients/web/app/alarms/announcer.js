@@ -7,7 +7,7 @@ import { byId } from '../common/dom.js';
 import { limitText } from './alarm_bar.js';
 
 const MOST = 3; // maximum number of alarms that one announcement reads out; the others are only counted
-const READ_MS = 3000; // shortest time between two announcements: a screen reader skips a text that is replaced too soon
+const READ_MS = 3000; // shortest time between two announcements in milliseconds: a screen reader skips a text that is replaced too soon
 
 const isOpen = ({ state }) => calls(state) && state !== 'acknowledged';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's monotonic clock, corrected for time that the device slept.
+// The page's monotonic clock in milliseconds, which also counts the time that the device slept.
 import { Wake } from '../../core/wake.js';
 
 let sleptMs = 0;

@@ -8,7 +8,8 @@ import { store } from '../common/storage.js';
 import { wear } from '../common/theme.js';
 import { bandsOf } from '../toolbar/toolbar.js';
 
-const ARRIVAL_MARGIN = 1.7; // distance factor that leaves a margin around an asset after a flight to it
+// factor on the camera's distance from an asset at the end of a flight to it, so that the picture has a margin around the asset
+const ARRIVAL_MARGIN = 1.7;
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 const HELD_US = 3.5e6;      // microseconds; an instant less than this long ago counts as the present
 

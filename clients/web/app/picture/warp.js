@@ -17,7 +17,7 @@ const NEAREST = 0.05;
 // half as many pixels, but at least LEAST_PX. Intervals of PAUSE_MS or more are pauses and do not count.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
-const FADE_MS = 80; // time in which the warped picture fades to the server's picture
+const FADE_MS = 80; // time in milliseconds in which the warped picture fades to the server's picture
 const LATE_MS = 1000; // if the worker that decodes depth grids is silent for this long, pictures are shown without waiting for it
 
 const LATTICE_PX = 14;
@@ -32,7 +32,8 @@ const GL = { antialias: false, powerPreference: 'high-performance' };
 export class Warp {
     constructor({ session, viewport, modules }) {
         Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
-        // time since which decoded pictures have waited for the worker that decodes their depth grids; null: they do not wait
+        // time (performance.now(), milliseconds) since which decoded pictures have waited for the worker that decodes their
+        // depth grids; null: they do not wait
         this.waitsFrom = null;
         this.grids = [];    // newest depth grids, the newest last: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }
         this.held = null;   // newest frame, decoded but not drawn on the viewport's canvas: { frame, picture }
@@ -234,8 +235,8 @@ export class Warp {
         return false;
     }
 
-    // Loads the newest picture and its mesh into the GlPainter or CpuPainter. Returns false if the canvas no longer has the
-    // picture.
+    // Loads the newest picture and its mesh into the painter that draws warped pictures (GlPainter or CpuPainter). Returns
+    // false if the viewport's canvas, from which the pixels are read, no longer shows that picture.
     load() {
         const { source, session, viewport, held } = this;
         if (source === this.loaded)

@@ -14,7 +14,7 @@ const EXPAND = 2; // argument of uPlot.join(): a null in one series also breaks 
 // length of a tick. DRAGGED_PX: CSS pixels; a shorter movement is no drag.
 const AXIS = 58, UNIT = 16, TIME = 28, LINE = 1.75, BOLD = 3, LABEL = 15, BADGE = 13, TICK = 10, DRAGGED_PX = 4;
 const PAD = 17, LOW_PAD = 8, LOW = 130; // PAD: space above the curves; LOW_PAD: the same in charts lower than LOW; all in chart units
-const DAYS_S = 2 * 86400; // time ranges longer than this have day ticks on the time axis
+const DAYS_S = 2 * 86400; // time ranges longer than this many seconds have day ticks on the time axis
 const FONT = 'system-ui, sans-serif';
 
 export class Plot {
@@ -35,7 +35,7 @@ export class Plot {
         Object.assign(this, { rows, span });
         const tables = rows.map(({ series }) => line(series, ...span))
             .map((table) => (table[0].length > 0 ? table : [[span[0] / 1e6], [null]]));
-        // EXPAND, because a gap in one series must also break its line at instants that only other series have
+        // EXPAND: a gap (null) in one tag's series also breaks its line at instants that only other tags' series have
         const data = tables.length > 0 ? uPlot.join(tables, tables.map(() => [EXPAND, EXPAND])) : [[span[0] / 1e6]];
         this.bands = rows.map(({ series }) => bands(series));
         if (this.chart && this.names === names) {

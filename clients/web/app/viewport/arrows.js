@@ -11,7 +11,8 @@ import { INK } from './overlay.js';
 // between arrows
 const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24);
 const HEAD = 7, CROSS = 'M-3 -3L3 3M-3 3L3 -3', DOT = 'M-.6 0A.6 .6 0 1 0 .6 0A.6 .6 0 1 0 -.6 0';
-const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // dash pattern of an uncertain arrow, and length of such an arrow in a legend
+// dash pattern of the arrow of an uncertain value, and length in pixels of such an arrow in a legend
+const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24;
 // DASH: dash pattern of streaks; FASTEST_PX: speed of the dashes in pixels per second at the largest value of the colour scale
 const DASH = [5, 11], FASTEST_PX = 60;
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;

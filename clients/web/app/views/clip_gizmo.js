@@ -53,7 +53,9 @@ export class ClipGizmo {
         const grips = this.session.picture ? this.grips : [], views = grips.length > 0 ? this.views : [];
         for (const [key, button] of this.buttons)
             if (button.half >= views.length || !grips.some(({ id }) => id === button.dataset.id)) {
-                this.buttons.delete(key); // removes the handle from the map first: removing a focused button calls show() again
+                // deletes the handle from the map before its button leaves the document: removing a focused button calls show()
+                // again
+                this.buttons.delete(key);
                 button.remove();
             }
         this.lines.replaceChildren();
@@ -71,7 +73,8 @@ export class ClipGizmo {
             const button = this.buttons.get(`${grip.id}/${half}`) ?? this.make(grip.id, half);
             const held = this.dragging?.button === button ? this.dragging.spot : null;
             const stays = button.matches(':focus') ? { number: 0 } : null;
-            // the focused handle stays visible even if it has no free position
+            // the focused handle stays visible even if there is no position where it is neither covered nor too near other
+            // handles
             const spot = held ?? this.spotOf(grip, view, taken, covers) ?? stays;
             button.hidden = spot === null;
             if (!spot)

@@ -28,7 +28,7 @@ export class NamedViews {
             this.isNew = false;
         });
         session.on('welcome', () => {
-            this.isNew = true; // true until the server has sent the list of views
+            this.isNew = true; // true: the server has not yet sent the list of views since its newest `welcome`
             this.show();
         });
         session.on('params', () => this.watch());

@@ -42,8 +42,8 @@ export class Board {
         return this;
     }
 
-    // Returns the canvas as a texture, with its rectangle's width and height in metres. With this size the canvas has its fixed
-    // apparent size (PX_PER_DEGREE) at this distance from the eye.
+    // Returns the canvas as a texture, with the width and height in metres that its rectangle needs at this distance from the
+    // eye to have its fixed apparent size (PX_PER_DEGREE).
     seenFrom(metres) {
         const perPx = 2 * metres * Math.tan(0.5 * RADIANS) / PX_PER_DEGREE;
         return { texture: this.texture, width: this.canvas.width * perPx, height: this.canvas.height * perPx };

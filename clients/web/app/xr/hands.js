@@ -8,10 +8,11 @@ import { asAsked } from '../../core/session.js';
 import { add, along, cross, dot, length, scale, subtract, unit } from '../../core/vector.js';
 import { Board, cardLines, showCard, showColour, showRing, showWrist } from './boards.js';
 
-const REACH = Math.cos(2 * RADIANS); // cosine of the largest angle between a ray and a marker's direction at which the ray hits the marker
+const REACH = Math.cos(2 * RADIANS); // cosine of an angle: a ray whose angle to a marker's direction is smaller than that hits the marker
 const LEVEL = Math.cos(35 * RADIANS); // cosine of the steepest slope of a floor on which a user can stand
 const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5;
-// AGAIN_MS: interval of requests for a card's value; a request without an answer is abandoned after UNANSWERED_MS
+// AGAIN_MS: milliseconds between requests for the value that a card shows; a request without an answer is abandoned after
+// UNANSWERED_MS
 const AGAIN_MS = 1000, UNANSWERED_MS = 3000;
 const WRIST_UP_M = 0.16; // height in metres of the panel at the wrist above the hand
 
