@@ -16,17 +16,17 @@
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-/* STEP suffices to find the error of the interpolation shepard up to this power (exponent of the distance); larger powers get
-   proportionally shorter steps */
+/* STEP suffices to find the error of the interpolation shepard (inverse distance weighting) up to this power (exponent of the
+   distance); larger powers get proportionally shorter steps */
 #define MAX_POWER 2.0f
 /* For shepard, the error in a triangle is at most L^2 K / (6 d^2). L is its longest side, d its distance to the nearest sensor,
    and K / d^2 a bound on the second derivative of the weights. */
 #define SHEPARD_ACCEPTED 6.0f
-/* for interpolation paper: longest side of a triangle that needs no samples, as a fraction of the distance to the nearest
-   sensor and of the radius R */
+/* for interpolation paper (Algorithm 1 of Kim & Suh): longest side of a triangle that needs no samples, as a fraction of the
+   distance to the nearest sensor and of the radius R */
 #define PAPER_ACCEPTED 0.015f
-/* smallest power (exponent of the distance) of the interpolation shepard for which the effect of wrong distances is measured:
-   with smaller powers, it changed no value by a colour step */
+/* smallest power (exponent of the distance) of the interpolation shepard (inverse distance weighting) for which the effect of
+   wrong distances is measured: with smaller powers, it changed no value by a colour step */
 #define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
 /* A drawn frame may show data where the field has none, up to this far beyond the border of the data; a larger overlap counts

@@ -127,8 +127,8 @@ struct field_sensor {
        used */
     const float *along_m;
     float strength, decay;
-    /* the sensor's value in the weighted sum; scaled to 0..1 for interpolation `paper`; for a difference, the reading minus the
-       baseline's reading */
+    /* the sensor's value in the weighted sum; scaled to 0..1 for interpolation `paper` (Algorithm 1 of Kim & Suh); for a
+       difference, the reading minus the baseline's reading */
     float value;
     bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good; usable: it contributes;
                                            uncertain: its quality is Uncertain */

@@ -97,7 +97,8 @@ static const struct field_params *trial_params(struct field *field, int asset, c
     return room;
 }
 
-/* Returns parameters for SHOW_BLIND, which depends only on distances, even if the group uses a prepared interpolation. */
+/* Returns parameters for SHOW_BLIND (size of the smallest detectable hot spot), which depends only on distances, even if the
+   group uses an interpolation whose weights plantcast-prep has computed. */
 static const struct field_params *blind_params(const struct field_params *params, struct field_params *room)
 {
     if (params->show != SHOW_BLIND)
@@ -119,7 +120,9 @@ struct field_layout *field_layout(struct field *field, int asset, const struct f
 {
     struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
-        return NULL; /* prepared interpolations do not exist for trial positions: shows no data instead of the previous field */
+        /* plantcast-prep has computed no weights for positions that a user tries out: shows no data instead of the previous
+           field */
+        return NULL;
     if (params->trial)
         return find(field, asset, params)->layout;
     if (!*at)

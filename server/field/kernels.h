@@ -43,9 +43,13 @@ struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
     float reach_m, strength, decay;
-    float power;            /* power p of the distance in the interpolation shepard */
-    const float *near_log2; /* [vertex]: log2 of near_m; only for the interpolation shepard with a power other than 2 */
-    bool alike;             /* true: all sensors have the same strength; only for the interpolation shepard */
+    /* power p of the interpolation shepard (inverse distance weighting): weights are proportional to 1 / distance^p */
+    float power;
+    /* [vertex]: log2 of near_m; only for the interpolation shepard (inverse distance weighting) with a power other than 2 */
+    const float *near_log2;
+    /* true: all sensors have the same strength, which allows a faster loop; only for the interpolation shepard (inverse
+       distance weighting) */
+    bool alike;
     float radius_m;         /* radius R, for interpolation paper */
 };
 /* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the

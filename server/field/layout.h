@@ -54,7 +54,8 @@ struct field_layout {
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Returns true if the trial adds, removes or moves a sensor of this group on this asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
-/* Frees the layout. Accepts a pointer to NULL; sets the pointer to NULL. */
+/* Frees the layout (the sensors of a group on an asset, and their distances). Accepts a pointer to NULL; sets the pointer to
+   NULL. */
 void layout_destroy(struct field_layout **layout);
 /* Returns each vertex's geodesic distance from a sensor, in this mode (along triangles or by the heat method). If that mode was
    not prepared (trial sensors), returns the distances of the other geodesic mode. NULL: the mode is straight-line, or the
@@ -72,7 +73,8 @@ bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mo
    surface point, so that both kinds are 0 there; they replace geodesic distances that are not known yet. */
 const float *layout_distances(const struct field_layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
-/* Returns the largest finite distance between a vertex and a sensor, computed once; 1 if all are 0 or infinite. */
+/* Returns the largest finite distance between a vertex of the asset and a sensor, computed once; 1 if all are 0 or infinite, so
+   that callers can divide by it. */
 float layout_largest(struct field_layout *layout, enum distance_mode mode, struct workers *workers);
 
 #endif

@@ -16,7 +16,9 @@ struct neighbour {
     enum interpolation by;
     double value;     /* present reading of the sensor; NaN: the reading is not usable */
     double predicted; /* value predicted from the other sensors; NaN: no other good sensor determines it */
-    double deviation; /* for interpolation gp: standard deviation of the difference between reading and prediction; else NaN */
+    /* standard deviation of the difference between reading and prediction, if the interpolation is gp (Gaussian process); else
+       NaN */
+    double deviation;
 };
 
 /* The sensors of one group on one asset, for repeated predictions with different readings. */

@@ -33,7 +33,8 @@ struct field_params {
     enum distance_mode distance;
     enum fill_mode fill;
     double strength, decay; /* factors applied to each sensor's configured strength and decay; 1: unchanged */
-    double power;           /* power p of the distance, for interpolation shepard: weights are proportional to 1 / distance^p */
+    /* power p of the interpolation shepard (inverse distance weighting): weights are proportional to 1 / distance^p */
+    double power;
     /* radius R in metres of interpolation paper, in which the nearness of a sensor is max(0, 1 - distance / R); 0: R is the
        largest distance on the asset from any configured sensor */
     double radius_m;

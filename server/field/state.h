@@ -11,8 +11,8 @@
 struct update; /* defined in update.h */
 
 struct state_input { /* contribution of one sensor to the sums from which the field (interpolated values) is computed */
-    /* the sensor's reading in engineering units; for the interpolation `paper` scaled to 0..1, from the lowest to the highest
-       reading */
+    /* the sensor's reading in engineering units; for the interpolation `paper` (Algorithm 1 of Kim & Suh) scaled to 0..1 over
+       the range of the group */
     double value;
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
@@ -37,7 +37,7 @@ struct field_state {
     /* [sensor of the layout]. now: readings from the newest snapshot; shown: readings from which the scalars (values at the
        vertices) were computed */
     struct state_input *now, *shown;
-    uint8_t *usable; /* [sensor of the layout]: whether the sensor's reading in `now` is used (enum sensor_use) */
+    uint8_t *usable; /* [sensor of the group on the asset]: whether the sensor's reading in `now` is used (enum sensor_use) */
     /* memory for the lists of sensors to sum (struct weights_terms). Element 0: sensors whose input changed; element 1: all sensors */
     struct state_list {
         uint32_t *members;
@@ -50,8 +50,8 @@ struct field_state {
     struct field_state *next;
 };
 
-/* Creates a state without room for vertices (state_grow()); never returns NULL. Copies params; the layout must outlive the
-   state. The caller destroys it. */
+/* Creates a state (computed field of an asset) without room for vertices (state_grow()); never returns NULL. Copies params; the
+   layout must outlive the state. The caller destroys it. */
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params);
 /* Frees the state. Accepts a pointer to NULL; sets the pointer to NULL. */
 void state_destroy(struct field_state **state);

@@ -112,7 +112,7 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
-        /* values of interpolation gp are not clamped, because they may lie outside the range of the readings */
+        /* values of interpolation gp (Gaussian process) are not clamped: they may lie outside the range of the readings */
         if (state->params.interpolation == INTERPOLATION_GP)
             rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
@@ -215,8 +215,8 @@ void update_begin(struct field_state *state, size_t count)
    lost sensor, and the byte for the weight of Uncertain sensors. That weight is the fraction marked / total. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    /* `part` is 1 if Uncertain sensors have half of the total weight. Weights of interpolation gp may be negative, so `total`
-       may be 0 and `part` above 2 */
+    /* `part` is 1 if Uncertain sensors have half of the total weight. Weights of interpolation gp (Gaussian process) may be
+       negative, so `total` may be 0 and `part` above 2. */
     double part = total > 0 && marked > 0 ? 2 * marked / total : 0;
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;

@@ -84,8 +84,8 @@ static inline float weight_exponent(float distance_m, float radius_m, float per_
     return *d * (strength * 1.44269504f);
 }
 
-/* Interpolation paper: returns 2^exponent * d^decay, for a decay other than 0. Returns 0 for d up
-   to WEIGHT_TINY, where the logarithm is not exact. */
+/* Interpolation paper (Algorithm 1 of Kim & Suh): returns 2^exponent * d^decay, for a decay other than 0. Returns 0 for d up to
+   WEIGHT_TINY, where the logarithm is not exact. */
 static inline float weight_raised(float exponent, float d, float decay)
 {
     float raised = weight_exp2(exponent + decay * weight_log2(d));

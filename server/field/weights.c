@@ -567,7 +567,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         for (size_t k = 0; sums->marked && k < number; k++) {
             if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
-            /* adds absolute values, because weights of the interpolation gp may be negative and would cancel */
+            /* adds absolute values: weights of the interpolation gp (Gaussian process) may be negative and would cancel */
             for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++)
                 sums->marked[j] += fabs((double)heavy[k][j]);
         }

@@ -50,8 +50,9 @@ struct weights {
     float *strength, *decay;                     /* [sensor of the layout] */
     /* [sensor of the layout]: 1: it would contribute if its quality were good; 0: it would not; greater than 1: SENSOR_NO_LIMITS */
     uint8_t *configured;
-    uint8_t *takes_part; /* [sensor of the layout]: 1 if its reading is used, else 0 */
-    /* members of the sum, in the order of the columns: the used sensors of the layout; for prepared interpolations all sensors */
+    uint8_t *takes_part; /* [sensor of the group on the asset]: 1 if its reading is used, else 0 */
+    /* members of the sum, in the order of the columns: the used sensors of the layout; for interpolations with weights prepared
+       by plantcast-prep all sensors */
     uint32_t *members;
     size_t member_count;
     /* [vertex]: near_m: distance of the nearest usable sensor; top: scale that keeps weights from overflowing (kernels.h) */
@@ -70,12 +71,16 @@ struct weights {
     /* [sensor], for prepared interpolations: 1 for a used sensor; for a lost one the value that the interpolation predicts if
        all used sensors read 1. NULL: the interpolation is not prepared */
     double *ones;
-    /* metres. For interpolation fin: the decay length, over which a sensor's share of the value falls by a factor of e; for gp:
-       the correlation range / sqrt(8) */
+    /* metres. For interpolation fin (values fall towards ambient like the temperature along a cooling fin): the decay length,
+       over which a sensor's share of the value falls by a factor of e. For gp (Gaussian process): the correlation range /
+       sqrt(8) */
     float decay_m;
-    const float *deviations; /* [vertex], for interpolation gp: standard deviation of the field while all sensors are used; else NULL */
-    const float *priors;     /* [vertex], for interpolation gp: standard deviation of the field without any sensor */
-    float deviation;         /* for interpolation gp: standard deviation of the field before any reading is known (the prior) */
+    /* [vertex], for interpolation gp (Gaussian process): standard deviation of the field if all sensors have usable readings;
+       else NULL */
+    const float *deviations;
+    const float *priors;     /* [vertex], for interpolation gp (Gaussian process): standard deviation of the field without any sensor */
+    /* for interpolation gp (Gaussian process): standard deviation of the field before any reading is known (the prior) */
+    float deviation;
     float *errors;           /* [vertex]: largest error of linear interpolation within the adjacent triangles; unit and method in
                                 drawn_error.h; NULL: not measured */
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
@@ -85,7 +90,9 @@ struct weights {
     float erring[WEIGHTS_ERRING];
     uint64_t measured_levels; /* bit mask of the levels of detail whose triangles are included in `errors` */
     unsigned errors_version;  /* counts the changes of `errors`, so that users can tell that it changed */
-    float *beyond_m;          /* [vertex], for interpolations fin and gp: metres beyond the border of the area with data; else NULL */
+    /* [vertex], for interpolations fin and gp: distance in metres by which the vertex is beyond the border of the area with
+       data (negative: inside); else NULL */
+    float *beyond_m;
     float *columns; /* cached weights of the first kept_blocks blocks, [block][member][KERNEL_BLOCK], or NULL; those of other blocks
                        are recomputed for each sum */
     uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */
@@ -114,7 +121,8 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
 void weights_copy_known(struct weights *weights, const struct weights *from);
 /* Frees the weights. Accepts a pointer to NULL; sets the pointer to NULL. */
 void weights_destroy(struct weights **weights);
-/* Returns the size in bytes of weights for this layout, without cached columns (each sensor's weights at all vertices). */
+/* Returns the size in bytes of the weights for this layout (sensors of a group on an asset), without cached columns (each
+   sensor's weights at all vertices). */
 size_t weights_bytes(const struct field_layout *layout);
 /* Returns the size in bytes of the columns (each sensor's weights) of all vertices, cached or not. */
 size_t weights_column_bytes(const struct weights *weights);
@@ -160,8 +168,8 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
 /* Returns true if the weights of all sensors in a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
-/* Returns true if all arrays and columns of a block are filled, so that weights_add() only reads them. (With the interpolation
-   `paper`, weights of Uncertain sensors are never cached.) */
+/* Returns true if all arrays and columns (each sensor's weights) of a block are filled, so that weights_add() only reads them.
+   With the interpolation `paper` (Algorithm 1 of Kim & Suh), weights of Uncertain sensors are never cached. */
 bool weights_is_complete(const struct weights *weights, size_t begin);
 
 #endif

@@ -10,7 +10,8 @@
 void core_end_bind(struct server_context *server);
 /* Returns whether this daemon polls devices and owns alarms: it is neither a renderer nor a standby core. */
 bool core_end_leads(const struct server_context *server);
-/* Takes over everything that the core sent since the last call: readings, alarms, answers. */
+/* On a renderer or standby: takes over everything that the core (the daemon that reads the devices) sent since the last call:
+   readings, alarms, answers. */
 void core_end_collect(struct server_context *server);
 
 #endif

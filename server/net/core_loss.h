@@ -8,7 +8,9 @@
 #include <stdint.h>
 
 struct core_loss {   /* zero-initialise; zero means that a core sends readings and that no load balancer has checked this node */
-    int64_t lost_ns; /* monotonic time since which no core has sent readings; 0: a core sends readings */
+    /* monotonic time since which this renderer has had readings from no core (daemon that reads the devices); 0: a core sends
+       readings */
+    int64_t lost_ns;
     /* monotonic time when a load balancer last said that it sends users only to other nodes; 0: its last check did not say so */
     int64_t elsewhere_ns;
     int64_t moves_ns; /* monotonic time when this daemon began to move its sessions to other nodes; 0: they stay */

@@ -25,7 +25,7 @@ struct net {
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
     struct { /* steps of the shutdown in which this core hands the lead to its standby (hand_over.c) */
         enum hand_over_step step;
-        int64_t until_ns; /* monotonic time at which the current step of the handover is given up */
+        int64_t until_ns; /* monotonic time at which the current step of handing the lead to the standby core is given up */
     } hand_over;
     struct {
         pthread_mutex_t turn; /* lock held by the thread that is in net_call(), so that only one thread calls at a time */
@@ -45,7 +45,8 @@ bool net_settle_answers(struct net *net);
 
 /* --- hand_over.c; thread: the event loop --- */
 
-/* Takes the next step of handing the lead to the standby, after net_stop() was called. Returns false once all steps are done. */
+/* After net_stop() was called on a leading core: takes the next step of handing the lead to the standby core. Returns false
+   once all steps are done. */
 bool net_hand_over(struct net *net);
 
 /* --- net_calls.c --- */

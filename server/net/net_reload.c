@@ -67,7 +67,7 @@ void net_release_plant(struct net *net)
     http_release_plant(server);
     if (server->signing.signer)
         picture_signer_settle(server->signing.signer);
-    core_end_collect(server); /* handles the last messages that the core sent */
+    core_end_collect(server); /* handles the last messages that the core (daemon that reads the devices) sent about the old plant */
     renderers_close(server, "the core has changed its configuration");
     net_unwatch_readings(net);
     history_queries_destroy(&server->history_queries);

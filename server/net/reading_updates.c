@@ -29,7 +29,7 @@ static void tell_changes(struct server_context *server)
 /* Returns the monotonic time at which the next snapshot is due even if no reading changes. */
 static int64_t next_ns(const struct server_context *server)
 {
-    /* 1 ms after a reading becomes stale, because the event loop may wake up slightly early */
+    /* 1 ms after a reading becomes stale (too old to be Good), because the event loop may wake up slightly early */
     int64_t stale_ns = server->readings.next_change_ns < INT64_MAX ? server->readings.next_change_ns + NS_PER_MS : INT64_MAX;
     return later(stale_ns, server->readings.snapshot->taken_mono_ns + READINGS_INTERVAL_NS);
 }

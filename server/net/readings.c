@@ -4,7 +4,8 @@
 #include "net/net_impl.h"
 #include "value/quality.h"
 
-/* Returns when a reading changed. A reading that has just become stale counts as changed now, whenever it was received. */
+/* Returns when a reading changed. A reading that has just become stale (too old to be Good) counts as changed now, whenever it
+   was received. */
 static int64_t changed_ns(const struct snapshot *snapshot, const struct reading *reading)
 {
     bool usable = !quality_is_bad(reading->quality) && reading->age_ns < NS_PER_S;

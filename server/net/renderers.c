@@ -52,15 +52,15 @@ struct renderer_peer {
     bool stands_by; /* true: the peer is a standby, a core that follows this one and can take over */
     /* true: the last message with samples had all waiting samples, so the next message has readings, which resets the flag */
     bool samples_sent;
-    bool reloads; /* true: the peer must still be told that this core loads the plant */
+    bool reloads; /* true: the peer must still be told that this core loads the plant again, so that a renderer does the same */
     bool asks;    /* true: the peer must still be asked whether it promises not to take the lead for a while (lease, corelink/lease.h) */
     /* standby: when this core ends, it asks the standby a last time, after all other messages, to promise not to take the lead.
        Number of this question; 0: not sent */
     uint64_t last_question;
-    bool is_complete;             /* true: the standby has answered last_question, so it has received all messages before */
+    bool is_complete;             /* true: the standby core has answered last_question, so it has received all messages before */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
-    uint64_t told;                /* standby: sequence number of the newest state of alarm notifications that was sent to it */
-    uint64_t rows;                /* standby: sequence number of the last row of the alarm journal that was sent to it */
+    uint64_t told;                /* for a standby core: sequence number of the newest state of alarm notifications that was sent to it */
+    uint64_t rows;                /* for a standby core: sequence number of the last row of the alarm journal that was sent to it */
     uint64_t alarms;              /* sequence number of the last change of alarms that was sent to the peer */
     struct lists_seen lists;
     bool *links;   /* [source]: state of the connection to the source, as last sent to the peer */
@@ -430,7 +430,7 @@ static bool send_readings(struct server_context *server, struct renderer_peer *r
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
-/* Lets those connections send again whose answers wait until a standby has received the state that the answered actions
+/* Lets those connections send again whose answers wait until a standby core has received the state that the answered actions
    changed. */
 static void wake_answers(const struct server_context *server)
 {

@@ -93,7 +93,8 @@ struct server_context {
         char followed[64];
         bool reloads; /* standbys only: true: the leader announced a reload and has neither accepted nor refused this core since */
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
-        uint64_t told_number;                   /* sequence number of the newest state of alarm notifications that was sent to a standby */
+        /* sequence number of the newest state of alarm notifications that was sent to a standby core */
+        uint64_t told_number;
     } core;
     struct {
         struct http_exchange *waiting; /* list of HTTP requests that wait for a frame, a pick or a reload */

@@ -20,7 +20,8 @@ static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
    balancers notice the drain first */
 static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
-/* time limit for a node that has lost its core to close all its sessions, so that they move to other nodes */
+/* time within which a node that has lost its core (daemon that reads the devices) closes all its sessions, so that they move to
+   other nodes */
 static const int64_t MOVE_NS = 1 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* time after a user's input during which the session's camera counts as moving */
 

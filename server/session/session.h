@@ -166,7 +166,8 @@ void session_on_leader(struct session *session, int64_t now_ns);
 /* Notes that the leader is about to be destroyed. The session keeps showing the leader's last view until the client follows
    another session or nobody. */
 void session_leader_gone(struct session *session, int64_t now_ns);
-/* Copies the view of `session` to the session `heir`, which takes over the lead but keeps its own picture size. */
+/* Copies the view of `session` to the session `heir`, which becomes the leader whose view others follow. The heir keeps its own
+   picture size. */
 void session_inherit(struct session *heir, const struct session *session);
 /* Replies that the lead cannot be handed over, because the requested heir does not follow this session. */
 void session_lead_nobody(struct session *session);

@@ -117,7 +117,9 @@ struct frame_delivery {
 /* A client's requests about following, by session numbers. The event loop looks up the sessions. */
 struct follow_request {
     bool returned;   /* true: the session resumed another session, whose former followers are to follow this one */
-    uint64_t heir;   /* number of the session that takes the lead; 0: the lead stays */
+    /* number of the follower to which the client wants to hand the lead (others then follow that session's view); 0: the lead
+       stays */
+    uint64_t heir;
     bool asked;      /* true: the client requested to follow session `wanted`, or nobody */
     uint64_t wanted; /* number of the session that the client wants to follow; 0: nobody */
 };
@@ -129,7 +131,9 @@ struct session_following {
     uint64_t wanted;          /* number of the session that the client requested to follow; 0: nobody */
     uint64_t left;            /* number of the leader who has gone but whose last view is still shown; 0: none */
     struct view own_view;     /* the session's own view while it follows a leader */
-    uint64_t heir_wanted;     /* number of the session that the client wants to hand the lead to; 0: the lead stays */
+    /* number of the follower to which the client wants to hand the lead (others then follow that session's view); 0: the lead
+       stays */
+    uint64_t heir_wanted;
     bool followers_changed;   /* true: the list of followers changed and must be sent to the client */
     int64_t followers_ns;     /* monotonic time when the list of followers was last built */
     char *followers_text;     /* text that lists the followers, to be sent; NULL: none */

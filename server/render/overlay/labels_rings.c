@@ -197,7 +197,7 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* Returns whether a label in this slot is at most LABEL_FARTHEST away from the rings of its group. */
+/* Returns whether a label in this slot (candidate position) is at most LABEL_FARTHEST away from its group's alarm rings. */
 static bool is_near(const struct rings *rings, const struct ring_group *group, int slot)
 {
     struct label_box box = box_at(rings, group, slot);

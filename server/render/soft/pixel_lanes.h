@@ -138,8 +138,8 @@ SOFT_INLINE void pixel_sum_inverse_square(const struct pixel_field *field, const
         pixel_add_far(field, list, at, least, (lanes){ 0 } + list->unit, sums);
 }
 
-/* For the interpolation `paper`: returns the exponent of the sensor's weight. *near receives the nearness to the sensor: 1 at the sensor, 0
-   at the radius R and beyond. */
+/* For the interpolation `paper` (Algorithm 1 of Kim & Suh): returns the exponent of the sensor's weight. *near receives the
+   nearness to the sensor: 1 at the sensor, 0 at the radius R and beyond. */
 SOFT_INLINE lanes pixel_exponent(const struct pixel_field *field, const struct pixel_sensor *sensor, lanes square, lanes *near)
 {
     const float per_radius = 1.0f / field->radius_m;

@@ -84,8 +84,8 @@ SOFT_INLINE lanes all(float x)
     return (lanes){ 0 } + x;
 }
 
-/* Returns the interpolation weights of eight sensors at the given distances, times 2^-top so that they fit in floats. term true
-   (interpolation `paper` only): multiplies them by nearness^decay. */
+/* Returns the interpolation weights of eight sensors at the given distances, times 2^-top so that they fit in floats. term
+   true, only for the interpolation `paper` (Algorithm 1 of Kim & Suh): multiplies them by nearness^decay. */
 SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, bool term, float top)
 {
     lanes log, zero = { 0 };

@@ -11,13 +11,15 @@ struct parts_finding {
     /* by triangle: its patch (triangles connected by edges with two faces), identified by the lowest triangle index */
     uint32_t *patch;
     struct surface_patch { /* a patch (triangles connected by edges with two faces), stored at the index of its lowest triangle */
-        /* open_m: total length of the patch's edges with one face. branching_m: total length of its edges with three or more
-         * faces, if only one of these belongs to the patch */
+        /* for a patch (triangles connected by edges with two faces). open_m: total length of its edges with one face.
+           branching_m: total length of its edges with three or more faces, only one of which belongs to the patch */
         double open_m, branching_m, area_m2;
         /* Area of the patch's triangles that occur in the model at least twice as often as the part's least frequent triangle.
            If it is most of the patch's area, the patch may be a wall between two bodies. */
         double doubles_m2;
-        bool loose;        /* true: the patch is open and only stands on other patches, like a fin on a tube */
+        /* true: the patch (triangles connected by edges with two faces) is open and only stands on other patches, like a fin on
+           a tube */
+        bool loose;
     } * patches;
 };
 

@@ -179,8 +179,8 @@ static void find_closed(struct parts_finding *f)
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
     for (size_t t = 0; t < mesh->tri_count; t++) {
         double n[3], open = 0;
-        /* open edges of a triangle do not count if it belongs to a fin, or has an edge at which two other triangles already
-           close the surface */
+        /* open edges of a triangle do not count if it belongs to a fin (a sheet that stands on a body), or has an edge at which
+           two other triangles already close the surface */
         bool fin = f->patches[f->patch[t]].loose;
         trimesh_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += vec_length(n) / 2;
