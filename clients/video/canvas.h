@@ -13,9 +13,9 @@ struct shown {                /* content of a frame; owned by the source (source
     cairo_surface_t *picture; /* picture of the plant; NULL: a text card is drawn instead */
     /* texts of the text card, shown while there is no recent picture: headline in large letters, and below it the reason */
     const char *headline, *detail;
-    gint64 since_us; /* UTC time since which the card's reason has applied; 0: the card shows no time */
+    gint64 since_us; /* UTC time in microseconds since which the card's reason has applied; 0: the card shows no time */
     const char *title;
-    gint64 age_ms;   /* age of the oldest value in the picture; -1: it has no values */
+    gint64 age_ms;   /* age of the oldest value in the picture, milliseconds; -1: it has no values */
     GTimeZone *zone; /* time zone of the plant */
     enum language words; /* language of card and strip */
 };

@@ -16,7 +16,9 @@
 /* Mesh edges are split where they cross the rim of a disc, so that the disc's points reach its rim. To avoid very short edges,
  * points whose distance from the rim is below this share of the radius count as on it. */
 #define RIM_SLACK 0.02
-#define MAX_ADDED_EVENLY 400000 /* maximum number of mesh points added to shorten edges everywhere (edge_m below INFINITY) */
+/* maximum number of mesh points added to shorten edges far from sensors too (only if edge_m, the maximum edge length
+   everywhere, is finite) */
+#define MAX_ADDED_EVENLY 400000
 
 /* --- refinement near sensors ------------------------------------------------------------------------------------------------- */
 

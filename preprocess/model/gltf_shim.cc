@@ -74,7 +74,9 @@ void parse(gltf::gltf_work *w)
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
     while (!error.empty() && error.back() == '\n')
         error.pop_back();
-    if (!good || !error.empty()) /* even if tinygltf returns true, `error` may describe content that it could not read */
+    /* rejects the model if there is an error text, even if tinygltf returned true: the text may describe content that it could
+       not read */
+    if (!good || !error.empty())
         refuse("%s", error.empty() ? "not a glTF file" : error.c_str());
 }
 

@@ -5,7 +5,8 @@ import { store, stored } from './common/storage.js';
 
 const versionIn = (text) => text.match(/version = '(\w+)'/)?.[1];
 const fetched = (options) => fetch('made/version.js', options).then((answer) => (answer.ok ? answer.text() : ''), () => '');
-// promise of the version of the server from which this page was loaded; undefined: its build has no version
+// promise of the version of the server from which this page was loaded; its value is undefined if that server's build has no
+// version
 const ours = fetched({}).then(versionIn);
 
 // Compares the version of the page with that of the server, which may have been updated. Called at each `welcome` of the server and when a

@@ -51,7 +51,7 @@ class Symbols {
             code = this.bytes[this.at] | (this.bytes[this.at + 1] << 8);
             this.at += 2;
         }
-        // also rejects NaN, the result of reading beyond the end of the bytes
+        // the check also rejects NaN, which is the code that results from reading beyond the end of the bytes
         need(code >= 0 && code <= this.levels, `code ${code}`);
         return code;
     }
@@ -90,12 +90,14 @@ function readCodes({ columns, rows, levels }, bytes) {
 class Masks {
     constructor({ columns, rows, maskSide }, { near, far, back }) {
         Object.assign(this, { columns, maskSide, near, far, back, wide: columns * maskSide });
-        this.bits = new Uint8Array(this.wide * rows * maskSide); // one byte for each mask bit: 255 where the picture shows the near surface
-        this.row = new Uint8Array(maskSide); // mask bits of the row above, from which the bits of the present row are predicted
+        // one byte for each mask bit of the whole grid: 255 where the picture shows the nearer surface of its cell
+        this.bits = new Uint8Array(this.wide * rows * maskSide);
+        this.row = new Uint8Array(maskSide); // mask bits of the row of pixels above, from which the bits of the present row are predicted
     }
 
-    // Returns null if the neighbour of cell `i` has a mask. Otherwise returns the side of the step in cell `i` to which the
-    // neighbour's only surface belongs: 1: near, 0: far.
+    // For a cell `i` that shows two surfaces, says which one (1: the near, 0: the far) its neighbour's farthest surface
+    // continues: the one whose depth code is nearer. Returns null if the neighbour also shows two surfaces and so has a mask of
+    // its own.
     sideOf(neighbour, i) {
         const { near, far, back } = this;
         if (far[neighbour] >= 0)

@@ -90,7 +90,8 @@ export class Session {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
             this.hello(['camera', 'params', ...(compares ? ['baseline'] : [])]);
         };
-        // text messages that wait() holds back: [[arrival time, text], ...]; null: messages are not held back
+        // [[arrival time, text], ...]: text messages that are held back between wait() and listen(); null: messages are handled
+        // at once
         this.unheard = null;
         connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
@@ -184,7 +185,8 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
         if (this.picture)
-            // the shown picture's parameter number is from the previous connection and may occur again; -1 never occurs
+            // The shown picture's parameter number is from the previous connection, and the new connection may use it again.
+            // Replaces it by -1, which is never used.
             this.picture.paramsSeq = -1;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs,

@@ -83,7 +83,7 @@ function ViewsPane(pane, context) {
     const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
     const inner = pageIn(context, 'view', place), remembered = `plantcast.at.${place}`;
     let at = (Number(sessionStorage.getItem(remembered)) || 0) % pane.items.length, changedAt = null, shown = null, shownIn = null;
-    // the views that the display's token may show, if it is limited to some; else all saved views
+    // the views that the pane may show: those permitted to the display's token, if it is limited to some; else all saved views
     const viewsOf = ({ model, views }) => model?.plant.only ?? views;
     const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
     // the heading of a view whose picture has not arrived yet: until then, the heading must name the previous view, which is

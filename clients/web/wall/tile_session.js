@@ -98,7 +98,7 @@ export class TileSession extends Session {
 
     keep(frame, picture, decodeMs) {
         this.kept.push({ frame, picture, decodeMs });
-        if (!frame.more) // the picture is complete, so it is acknowledged and can be shown at its instant
+        if (!frame.more) // acknowledges the frame that completes a picture, which can now be shown at its instant
             this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
     }
 

@@ -22,8 +22,8 @@ onmessage = ({ data }) => {
     if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;
-    // draws without the warning when the page runs again; also at the start, because the canvas's first frame, size and font
-    // need the main thread, which may hang later
+    // Redraws without the warning when the page runs again. Also draws at the start, because the canvas's first frame, its size
+    // and the font need the main thread, which may hang later.
     if (isSaid || data.width)
         draw();
     if (data.width)

@@ -68,7 +68,7 @@ export class Accepting {
     ask() {
         clearTimeout(this.timer);
         if (this.sent)
-            return; // a request is running; when it ends, end() or onSaved() calls ask() again
+            return; // a request is still running: does nothing now, because end() or onSaved() calls ask() again when it ends
         this.onFound(null);
         if (this.element.open && [this.within, this.confidence].every((field) => field.validity.valid))
             this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);

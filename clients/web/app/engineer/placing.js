@@ -56,10 +56,11 @@ export class Placing {
         session.on('gaps', (message) => this.showGaps(message));
         session.on('tags_diff', (message) => this.showDiff(message));
         session.on('tags_saved', (message) => this.onSaved(message));
-        // the server refused a position: the sensor stays at its previous one
+        // the server refused a position: undoes it, so that the sensor is at its previous position again
         session.on('error', ({ about }) => { if (about === 'place') this.step(); });
         session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
-        session.on('hello', () => this.stopSaving()); // after a reconnect, the answer to a save cannot arrive any more
+        // after a reconnect, stops waiting for the answer to a save, which cannot arrive any more
+        session.on('hello', () => this.stopSaving());
         session.on('welcome', () => this.onWelcome());
         session.on('params', () => this.show());
         const on = (name, f) => this.viewport.element.addEventListener(name, f, { capture: true });

@@ -17,7 +17,7 @@ export class Snapshot {
         Object.assign(this, { session, tell, pending: null });
         session.on('frame', (frame) => frame.flags & FLAG_SIGNED && this.pending?.frames.set(frame.seq, frame));
         session.on('hello', () => this.pending?.fail(new Error(say('reason.unreachable'))));
-        // only ends the pending request: the page's error handler tells the user the reason
+        // ends the pending request for a signed file without a message: the page's error handler tells the user the reason
         session.on('error', ({ about, code }) => (about === 'sign' || code === 'not_signed') && this.pending?.fail(null));
     }
 
@@ -29,7 +29,8 @@ export class Snapshot {
     }
 
     async choose() {
-        await styled('help/help').catch(() => {}); // loads the dialog's styles; if the server is unreachable, the dialog opens without them
+        // loads the dialog's style sheet; if the server is unreachable, opens the dialog without it
+        await styled('help/help').catch(() => {});
         this.dialog ??= this.makeDialog();
         this.dialog.showModal();
     }

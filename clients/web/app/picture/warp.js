@@ -61,19 +61,20 @@ export class Warp {
     open() {
         const { canvas } = this;
         try {
-            this.usesGl ??= hasGpu(make('canvas')); // without a GPU, CpuPainter is several times as fast as WebGL
+            // WebGL with a GPU, else CpuPainter, which without a GPU is several times as fast as WebGL
+            this.usesGl ??= hasGpu(make('canvas'));
             this.painter = this.usesGl ? new GlPainter(canvas.getContext('webgl2', GL)) : new CpuPainter(canvas);
         } catch (error) {
             console.warn(`pictures are not warped: ${error.message}`);
             return false;
         }
-        canvas.width = canvas.height = 1; // a valid size until fit() sets the final one
+        canvas.width = canvas.height = 1; // gives the canvas a valid size until fit() sets the final one
         return true;
     }
 
     // After the loss of the WebGL context, shows pictures unwarped until the browser restores the context.
     lose(event) {
-        event.preventDefault(); // without this call, the browser does not restore WebGL
+        event.preventDefault(); // tells the browser to restore WebGL later, which it does not do without this call
         this.hide();
         this.viewport.warp = null;
         this.viewport.invalidate();
@@ -170,7 +171,9 @@ export class Warp {
                 return false;
             this.paint(camera, this.source, 0);
             this.fadeStart = null;
-        } catch (error) { // WebGL can fail here, for example in a browser that does not accept a VideoFrame as a texture
+        // WebGL failed while drawing, for example in a browser that does not accept a VideoFrame as a texture: shows pictures
+        // unwarped from now on
+        } catch (error) {
             console.warn(`pictures are not warped: ${error.message}`);
             this.giveUp();
             return true;

@@ -187,7 +187,8 @@ export class Timeline {
             const found = next === null || length < 2e6 ? nextTo(raised(rows), us, false) : null;
             if (found)
                 return found;
-            // with too many journal rows in the span, searches a shorter span; otherwise the next, longer one
+            // If all journal rows of the span were read (next is null) without finding an alarm, searches the next, longer
+            // span. If the span has too many rows for one request, searches a shorter span.
             [from, length] = next === null ? [from + length, length * 4] : [from, length / 8];
         }
         return null;

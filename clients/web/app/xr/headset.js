@@ -104,7 +104,8 @@ export class Headset {
         delete session.resize;
         Object.assign(viewport, { onDrawn: before.onDrawn, warp: viewport.warp && before.warp });
         session.setVisible(!document.hidden);
-        this.painter.gl.getExtension('WEBGL_lose_context')?.loseContext(); // frees the GPU memory at once
+        // gives up the WebGL context, which frees its GPU memory at once
+        this.painter.gl.getExtension('WEBGL_lose_context')?.loseContext();
         session.resize(before.size);
         if (before.split)
             session.setParams({ split: before.split });

@@ -53,7 +53,8 @@ export class Painter {
         this.board = programOf(gl, BOARD, CANVAS);
         this.undrawn = programOf(gl, RAYS, LATTICE);
         this.grey = UNDRAWN[backdrop] ?? UNDRAWN.light;
-        // NEAREST filter: users would read a blend of two colours as a value between them
+        // NEAREST filter: colours of the picture are not mixed, because users would read a mixture of two colours as the value
+        // between them
         this.picture = this.newTexture(gl.NEAREST);
         this.masks = this.newTexture(gl.NEAREST);
         gl.depthFunc(gl.LEQUAL);

@@ -48,7 +48,9 @@ export class CpuPainter {
         }
         raster.leaveOut(gone);
         this.copyOf(width, height).putImageData(image, 0, 0);
-        context.imageSmoothingEnabled = false; // no smoothing, because users would read a mixture of two colours as the value between them
+        // draws pixels unmixed when it scales the picture, because users would read a mixture of two colours as the value
+        // between them
+        context.imageSmoothingEnabled = false;
         context.drawImage(below, 0, 0, width, height);
         context.drawImage(this.scratch, 0, 0);
     }

@@ -114,7 +114,8 @@ export class GlPainter {
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
         gl.enableVertexAttribArray(0);
         this.texture = this.newTexture();
-        // two reduced textures: the picture, and the greys for places that the picture does not show
+        // two textures with 1/REDUCED of the width and height: one for the warped picture, one for the greys of places that the
+        // picture does not show
         this.reduced = [gl.LINEAR_MIPMAP_NEAREST, gl.LINEAR].map((filter) => {
             const one = { texture: this.newTexture(), framebuffer: gl.createFramebuffer() };
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
@@ -126,7 +127,8 @@ export class GlPainter {
     newTexture() {
         const { gl } = this, texture = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, texture);
-        // NEAREST, because users would read a mixture of two colours as the value between them
+        // NEAREST: colours of the texture are not mixed, because users would read a mixture of two colours as the value between
+        // them
         for (const [name, value] of [[gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
             [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
             gl.texParameteri(gl.TEXTURE_2D, name, value);
@@ -155,7 +157,7 @@ export class GlPainter {
         // uses the visible size, because a video frame's coded size may be a pixel wider and higher
         this.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
         if (parts === this.loaded)
-            return; // the meshes are uploaded already, for an earlier picture with the same depth grids
+            return; // keeps the meshes in the GPU: they were uploaded for an earlier picture with the same depth grids
         for (const { buffers, masks } of this.uploaded) {
             buffers.forEach((buffer) => gl.deleteBuffer(buffer));
             gl.deleteTexture(masks);
