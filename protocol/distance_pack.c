@@ -20,7 +20,9 @@
 #define PLAIN 0xfffeu     /* value of `parent` in packed_row: codes are not predicted, because some vertices have no path to the sensor */
 #define SAMPLES 16u       /* number of vertices compared between two sensors' distances to find similar sensors */
 
-struct packed_row { /* how the codes of one sensor in a block are packed; `parent`: the similar sensor that they are predicted from */
+/* How the codes of one sensor in a block are packed. parent: index of the similar sensor from which they are predicted,
+   NO_PARENT or PLAIN; width: number of bits per code in each group. */
+struct packed_row {
     uint16_t parent;
     uint8_t width[GROUPS]; /* bits per code */
 };

@@ -54,8 +54,8 @@ static const struct box_rule rules[] = {
     { "avc1", "stsd", "000000000000" "0001" "????????" ANY_8 "????????" "WWWWHHHH" "00480000" "00480000" "00000000" "0001" ANY_32
       "0018ffff" "*", HEAD + 78, true },
     { "avcC", "avc1", "01??????" "ff" "e1" "*", 0, true },
-    { "colr", "avc1", "6e636c78" "0001" "000d" "0000" "80|" "6e636c63" "0001" "000d" "0000", 0, true }, /* colour information: nclx in MP4,
-                                                                                                           nclc in MOV */
+    /* colour information in one of two allowed forms: nclx in MP4 files, nclc in MOV files */
+    { "colr", "avc1", "6e636c78" "0001" "000d" "0000" "80|" "6e636c63" "0001" "000d" "0000", 0, true },
     { "pasp", "avc1", "0000000100000001", 0, false },
     { "btrt", "avc1", "*", 0, false },
     { "stts", "stbl", "*", 0, true },
@@ -268,7 +268,8 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
     while (i < count && unit[i] == 255)
         length += unit[i++];
     length += i < count ? unit[i++] : 0;
-    for (; i < count; i++) { /* after two zero bytes, a byte 3 is H.264's emulation prevention and not content */
+    /* does not count a byte 3 after two zero bytes: H.264 inserts such bytes (emulation prevention), and they are not content */
+    for (; i < count; i++) {
         bool is_filler = zeros >= 2 && unit[i] == 3;
         zeros = unit[i] == 0 ? zeros + 1 : 0;
         content += !is_filler;

@@ -56,7 +56,7 @@ static bool unpack(const void *packed, size_t packed_bytes, float *distances_m, 
     uint8_t *low = mem_try_array(length, 2), *high = low ? low + length : NULL;
     uint16_t *codes = mem_try_array(length, sizeof(*codes));
     bool good = high && codes && ZSTD_decompress(low, 2 * length, packed, packed_bytes) == 2 * length;
-    /* three separate loops, because the compiler can vectorise the first and the last */
+    /* decodes in three separate loops, because the compiler can vectorise the first and the last one then */
     for (size_t i = 0; i < length && good; i++) {
         const uint16_t folded = (uint16_t)(low[i] | high[i] << 8);
         codes[i] = (uint16_t)(folded >> 1 ^ -(folded & 1));

@@ -77,5 +77,6 @@ void work_folder_end(struct work_folder *work, bool keep)
     mem_free(work->target);
     sigset_t before = work->before;
     *work = (struct work_folder){ 0 };
-    sigprocmask(SIG_SETMASK, &before, NULL); /* a SIGINT or SIGTERM that arrived in the meantime takes effect now */
+    /* restores the signal mask: a SIGINT or SIGTERM that arrived while both were blocked takes effect now */
+    sigprocmask(SIG_SETMASK, &before, NULL);
 }

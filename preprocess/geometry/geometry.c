@@ -140,7 +140,7 @@ static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -
 
 static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
-    /* include all vertices in the bounding box: the glTF reader has already removed those that no triangle uses */
+    /* All vertices count for the bounding box: the glTF reader has already removed those that no triangle uses. */
     for (uint32_t i = 0; i < primitive->vertex_count; i++) {
         const float *p = primitive->positions[i];
         double q[3];

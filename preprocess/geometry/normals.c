@@ -34,7 +34,7 @@ static double corner_angle(const float at[3], const float b[3], const float c[3]
     return acos(fmin(fmax(vec_dot(ab, ac), -1), 1));
 }
 
-struct around {      /* by position: the triangle corners at that position */
+struct around {      /* for each position: the corners of all triangles that meet there */
     unsigned *place; /* by vertex: lowest index of a vertex at the same position */
     uint32_t *first, *corners;
     double (*faces)[3];

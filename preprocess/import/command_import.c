@@ -228,8 +228,8 @@ static int run_import(struct import_command *import)
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
         status = import_fail(import->folder, why);
-    /* ignore EEXIST, and create a missing work folder again: the previous lock holder may have deleted it as a leftover of a
-     * dead process */
+    /* Creates the work folder again if it is missing: the previous lock holder may have deleted it as a leftover of a dead
+       process. EEXIST, the usual case, is no error. */
     else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST)
         status = import_fail(import->work.path, strerror(errno));
     mem_free(why);

@@ -51,7 +51,7 @@ static bool is_printable(const char *text)
     return is;
 }
 
-struct draft_choice {    /* for each node of a model's outline: does it become an asset, and is its name unique? */
+struct draft_choice {    /* for the nodes of a model's outline: which become assets, and which have a unique name */
     bool *item, *unique; /* by node; item: it becomes an asset; unique: no other node has its name */
     bool typed, classed; /* typed: some nodes have the type property ZONE; classed: some nodes have IFC classes */
 };

@@ -277,7 +277,8 @@ static bool read_chunks(struct rvm_reader *r)
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
             return fail(r, "expected the header of an RVM chunk: the file is damaged");
-        if (!strcmp(id, "END:")) /* stop at the chunk END: without reading its header, because some files omit header fields there */
+        /* stops at the chunk END: without reading the rest of the chunk's header, because some files omit header fields there */
+        if (!strcmp(id, "END:"))
             return true;
         if (r->count - from < HEADER)
             return fail(r, "the file ends within RVM chunk %s", id);

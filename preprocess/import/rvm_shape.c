@@ -106,7 +106,9 @@ static double phase_of(const struct primitive_frame *frame, const double x[3], c
 
 /* --- rings ------------------------------------------------------------------------------------------------------------------------ */
 
-struct corner_ring { /* a circle or ellipse of corners in the primitive's frame; the corner at an angle is centre + cos * x + sin * y */
+/* A circle or ellipse on which corners are placed, in the primitive's frame. The corner at an angle t is centre + cos(t) * x +
+   sin(t) * y; phase: angle of the first corner. */
+struct corner_ring {
     double centre[3], x[3], y[3], phase;
 };
 
@@ -272,7 +274,8 @@ static void add_circular_torus(struct cad_node *node, const struct primitive_fra
     ends[1].phase = ends[0].phase + turn;
     if (fabs(angle) > 2 * M_PI - 1e-3)
         return;
-    /* the normal (x cross y) at either end of a torus points against the direction of a bend with a positive angle */
+    /* add_cap() reverses the normal (x cross y) if its last argument is true: at the second end of a bend with a positive angle,
+       at the first end of one with a negative angle */
     for (int end = 0; end < 2; end++)
         if (!(open_faces >> end & 1))
             add_cap(node, frame, &ends[end], corners, (end == 1) == (angle > 0));
@@ -419,7 +422,7 @@ struct tessellated_polygon { /* state shared by GLU's callbacks */
     const double (*corner)[3];
     uint32_t three[3];
     int count;
-    double (*made)[3]; /* vertices that GLU's tessellator requests where polygon edges cross */
+    double (*made)[3]; /* additional vertices that were made because GLU's tessellator needs them where edges of the polygon cross */
     size_t made_count;
 };
 

@@ -188,7 +188,8 @@ static double logarithm(double x) /* log(), callable where a parameter named `lo
     return log(x);
 }
 
-struct range_trial { /* likelihood found for one correlation range */
+/* one point of the search for the best correlation range: the range's logarithm and the largest likelihood found with it */
+struct range_trial {
     double log_range, likelihood;
 };
 

@@ -53,8 +53,7 @@ static double *diagonal_of(const struct conduct *conduct, double decay_m)
             diagonal[laplacian->row_of[disc->points[i]]] += CONTACT * disc->shares[i];
         touched[component[disc->points[0]]] = 1;
     }
-    /* if a body has no sensor, its temperature is undetermined and never shown; any positive diagonal makes the matrix regular
-       */
+    /* if a body has no sensor, its temperature is undetermined and never shown; any positive diagonal makes the matrix regular */
     for (size_t p = 0; p < points; p++)
         if (laplacian->row_of[p] != TRIMESH_NONE)
             diagonal[laplacian->row_of[p]] +=
@@ -87,7 +86,7 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
         double sum = 0;
         for (int i = 0; i < 3; i++)
             sum += (double)at->weights[i] * u[row_of[at->points[i]]];
-        share[v] = (float)max_of(sum, 0); /* clamps rounding errors: a weight is never negative */
+        share[v] = (float)max_of(sum, 0); /* a weight is never negative: replaces negative results, which are rounding errors, by 0 */
     }
     for (size_t other = 0; other < influence->count; other++) {
         const struct influence_disc *disc = &conduct->mesh->discs[other];

@@ -168,7 +168,8 @@ static void visit(void *arg, uint32_t tri)
     double piece[3][2], normal[3], off_m;
     vec_normal(at[points[0]], at[points[1]], at[points[2]], normal);
     double facing = vec_dot(normal, finding->axes[2]), least = LEAST_FACING * vec_length(normal);
-    /* triangles of the solved mesh must face the same way as the drawn triangle; hidden triangles may face either way */
+    /* Skips a triangle of the solved mesh that faces another way than the drawn triangle. A hidden triangle may also face the
+       opposite way. */
     if (finding->full || !((solved ? facing : fabs(facing)) > least))
         return;
     uint32_t order[3] = { points[0], points[facing > 0 ? 1 : 2], points[facing > 0 ? 2 : 1] };

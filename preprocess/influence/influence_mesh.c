@@ -86,7 +86,8 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
     if (cut == 0)
         return;
-    for (int i = 0; i < 3; i++) /* rotate the corners so that the only split edge, or the only unsplit edge, comes first */
+    /* rotates the corners so that the only split edge comes first; if two edges are split, the only unsplit one */
+    for (int i = 0; i < 3; i++)
         if ((m[i] != TRIMESH_NONE) == (cut == 1))
             at = i;
     const uint32_t a = p[at], b = p[(at + 1) % 3], c = p[(at + 2) % 3];

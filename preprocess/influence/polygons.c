@@ -76,7 +76,7 @@ void polygons_add_outside(struct polygons *polygons, const struct polygon *polyg
                half_of(&inside, triangle[i], triangle[(i + 1) % 3], 1, &next);
         inside = next;
     }
-    /* the overlap has at most the area least_m2: keep the whole polygon instead of splitting it */
+    /* if the overlap has at most the area least_m2, appends the whole polygon: splitting it would gain nothing */
     if (!good || !(polygon_area(&inside) > least_m2)) {
         polygons_add(polygons, polygon);
         return;

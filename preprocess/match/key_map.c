@@ -18,7 +18,8 @@ static void grow(struct key_map *map)
     mem_free(map->slots);
     map->slots = mem_array(map->slot_count, sizeof(*map->slots));
     memset(map->slots, 0xff, map->slot_count * sizeof(*map->slots));
-    /* insert from last to first, so that the oldest entry with a key is found first */
+    /* inserts the entries from last to first, each at the front of its slot's list, so that the oldest entry with a key is
+       found first */
     for (size_t i = map->count; i-- > 0;) {
         int *slot = &map->slots[slot_of(map, map->things[i].key)];
         map->things[i].next = *slot;

@@ -122,7 +122,8 @@ bool method_rules(const struct matcher *matcher, const struct match_subject *sub
 static bool is_apart(const struct name_tokens *tokens, int from, int to)
 {
     bool before = tokens->at[from].apart, behind = to == tokens->count || tokens->at[to].apart;
-    /* a single letter that distinguishes equipment follows the tokens (runs of letters or digits): E-101-A is not E-101 */
+    /* true: a single letter up to F follows a number, as in E-101-A, and distinguishes this equipment from E-101, so that E-101
+       does not match */
     bool letter = to < tokens->count && !tokens->at[to].digits && strlen(tokens->at[to].text) == 1 && tokens->at[to].text[0] <= 'F' &&
                   tokens->at[to - 1].digits;
     return before && behind && !letter;

@@ -69,7 +69,7 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
     /* indices of matching methods. chosen: the method whose proposal is accepted; -1: none. open: the first method that
      * proposed several assets; -1: none */
     int chosen = -1, open = -1;
-    /* first pass: only proposals that their method marks as sure; second pass: all proposals */
+    /* The first pass accepts only proposals that their method marks as sure, the second pass all proposals. */
     for (int pass = 0; pass < 2 && chosen < 0; pass++)
         for (int i = 0; i < METHODS && chosen < 0; i++) {
             const struct proposal *proposal = &proposals[i];

@@ -248,7 +248,7 @@ static void put_rows(struct matching_run *run)
         const char *found = match->asset < 0 ? "" : run->plant->assets[match->asset].id;
         bool kept = asset && (!before || !before->edited) && match->status == MATCH_SURE && strcmp(asset, found) != 0;
         struct match shown = *match;
-        if (kept) { /* a person edited this tag's asset in the tag list; the edit takes precedence over the match */
+        if (kept) { /* a person edited this tag's asset in the tag list: keeps the edited asset in place of the match */
             shown.status = *asset ? MATCH_SURE : MATCH_NONE;
             found = asset;
         }
@@ -639,8 +639,8 @@ static bool match(struct matching_run *run)
     bool good = child_run(&(struct child_params){ .call = match_in_child,
                                                   .arg = &answer,
                                                   .name = "the tag list reader",
-                                                  /* the child starts in the current folder, so that relative paths in the
-                                                   * options stay valid */
+                                                  /* the child starts in the current folder of this program, so that relative
+                                                     paths in the options stay valid */
                                                   .folder = folder,
                                                   .timeout_s = run->params->timeout_s,
                                                   .memory_bytes = run->params->memory_bytes,

@@ -41,7 +41,8 @@ static const struct {
     const char *quantities;
 } kinds[] = {
     { "temperature", true, "|Temperature|" },
-    { "pressure", true, "|Pressure|Differential pressure|" }, /* pressure in any unit; gauge, absolute or with another reference */
+    /* units of pressure, whether gauge, absolute or relative to another reference */
+    { "pressure", true, "|Pressure|Differential pressure|" },
     { "flow", true, "|Flow|" },
     { "density", true, "|Density|" },
     { "conductivity", true, "|Conductivity|" },

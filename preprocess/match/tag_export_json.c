@@ -405,7 +405,7 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");
     export_tag_set(tag, EXPORT_AREA, scope->folder);
-    if (!tag->fields[EXPORT_NAME]) /* the tag's name in the export is blank */
+    if (!tag->fields[EXPORT_NAME]) /* a tag whose name is blank in the export gets the name "unnamed" */
         export_tag_set(tag, EXPORT_NAME, "unnamed");
     scope->reader->too_many |= list->count > TABLE_MAX_ROWS;
 }

@@ -184,7 +184,7 @@ int tag_header_read(const struct table_row *row, struct tag_header *header)
         reading.column = (int)c;
         each_key(row->cells[c], take_key, &reading);
     }
-    /* a column "Instrument Tag" fits both the name and the address of a tag; use it only as the name */
+    /* If one column fits both the name and the address of a tag, as "Instrument Tag" does, it is used only as the name. */
     if (header->columns[EXPORT_ADDRESS] == header->columns[EXPORT_NAME])
         header->columns[EXPORT_ADDRESS] = -1;
     for (int f = 0; f < EXPORT_FIELDS; f++)

@@ -481,7 +481,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     char view_why[200];
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
-    /* error text if asset_build() runs out of memory; a later failure overwrites it */
+    /* sets the error text for the case that asset_build() runs out of memory; a later failure overwrites it */
     wrong(build->why, "cannot create the asset's prepared file: out of memory");
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)

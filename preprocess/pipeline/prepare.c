@@ -484,7 +484,8 @@ static void share(struct prepare_run *run)
         asset->reported = first->reported;
         asset->report = first->report;
         asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
-        /* assets with equal keys have equal sensors, so the first one's distances apply */
+        /* copies the sensors' distances from the surface from the first asset with this key: assets with equal keys have equal
+           sensors */
         for (size_t s = 0; s < asset->sensor_count; s++)
             asset->surface_distances_m[s] = first->surface_distances_m[s];
     }
@@ -547,7 +548,8 @@ static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
-    /* one array element per tag suffices for all assets, because a tag is a sensor of at most one asset */
+    /* an array for the tags of all assets together: one element per tag suffices, because a tag is a sensor of at most one
+       asset */
     const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags;
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];

@@ -240,7 +240,8 @@ static double worst_of(const struct linear_error *linear, const struct error_que
             at[c] = question->corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        /* change of the group's value per metre; if negative: minus the distance in metres to where the group's data ends */
+        /* largest change of the group's value per metre at the point; a negative number means that the point has no data: minus
+           its distance in metres from the area with data */
         double slope = (double)sample[linear->share_count + g];
         if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / linear->group_count)
             most = max_of((double)interp_error(at, question->weights, question->corner_count, sample + first, count) -

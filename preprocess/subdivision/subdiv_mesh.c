@@ -375,7 +375,8 @@ static bool is_open(const struct subdiv_mesh *mesh, size_t t)
     return subdiv_mesh_is_split(mesh, e[0]) || subdiv_mesh_is_split(mesh, e[1]) || subdiv_mesh_is_split(mesh, e[2]);
 }
 
-/* triangles that need further splits are appended to mesh->open and split in the next round */
+/* Splits the triangles on the list mesh->open. A piece that needs further splits is appended to the list and split in the next
+   round. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh)
 {
     size_t before = mesh->tri_count;

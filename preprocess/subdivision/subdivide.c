@@ -583,7 +583,7 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
         return false;
     size_t places = subdiv->mesh.welded.count;
-    /* reserve more memory for distances than needed: the kernel provides it only for pages in use */
+    /* reserves room for the distances of positions that subdivision may add; the kernel provides memory only for pages in use */
     subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors;
     subdiv->geodesic_m = mem_try_array(subdiv->geodesic_capacity, sizeof(*subdiv->geodesic_m));
     if (subdiv->samples <= MAX_STORED) {

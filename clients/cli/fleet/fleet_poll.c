@@ -105,7 +105,8 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
-    if (request->kind == PICTURE) { /* a failed request removes the old picture, because viewers would take it for the present state */
+    /* if the request for a picture failed, removes the old picture, because users would take it for the present state */
+    if (request->kind == PICTURE) {
         mem_free(picture->at);
         picture->at = NULL;
         known->picture = 0;

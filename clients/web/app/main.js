@@ -99,9 +99,11 @@ viewport.onDrawn = (newPicture, isWarped) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-for (const id of ['display', 'more', 'picture-panel', 'views']) // moves labels aside when one of these panels opens or closes
+// repositions the sensor labels when one of these panels opens or closes, so that they move aside
+for (const id of ['display', 'more', 'picture-panel', 'views'])
     new MutationObserver(refresh).observe(byId(id), { attributeFilter: ['class'] });
-setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the age of the value on the sensor's card
+// updates the sensor's card twice a second, because it shows the age of the value
+setInterval(() => modules.there('card')?.tag && refresh(), 500);
 
 for (const name of ['tags', 'alarms', 'proofs'])
     session.on(name, refresh);

@@ -4,7 +4,7 @@
 // A row is { kind: area | asset | tag, level (depth in the tree), id, open (area or asset: it is expanded), item (the asset or tag), text
 // (of an area), setSize, place (number of siblings and position among them, for screen readers) }.
 export class Tree {
-    // loose: text of the heading above the tags without equipment.
+    // loose: heading under which the tags without equipment are listed
     constructor(model, loose) {
         this.folded = new Set(); // ids of collapsed areas
         this.open = new Set();   // ids of expanded assets

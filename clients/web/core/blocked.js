@@ -18,7 +18,7 @@ async function whyBlocked(url) {
     if (answer.status >= 500)
         return '';
     const refused = answer.status === 426 ? /^refused: (.+)$/m.exec(await answer.text())?.[1] : null;
-    if (refused) // the request reached the server as a WebSocket handshake, so no proxy blocks it
+    if (refused) // the server itself answered and says why it refused the WebSocket, so no proxy blocks it
         return refused;
     const proxy = proxyOf(answer.headers), isNginx = /nginx|openresty/i.test(proxy);
     const needs = isNginx ? put('page.blocked_lines', { lines: NGINX }) : put('page.blocked_page');

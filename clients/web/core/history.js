@@ -55,7 +55,9 @@ function putPoint(put, [us, value, quality], before, step) {
 // ends without a value (`last` null) breaks the line, even at the end of the series.
 function putInterval(put, [us, low, , mean, first, last], length, before, after) {
     const adjoins = (other) => other && other[1] !== null && Math.abs(other[0] - us) <= length * 1.001;
-    if (low === null && first !== null) // the interval ends the previous value: draws that value until just before the interval begins
+    // The interval has no values of its own; `first` is the value that held until it began: draws that value until just before
+    // the interval.
+    if (low === null && first !== null)
         put(us - 1, first);
     if (low === null)
         return put(us, null);

@@ -516,7 +516,7 @@ const HANDLERS = {
 
     following({ session, who, width, height, gone = false, ...shown }) {
         this.lent ||= session ?? this.leader;
-        // if the session whose view this page follows has ended, the name of its user is still shown
+        // If the followed session has ended, the message does not name its user: keeps the name known so far.
         const name = who ?? (this.following?.session === session ? this.following.who : undefined);
         this.following = session === null ? null : { session, who: name, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;

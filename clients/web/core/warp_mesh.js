@@ -76,7 +76,8 @@ function sharedCorners({ columns, rows }, back, sheets) {
     const wide = columns + 1, corners = new Float32Array(wide * (rows + 1)).fill(NaN);
     for (let y = 0; y <= rows; y++)
         for (let x = 0; x <= columns; x++) {
-            // at the edge of the grid, a corner has only two cells (x0 equals x1, or y0 equals y1); it is compared, but remains NaN
+            // At the grid's edge, only two cells meet at a corner (x0 equals x1, or y0 equals y1). Such a corner gets NaN even
+            // if its two cells show one surface.
             const x0 = Math.max(0, x - 1), x1 = Math.min(columns - 1, x);
             const y0 = Math.max(0, y - 1) * columns, y1 = Math.min(rows - 1, y) * columns;
             const a = back[y0 + x0], b = back[y0 + x1], c = back[y1 + x0], d = back[y1 + x1];

@@ -103,7 +103,8 @@ export class Raster {
         Object.assign(this, { width, height, pixels: new Int32Array(width * height) });
         // 1 - z of the drawn surfaces, in normalized device coordinates, multiplied by NEAR_ONE
         this.nearness = new Int32Array(width * height);
-        // corners of the quad being drawn on the screen, and their nearness
+        // x, y on the screen of the corners of the quad being drawn, and the corners' nearness (1 - z, larger is nearer to the
+        // eye)
         [this.x, this.y, this.n] = [0, 1, 2].map(() => new Float64Array(4));
         // reduced pictures, each half as wide and high as the one before: brightness multiplied by the drawn fraction, and
         // drawn fraction
@@ -175,7 +176,8 @@ export class Raster {
         let row = Math.max(clip.top, Math.ceil(cy - reach));
         if (row >= last)
             return;
-        // change of source position and nearness from one pixel of a row to the next, and from one row to the next
+        // change of the position in the source picture (u, v) and of the nearness from one screen pixel of a row to the next
+        // (x), and from one row to the next (y)
         const e = (n[1] - n[0] + n[3] - n[2]) / 2, f = (n[2] - n[0] + n[3] - n[1]) / 2, slope = high * -ey / area;
         const ux = wide * fy / area || TINY, vx = Math.abs(slope) < TINY ? TINY : slope, nx = (e * fy - f * ey) / area;
         const uy = -wide * fx / area, vy = high * ex / area, ny = (f * ex - e * fx) / area;
@@ -183,7 +185,7 @@ export class Raster {
         const vLow = Math.max(0, top - LAP_PX), vHigh = Math.min(grid.height, bottom + LAP_PX) - INSIDE;
         const uFirst = ux > 0 ? uLow : uHigh, uLast = ux > 0 ? uHigh : uLow, vFirst = vx > 0 ? vLow : vHigh, vLast = vx > 0 ? vHigh : vLow;
         const perU = 1 / ux, perV = 1 / vx, xStep = Math.round(ux * ONE), yStep = Math.round(vx * ONE), nStep = Math.round(nx * NEAR_ONE);
-        // source position and nearness at the first pixel of the screen row
+        // position in the source picture (u, v) and nearness for the first pixel of the screen row
         let u = (left + right) / 2 - cx * ux + (row - cy) * uy, v = (top + bottom) / 2 - cx * vx + (row - cy) * vy;
         let near = (n[0] + n[1] + n[2] + n[3]) / 4 - cx * nx + (row - cy) * ny;
         for (; row < last; row++) {

@@ -30,7 +30,8 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     }
 
     async function look() {
-        // time of the request, not of the answer: the picture's age includes the duration of the request
+        // stores when the request was sent, not when the answer came, so that the picture's age includes the duration of the
+        // request
         const at = askedAt = clock.now();
         asks = true;
         try {
@@ -41,7 +42,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
             if (said.picture && said.picture !== shown?.picture)
                 await load(state);
         } catch {
-            // ignores the failure here, because tick() reports it once the server has been silent for too long
+            // does not report the failure: tick() does so once the server has been silent for too long
         } finally {
             asks = false;
         }

@@ -538,7 +538,8 @@ void convert(const char *input, const char *output, const char *units, const cha
     unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-    /* keep FBX pivots as nodes: otherwise children would inherit a node's GeometricTranslation, which applies only to its own mesh */
+    /* keeps FBX pivots as nodes: otherwise children would inherit a node's GeometricTranslation, which applies only to its own
+       mesh */
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
     text_encoding of_file;                             /* encoding in which text files are decoded before Assimp reads them */
     importer.SetIOHandler(new files(&of_file, asked)); /* the importer takes ownership of this object */

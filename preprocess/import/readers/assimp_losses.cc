@@ -47,7 +47,7 @@ void assimp_log::write(const char *message)
     if (end != text.npos)
         /* remove the file position from the error text, so that equal errors are counted together */
         text.erase(place, end + 1 - place);
-    const size_t source = text.find(": "); /* skip the beginning of Assimp's log line, such as "Error, T0" */
+    const size_t source = text.find(": "); /* skips the beginning of Assimp's log line (level and thread), such as "Error, T0" */
     counts[source == std::string::npos ? text : text.substr(source + 2)]++;
 }
 

@@ -86,7 +86,8 @@ std::function<double(double)> heading_of(const ifc_model &in, const entity &pare
 {
     if (parent.is("IFCLINE"))
         return [](double) { return 0; };
-    double size = in.length * file::number(parent[1]); /* radius of a circle, or clothoid constant, in millimetres */
+    /* radius if the parent curve is a circle, constant if it is a clothoid; in millimetres */
+    double size = in.length * file::number(parent[1]);
     if (!(std::fabs(size) > LEAST_MM))
         throw unsupported("unsupported: a curve without a radius");
     if (parent.is("IFCCIRCLE"))

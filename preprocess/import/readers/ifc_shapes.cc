@@ -43,7 +43,7 @@ double unit_of(const file &in, const entity &unit, int depth)
 {
     if (unit.is("IFCSIUNIT"))
         return si_prefix(unit[2]);
-    entity factor = in.get(unit[3]); /* conversion-based unit: a factor times another unit */
+    entity factor = in.get(unit[3]); /* an IfcConversionBasedUnit, such as the foot: a factor and another unit, which are multiplied */
     if (depth > MAX_CHAIN)
         throw unsupported("IFC units refer to each other in a circle");
     return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);

@@ -126,7 +126,7 @@ TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double are
                 return out;
             if (std::fabs(volume + expected) < VOLUME_SLACK * expected)
                 return out.Reversed();
-        } catch (const Standard_Failure &) { /* the next sweeping method will be tried */
+        } catch (const Standard_Failure &) { /* this sweeping method failed: the loop tries the next one */
         } catch (const unsupported &) {
         }
     throw unsupported("unsupported: a pipe that cannot be swept along its curve");

@@ -38,7 +38,7 @@ void mesh(const TopoDS_Shape &shape, double chord_mm, double angle_rad, bool par
     try {
         BRepMesh_IncrementalMesh(shape, chord_mm, Standard_False, angle_rad, parallel);
     } catch (const Standard_Failure &) {
-        /* ignore the exception: the caller looks for faces without triangles anyway */
+        /* a failed tessellation is not reported here, because the caller looks for faces without triangles anyway */
     }
 }
 

@@ -345,7 +345,8 @@ static void add_new(struct planning *p, const struct revision_model *model, cons
     bool *wanted = mem_array(new->header.count + 1, sizeof(*wanted)), placed = false;
     for (int i = 0; i < 16; i++)
         placed |= fabs(like->placement[i] - transform_identity[i]) > 0;
-    if (!placed) /* if existing assets of the model have a placement, a new asset's placement cannot be guessed, so no asset is added */
+    /* Adds new equipment as assets only if no asset of the model has a placement: that of a new asset could not be guessed. */
+    if (!placed)
         for (size_t i = 0; i < new->header.count; i++) {
             wanted[i] = p->states.pairs.to_old[i] < 0;
             for (size_t k = i; k < new->header.nodes[i].end && wanted[i]; k++)

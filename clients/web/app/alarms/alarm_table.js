@@ -23,7 +23,7 @@ export class AlarmTable {
             make('button', { type: 'button', title: say('column.sort', { what: say(`column.${name}`) }),
                 onclick: () => this.order(nextSort(this.sort, name)) }, say(`column.${name}`)))]);
         const heads = new Map(this.heads), other = (name) => (name === 'pick'
-            // without `pick`, the first column has no title for screen readers
+            // a first column without the title node `pick` gets role none, so that screen readers read no title for it
             ? make('th', { 'data-col': name, ...pick ? {} : { role: 'none' } }, pick)
             : make('th', { scope: 'col', 'data-col': name }, say(`column.${name}`)));
         table.prepend(make('thead', {}, make('tr', {}, ...COLUMNS.map((name) => heads.get(name) ?? other(name)))));

@@ -15,7 +15,8 @@ export class Card {
     constructor({ session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend }) {
         Object.assign(this, { session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend });
         this.element = byId('card');
-        // repositions the card when it grows, because the lines on drift and neighbours arrive later
+        // Repositions the card when its size changes: the lines with the sensor's drift and its neighbours' prediction are
+        // added after the card has opened.
         new ResizeObserver(() => this.show()).observe(this.element);
         this.show();
     }

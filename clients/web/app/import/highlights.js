@@ -108,7 +108,7 @@ export class Highlights {
             c.stroke();
             c.fill();
         }
-        if (feet[1] - top[1] < LEAST_PERSON_PX) { // draws a circle instead, because the person would be too small to see
+        if (feet[1] - top[1] < LEAST_PERSON_PX) { // the person would be too small to see: draws a circle in place of the figure
             c.beginPath();
             c.arc(feet[0], feet[1], LEAST_PERSON_PX, 0, 2 * Math.PI);
             Object.assign(c, { strokeStyle: LIT, lineWidth: 2 });

@@ -32,7 +32,8 @@ function heightOf(count, rows) {
     if (fills())
         return Math.max(80, byId('trend-chart').clientHeight / count);
     const least = Math.max(120, Math.min(210, 0.2 * innerHeight)); // the same value as the height of #trend-chart in trends.css
-    const one = Math.max(least, Math.min(0.26 * innerHeight, HEAD_PX + ROW_PX * rows)); // a single chart is as high as the table
+    // height of a single chart: that of the table, but at least `least` and at most 0.26 of the window's height
+    const one = Math.max(least, Math.min(0.26 * innerHeight, HEAD_PX + ROW_PX * rows));
     return Math.round(count === 1 ? one : Math.max(96, one * 0.7));
 }
 
@@ -64,7 +65,7 @@ export class Trends {
         this.isChosen = false; // true: a user or a wall has chosen the time range; false: it is the default
         this.unknown = []; // names in the trend's list that are not tags of this plant
         this.undrawn = []; // names of tags that are not drawn, because the trend already has its maximum number of tags
-        this.series = new Map(); // tag name -> its series, once the server has answered
+        this.series = new Map(); // tag name -> its recorded series; empty until the server has answered
         this.alarms = new Map(); // tag name -> its alarms in the time range
         this.element = byId('trends');
         this.addControls();

@@ -99,8 +99,8 @@ export class NamedViews {
             if (fly)
                 modules.use('cameraController', (controller) => controller.flyTo(camera));
             else if (modules.awaited.has('cameraController'))
-                // an earlier flight may still wait for these modules; land() ends it. The camera stays, because the user may
-                // have moved it since
+                // A flight begun earlier may still wait for the camera controller to load; land() ends that flight. The camera
+                // stays, because the user may have moved it since.
                 modules.use('cameraController', (controller) => controller.land());
         });
     }
