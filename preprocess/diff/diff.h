@@ -19,7 +19,7 @@ struct diff_asset {
     double moved_m;   /* largest movement of a corner of the asset's bounding box, metres */
     double turned_deg;
     double apart_m;      /* changed assets only: largest distance between the two surfaces after alignment, metres */
-    double tolerance_m;  /* metres; differences below this between the revisions do not count as changes */
+    double tolerance_m;  /* largest difference between the revisions, in metres, that does not count as a change */
     size_t triangles[2]; /* number of triangles in the old [0] and in the new [1] revision */
 };
 

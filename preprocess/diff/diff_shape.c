@@ -11,9 +11,10 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-/* number of points sampled along a line as long as the shape's diagonal when distances from the other shape are measured */
+/* Density of the points at which a shape's distance from the other shape is measured: this many along a line as long as the
+   shape's diagonal. */
 #define SPREAD 100.0
-#define PLACES_MAX 64 /* maximum number of points sampled along a side of a triangle when distances from the other shape are measured */
+#define PLACES_MAX 64 /* maximum number of points along a side of a triangle at which its distance from the other shape is measured */
 
 struct diff_shape {
     struct trimesh mesh;

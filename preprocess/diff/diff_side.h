@@ -18,7 +18,7 @@ struct diff_side_asset {
     const char *id;
     double placement[16]; /* transform from the asset frame to the plant frame */
     uint64_t work;        /* identifies the asset's model; assets with equal values use the same model */
-    /* the members below are set only if the plant was read from a plant file */
+    /* plant file's entry of the asset; this and the members below are set only if the plant was read from a plant file */
     const struct plant_asset *plant;
     size_t model;
     /* key of the asset's prepared file; set only if a folder of prepared files is compared */

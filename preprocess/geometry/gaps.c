@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "surface/repair/repair.h"
 
-#define SAME_M 1e-9 /* metres; vertices at most this far apart are treated as one position */
+#define SAME_M 1e-9 /* largest distance in metres between vertices that are treated as one position */
 
 /* maximum number of passes over the mesh; one pass closes at most one gap at a corner where several gaps meet */
 enum { MAX_ROUNDS = 4 };

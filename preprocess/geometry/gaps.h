@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define GAPS_OF_SIZE 3e-4 /* widest gap that is closed, relative to the diagonal of the bounding box */
-#define GAPS_MOST_M 0.002 /* widest gap that is closed, in metres */
+#define GAPS_OF_SIZE 3e-4 /* width of the widest gap that is closed, relative to the diagonal of the main part's bounding box */
+#define GAPS_MOST_M 0.002 /* width of the widest gap that is closed, in metres; the smaller of both limits applies */
 
 /* Closes gaps up to GAPS_OF_SIZE and GAPS_MOST_M: moves the vertices on one side to the open edges on the other side. Two open
  * edges thus become one shared edge. Gaps whose faces overlap stay open. Vertices at the same position move together.

@@ -15,13 +15,15 @@
 
 #define MAX_TRIANGLES 50000000ull /* maximum number of triangles of an asset */
 #define MAX_SIZE_M 1e7
-/* metres; in a larger model, an asset's origin is the median of its vertices: single-precision positions would be accurate to
- * only half a millimetre at the model's far ends */
+/* Size in metres of a model above which an asset's origin is the median of its vertices: at the far ends of such a model,
+   single-precision positions would be accurate to only half a millimetre. */
 #define COARSE_SIZE_M 1e4
-/* metres; if a sensor names several nodes, its position is still unambiguous if they are at most this far apart */
+/* largest distance in metres, along each axis, between the nodes that a sensor names at which the sensor's position still
+   counts as unambiguous */
 #define SAME_PLACE_M 1e-3
 #define SHOWN_NODES 6
-/* metres; a model smaller than this certainly has the wrong unit, and fourth powers of its lengths would underflow */
+/* smallest accepted size of a model in metres: a smaller one certainly has the wrong unit, and fourth powers of its lengths
+   would underflow */
 #define MIN_SIZE_M 1e-6
 
 /* --- selecting nodes ----------------------------------------------------------------------------------------------------- */

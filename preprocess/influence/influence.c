@@ -19,7 +19,8 @@
 /* minimum number of right-hand sides per solve; a larger number means that the sparse factor is read from memory less often */
 #define MIN_BLOCK 8
 #define MAX_BLOCK BEND_WIDTH
-/* bytes; memory limit for a block of more than MIN_BLOCK right-hand sides; each thread has three such blocks */
+/* memory limit in bytes for a block of more than MIN_BLOCK right-hand sides (sensors solved at a time); each thread has three
+   such blocks */
 #define BLOCK_BYTES (64 << 20)
 
 struct conduct {

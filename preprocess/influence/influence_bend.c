@@ -17,10 +17,10 @@
 #define OFF_PLANE 1e-5
 /* overlaps of a drawn and a mesh triangle are ignored up to this area, as a share of the drawn triangle's squared size */
 #define LEAST 1e-7
-/* share of a drawn triangle's area (triangle of the asset file) that may stay uncovered without counting as unknown, because
- * small overlaps are ignored */
+/* largest share of a drawn triangle's area (triangle of the asset file) that may stay uncovered without counting as unknown,
+   because small overlaps are ignored */
 #define COVERED 1e-3
-#define SAME 1e-7 /* as a share of a triangle's size; places (corners of overlaps) closer than this are duplicates */
+#define SAME 1e-7 /* distance, as a share of a triangle's size, below which two places (corners of overlaps) count as duplicates */
 #define LEAST_FACING 0.5
 /* number of recent places (corners of overlaps) that a new place is compared with; duplicates come from mesh triangles visited
  * shortly after each other */

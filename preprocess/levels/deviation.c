@@ -10,10 +10,11 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* in multiples of the expected distance: triangles whose longest edge is at most this long are probed only at the centre */
+/* Longest edge of a triangle, in multiples of the expected distance, up to which the triangle is probed (measured) only at its
+   centre. */
 #define SMALL 4.0
-/* in multiples of the expected distance: triangles with a longer edge than this are probed at twelve inner points, and those
- * between SMALL and LARGE at the midpoints of their edges */
+/* Longest edge of a triangle, in multiples of the expected distance, above which the triangle is probed at twelve inner points.
+   Triangles between SMALL and LARGE are probed at the midpoints of their edges. */
 #define LARGE 16.0
 
 #define GRAIN 1024 /* number of points that a thread measures per unit of work */
@@ -181,7 +182,7 @@ struct near { /* cache of one thread: the triangles that were nearest to recent 
     /* indices of the triangles of part `part` of surface `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty
      * entry */
     uint32_t part, tris[RECENT];
-    double known_m; /* metres; largest distance of the part (connected component) found so far by this thread */
+    double known_m; /* largest distance of the part (connected component) found so far by this thread, metres */
 };
 
 struct deviation_probe {   /* state of one distance measurement ("probe"): a point, and the surface from which its distance is measured */

@@ -22,8 +22,9 @@
 #define FAR_WORTH 0.9
 #define STEP 1.4       /* minimum factor by which the error grows from one level to the next coarser one */
 #define STEP_SMALL 1.7 /* minimum factor by which the error grows after a level whose error is above LEVELS_SMALL */
-/* factor on a level's error. Events (changes of parts) with errors up to this product are included in a near level too, so that
- * the next level differs more. After a rejected level, the next attempt has at least this error. */
+/* Factor on a level's error. Events (a part becomes coarser or is omitted) with an error up to the product are included in a
+   near level too, so that the next level differs more. After a rejected level, the next attempt has at least the product as its
+   error. */
 #define WAIT 1.1
 /* maximum error caused by omitting a part, in multiples of the level's error; if the omission causes more, the part is restored */
 #define MISSED 1.05f
@@ -51,7 +52,7 @@ struct levels_making {
 /* --- events, sorted by error: a part changes to a coarser version or is omitted --------------------------------------- */
 
 struct event {
-    float error_m; /* metres; a level of detail with at least this error may contain the part's coarser version, or omit the part */
+    float error_m; /* smallest error, in metres, of a level of detail that may contain the part's coarser version or omit the part */
     uint32_t part, version;
 };
 

@@ -25,7 +25,7 @@ struct level {
     struct asset_primitive *primitives;
     uint32_t index_count, primitive_count;
     uint32_t whole_count; /* number of the level's indices before subdivision */
-    /* metres; largest distance of this level's surface from the finest level's, in either direction; 0 for the finest */
+    /* largest distance, in metres, of this level's surface from the finest level's, in either direction; 0 for the finest */
     float error_m;
     struct level_left left[LEVEL_LIMITS];
 };

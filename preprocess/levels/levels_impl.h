@@ -67,7 +67,7 @@ void versions_finish(struct versions *versions);
 /* --- omitted parts (levels_omissions.c) --- */
 
 struct omission {
-    float from_m; /* metres; minimum error of a level of detail that omits the part; INFINITY: no level omits it */
+    float from_m; /* smallest error, in metres, of a level of detail that omits the part; INFINITY: no level omits it */
     /* true: no larger part is near: the part belongs to a group of small neighbouring parts, whose size is from_m */
     bool alone;
 };

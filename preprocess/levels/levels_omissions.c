@@ -10,7 +10,7 @@
 #include "surface/mesh/bvh.h"
 
 #define MUCH_LARGER 4.0f /* minimum size ratio of a larger part to a small part that lies on it */
-#define MAX_PX 8.0f      /* pixels; a part that lies on another part is omitted if it would be drawn at most this large */
+#define MAX_PX 8.0f      /* largest size in pixels at which a part that lies on another part is left out */
 /* factor from the distance between the part and the larger parts to the expected error of omitting it; above 1, because the
  * larger parts are simplified too */
 #define OVER 1.1f

@@ -14,9 +14,11 @@
 /* stop simplifying the asset as a whole at a version (simplification step) that keeps more than this share of the previous
  * version's triangles */
 #define STUCK 0.9
-/* above this triangle count the asset is simplified as a whole, which is fast; below, part by part (levels_bounded.c) */
+/* number of triangles above which the asset is simplified as a whole, which is fast; with fewer, it is simplified part by part
+   (levels_bounded.c) */
 #define HALVE_ABOVE 40000
-/* above this triangle count the asset is never simplified part by part, even if simplifying it as a whole makes no more progress */
+/* number of triangles above which the asset is never simplified part by part, even if simplifying it as a whole makes no more
+   progress */
 #define MAX_COLLAPSED 100000
 /* allowed error of the first version (simplification step) made by edge collapses, relative to the asset's size */
 #define LEAST 0.00025

@@ -9,7 +9,7 @@
 #include "base/math/simd.h"
 
 #define L INTERP_LANES
-#define MIN_M 1e-5f    /* metres; a sensor nearer than this to a point gets all the weight there */
+#define MIN_M 1e-5f    /* distance in metres below which a sensor gets all the weight at a point */
 #define MIN_EXP -87.0f /* arguments of exp() are raised to at least this; below, a single-precision result would be denormal */
 /* minimum nearness (1 at a sensor, 0 at the radius) used for the weight's slopes: with a decay below 1, the slope would be
  * infinite at the radius */

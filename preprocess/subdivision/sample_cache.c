@@ -14,7 +14,7 @@
 #define TRI_BITS 24
 #define NOWHERE ((1u << TRI_BITS) - 1)
 #define FULL 0.85
-#define WORTH 0.5 /* the cache file is rewritten if it answers less than this share of a run's lookups */
+#define WORTH 0.5 /* share of a run's lookups; if the cache file answers fewer, it is rewritten */
 
 void sample_cache_open(struct sample_cache *sample_cache, struct log *log, const char *folder, uint64_t key)
 {

@@ -23,7 +23,8 @@
  * changed sensors cannot move its error across a limit that decides whether the edge is split; otherwise the edge is measured
  * again. */
 #define MAX_SETTLED 0.5f
-#define LITTLE 0.4f /* share of SUBDIV_AIM; an edge with a smaller error at its midpoint was not measured at other points */
+/* interpolation error at an edge's midpoint, as a share of SUBDIV_AIM, below which the edge was not measured at other points */
+#define LITTLE 0.4f
 
 struct subdiv_cache_entry {
     uint64_t key;
@@ -49,7 +50,7 @@ struct subdiv_head {
 /* two numbers of 16 bits follow: the doubt of the finding (weight of the sensors that changed since, subdiv_cache.h), and the amount by
  * which its error may be wrong */
 #define DOUBT_FOLLOWS 4
-#define SHARE_IS_HALF 8 /* the best split fraction of the edge is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
+#define SHARE_IS_HALF 8 /* flag: the best split fraction of the edge is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */

@@ -11,12 +11,13 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 
-/* share of SUBDIV_AIM; if the interpolation error at an edge's midpoint is smaller, the whole edge is assumed to be good */
+/* interpolation error at an edge's midpoint, as a share of SUBDIV_AIM, below which the whole edge is assumed to be good */
 #define PROBABLE 0.4
-/* share of the distance to the nearest sensor; longer edges are measured at all their sample points, without the PROBABLE test */
+/* edge length, as a share of the distance to the nearest sensor, above which an edge is measured at all its sample points,
+   without the PROBABLE test */
 #define CLOSE 0.5
-/* share of the distance to the nearest sensor; longer edges are split in the middle, so that the split points of neighbouring
- * edges line up */
+/* edge length, as a share of the distance to the nearest sensor, above which an edge is split in the middle, so that the split
+   points of neighbouring edges line up */
 #define WIDE 0.3
 #define GRAIN 256  /* minimum number of edges, triangles or positions handed to a thread at once: half a millisecond of work */
 #define POINTS 16  /* maximum number of points at which the error of an edge is measured */

@@ -8,10 +8,12 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 #include "surface/mesh/bvh.h"
 
-#define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor this close to a vertex or an edge has its vertex there */
+/* distance of a sensor from a vertex or an edge, relative to the asset's size, up to which that vertex, or a new vertex on that
+   edge, becomes the sensor's */
+#define ON_OF_SIZE 1e-5
 /* maximum number of edges split at one sensor because another level of detail has split them elsewhere */
 #define MAX_CUTS 30
-/* up to this number of sensors, every triangle is compared with every sensor; for more, a bounding volume hierarchy is built */
+/* number of sensors up to which every triangle is compared with every sensor; for more, a bounding volume hierarchy is built */
 #define FEW 32
 
 struct sensor_hit { /* point of a level of detail nearest to a sensor */

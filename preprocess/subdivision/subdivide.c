@@ -16,23 +16,26 @@
 /* A sample is the list of the sensors' interpolation weights at one point (linear_error.h). Samples of up to this many numbers
  * are kept in memory for all vertex positions; longer samples are computed each time they are needed. */
 #define MAX_STORED 512
-#define LARGE 0.25 /* share of the distance to the nearest sensor; triangles with a longer edge count as large */
-/* sum of a triangle's edge errors, in multiples of the error limit; below it, only one in 500 large triangles has an error
- * inside above the limit */
+/* length of a triangle's longest edge, as a share of the distance to the nearest sensor, above which the triangle counts as
+   large */
+#define LARGE 0.25
+/* Sum of a triangle's edge errors, in multiples of the error limit, below which a large triangle is not measured inside: only
+   one in 500 such triangles has an error inside above the limit. The last pass over a level measures it anyway. */
 #define LIKELY 1.0
-/* in multiples of the minimum edge length shortest_m; triangles whose longest edge is at most this long are not measured inside */
+/* length of a triangle's longest edge, in multiples of the minimum edge length shortest_m, up to which the triangle is not
+   measured inside */
 #define MIN_INSIDE 2.0
 #define FLAT 1e-3 /* a triangle is flat if the sum of its two shorter edges exceeds its longest edge by at most this share */
-/* share of the longest edge; a flat triangle's longest edge is split next to the opposite corner only if this corner is at
- * least this far from its ends */
+/* smallest distance of a flat triangle's middle corner from the ends of the longest edge, as a share of that edge, at which the
+   edge is split next to the corner */
 #define ASIDE 0.1
-/* height relative to the asset's size, a few rounding errors of a float; triangles with less height are degenerate */
+/* height of a triangle, relative to the asset's size, below which it counts as degenerate: a few rounding errors of a float */
 #define LINE_OF_SIZE 2.5e-7
 /* number of positions for which address space is reserved, in multiples of the model's */
 #define MORE_PLACES 12.0
 #define MAX_REPORTED_EDGES 2000 /* maximum number of a coarser level's short edges that are measured for the report */
-/* share of a level's triangles; subdividing the level stops when a round of splits may add fewer triangles than this. A round
- * may add half of the triangles that remain within the level's limit */
+/* Number of triangles, as a share of the level's, that a round of splits must be able to add; otherwise subdividing the level
+   stops. A round may add half of the triangles that remain within the level's limit. */
 #define FULL 2e-4
 
 /* limits of the number of triangles added to the finest level, as a multiple of its triangles and as a count; the larger limit applies */
@@ -43,7 +46,7 @@
  * reached its limit */
 #define WORTH_MANY 0.5
 #define MANY_SENSORS 128
-/* a level's size is first estimated from a sample only if it has at least this many triangles; smaller samples are unreliable */
+/* smallest number of triangles of a level whose size is first estimated from a sample; samples of smaller levels are unreliable */
 #define SAMPLE_WORTH 9000
 #define SAMPLE_ROUNDS 4 /* maximum number of rounds of splits on a sample; more would not change the estimate */
 /* minimum length of the two parts of a split edge in the finest level of detail, in multiples of the model's tolerance; short
@@ -52,11 +55,12 @@
 /* minimum length of the two parts of a split edge in a coarser level of detail, in multiples of its error_m; at most a pixel
  * where the level is drawn */
 #define SHORTEST 1.0
-/* an edge up to this length is not split at a jump of the distance; in multiples of the tolerance, in coarser levels of error_m */
+/* largest length of an edge that is not split at a jump of the distance; in multiples of the tolerance, in coarser levels of
+   error_m */
 #define JUMP_WIDTH 8
-#define ON_SURFACE 0.25 /* in multiples of the tolerance; points up to this distance from the surface count as on it */
-/* in multiples of the level's error_m; a coarser level of detail may show at any point the value of another point up to this
-   far away */
+#define ON_SURFACE 0.25 /* distance from the surface, in multiples of the tolerance, up to which a point counts as on it */
+/* distance, in multiples of the level's error_m, up to which a coarser level of detail may show the value of another point in
+   place of a point's own */
 #define SLACK 0.7
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */

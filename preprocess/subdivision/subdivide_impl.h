@@ -33,7 +33,7 @@ struct subdiv {
     bool finest;
     double on_surface_m; /* points farther than this from the surface count as hidden inside another part */
     double error_m, shortest_m, slack_m;
-    double jump_m;    /* metres; shorter edges are not split where the distance along the surface jumps */
+    double jump_m;    /* length in metres below which an edge is not split where the distance along the surface jumps */
     bool finest_full; /* true: the finest level of detail has as many triangles as its limit allows */
     /* true: the current level of detail has almost as many triangles as its limit allows, or would certainly exceed it */
     bool full;

@@ -3,7 +3,7 @@
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
-const AGAIN_MS = 10000; // milliseconds; two failures within this time mean that the decoder is broken
+const AGAIN_MS = 10000; // largest time in milliseconds between two failures after which the decoder counts as broken
 
 // Decodes frames to pictures that a canvas can draw. onCodecs(list) is called with the codecs to request from now on, onLost() when a key
 // frame is needed.

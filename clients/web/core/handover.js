@@ -3,7 +3,8 @@
 import { fieldInstant, fieldText } from './instant.js';
 
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
-const SAME_ACT_US = 1e6; // microseconds; equal actions of an operator on several alarms of a tag within this time count as one action
+// largest time in microseconds between an operator's equal actions on several alarms of a tag that the page lists as one action
+const SAME_ACT_US = 1e6;
 
 // Puts the alarms of /api/v1/alarms into a model, which counts and sorts them as the page does: one alarm for each tag.
 export function hearAlarms(model, { mode, alarms }) {

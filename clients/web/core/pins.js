@@ -6,7 +6,9 @@ import { meets } from './labels.js';
 export const STEM = 9;
 const GAP = 2; // units: space between two pins
 const ROWS = 40; // number of heights to try for a pin that must cover alarm rings or markers
-const FAR = 150; // in CSS pixels (larger on a wall): rather than moving farther than this, a pin covers a marker without an alarm
+// largest distance in CSS pixels (larger on a wall) that a pin moves to leave a marker without an alarm uncovered; rather than
+// move farther, it covers the marker
+const FAR = 150;
 
 const enlarge = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
 

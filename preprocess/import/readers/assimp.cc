@@ -32,7 +32,8 @@ namespace
 {
 
 constexpr size_t MOST_NAMED = 20;
-/* metres; a model without a unit that would be larger than this in metres is assumed to be in millimetres */
+/* Size in metres of the largest plausible model. If a model without a unit would be larger than this in metres, its unit is
+   assumed to be the millimetre. */
 constexpr double LONGEST_IN_METRES = 300;
 
 struct format {

@@ -20,8 +20,10 @@ namespace
 
 constexpr double STEP_RAD = 0.05;    /* largest change of a curve's direction between two interpolated points, in radians */
 constexpr double MOST_TURN_RAD = 50; /* maximum change of direction along one alignment segment, in radians */
-constexpr double LEAST_MM = 1e-3;    /* millimetres; a segment shorter than this only marks the end of its curve */
-constexpr double JOINT_MM = 1;       /* millimetres; the grades of an alignment must begin this close to the start of its plan curve */
+constexpr double LEAST_MM = 1e-3;    /* length in millimetres below which a segment only marks the end of its curve */
+/* largest distance in millimetres between the start of an alignment's plan curve and the point where its grades (pieces of the
+   height profile) begin */
+constexpr double JOINT_MM = 1;
 
 /* A segment of an alignment's plan curve. turn(d): direction at d millimetres from its start minus the direction at the start,
  * in radians. */

@@ -31,8 +31,9 @@ namespace ifc
 namespace
 {
 
-constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, because a profile cannot be swept along them */
-/* millimetres; the ends of consecutive pieces of a curve are joined if the gap between them is smaller */
+/* length in millimetres below which a piece of a curve is dropped, because a profile cannot be swept along it */
+constexpr double SHORTEST_MM = 1e-4;
+/* largest gap in millimetres between two consecutive pieces of a curve whose ends are joined */
 constexpr double JOINT_MM = 1;
 
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth);

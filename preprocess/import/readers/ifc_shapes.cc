@@ -75,8 +75,8 @@ ifc_model model_of(const file &in, double chord_mm)
 
 struct ifc_part {
     int mesh;
-    /* millimetres; the mesh's vertices are relative to this point near the item, so that single precision is exact enough even
-     * far from the element's origin */
+    /* origin of the mesh's vertices, in millimetres: a point near the item, so that single precision is exact enough even far
+       from the element's origin */
     double origin[3];
 };
 

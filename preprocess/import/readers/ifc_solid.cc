@@ -32,7 +32,8 @@ namespace ifc
 namespace
 {
 
-/* millimetres; a half space with a boundary is built as a prism that extends this far to either side of its plane */
+/* distance in millimetres that the prism that replaces a half space with a boundary extends to either side of the half space's
+   plane */
 constexpr double FAR_MM = 1e6;
 
 /* Calls build(face) for each face of a profile. Returns a compound of the results, or the result itself if there is only one face. */

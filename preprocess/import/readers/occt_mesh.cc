@@ -19,7 +19,8 @@
 namespace
 {
 
-constexpr double LEAST_MM2 = 1e-6; /* square millimetres; the loss of a smaller face is not counted, because it is too small to be seen */
+/* area in square millimetres below which the loss of a face is not counted, because the face is too small to be seen */
+constexpr double LEAST_MM2 = 1e-6;
 
 Handle(Poly_Triangulation) triangles_of(const TopoDS_Face &face, TopLoc_Location *place)
 {

@@ -15,7 +15,7 @@
 #include "preprocess/import/revision/asset_pattern.h"
 #include "preprocess/import/revision/model_states.h"
 
-/* metres; positions in the old and the new model that differ by less count as equal, because exports round to a millimetre */
+/* distance in metres below which positions in the old and the new model count as equal, because exports round to a millimetre */
 static const double tolerance_m = 0.002;
 
 struct planning {

@@ -11,7 +11,7 @@ import { bandsOf } from '../toolbar/toolbar.js';
 // factor on the camera's distance from an asset at the end of a flight to it, so that the picture has a margin around the asset
 const ARRIVAL_MARGIN = 1.7;
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
-const HELD_US = 3.5e6;      // microseconds; an instant less than this long ago counts as the present
+const HELD_US = 3.5e6;      // age in microseconds up to which a shown instant counts as the present
 
 // Returns the tags of the shown group from which the page can show distances along the surface: tags with a position, on an
 // asset whose distances plantcast-prep has computed. For a sensor that is alone on its asset it has not computed them if the

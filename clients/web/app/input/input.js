@@ -4,7 +4,7 @@
 const ON_PICTURE = ['pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'pointerleave', 'wheel'];
 const ON_PAGE = ['keydown', 'keyup'];
 const NEAR = ['pointerover', 'focusin', 'keydown'];
-const STALE_MS = 2000; // input queued for longer than this is dropped
+const STALE_MS = 2000; // longest time in milliseconds that input stays queued; older input is dropped
 
 // Returns true if an event is meant for the picture, not for a control over it.
 export const isOnPicture = (event) => !event.target.closest('button, .card, .banner, .legend');
