@@ -97,8 +97,8 @@ struct asset_sensor {
     float surface_m[3];       /* point of the surface nearest to position_m, relative to header.origin_m */
     float surface_distance_m; /* distance between position_m and surface_m */
     uint32_t nearest_vertex;
-    /* hash (XXH3-64) of the name of the model node, or of the assumed position, from which position_m was taken. The daemon
-       compares it with the plant, to detect that the file is outdated; 0: the position was configured as X, Y, Z */
+    /* Hash (XXH3-64) of the text from which position_m was taken: the name of the model node, or the assumed position. The
+       daemon compares it with the plant, to detect that the file is outdated; 0: the position was configured as X, Y, Z. */
     uint64_t node_hash;
 };
 

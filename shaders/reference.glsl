@@ -102,7 +102,8 @@ float faded(float distance_m, float near_m)
     return left * left;
 }
 
-// Returns the field at the fragment. x: value; y, z, w: 1 if it has no data, is uncertain, has no alarm limits; else 0.
+// Returns the value interpolated between sensors at the fragment, and flags. x: value; y, z, w: 1 if it has no data, is
+// uncertain, has no alarm limits; else 0.
 vec4 reference_field()
 {
     Spot spot = spot_here();

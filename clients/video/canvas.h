@@ -25,7 +25,8 @@ struct canvas {
     bool time_code;
 };
 
-/* Returns the height in pixels of the plant's picture in a video of height_px; the strip below takes the rest. */
+/* Returns the height in pixels of the plant's picture in a video of height_px; the strip with title and clock below it takes
+   the rest. */
 int canvas_picture_px(int height_px);
 /* Draws the frame for the instant utc_us into the pixels (BGRX). If canvas->time_code is set, the bottom row of the frame is a
    machine-readable time code of CANVAS_CODE_BITS blocks, white for 1. From left to right they are: 1, 0, the tenths of seconds since 1970

@@ -13,7 +13,7 @@ struct video_options {
     char *url;             /* URL of the daemon, ends with a slash */
     char *view, *query;    /* view: id of a saved view; query: parameters as /snapshot.png takes them. If both are NULL, the video shows
                               the whole plant */
-    char *language;        /* language of text cards, strip and legend: en, ko or de */
+    char *language;        /* language of text cards, legend and the strip below the picture (title and clock): en, ko or de */
     enum language words;   /* the same language */
     char *token, *ca_path, *token_path; /* NULL: not given */
     char *listen;                       /* address on which all outputs listen */

@@ -39,7 +39,7 @@ struct video_source {
     char *view, *view_query, *view_title;
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
-    bool valued; /* true: the picture shows values, so the strip shows their age */
+    bool valued; /* true: the picture shows values, so the strip below it shows their age */
     char headline[120], detail[240], said[240];
     gint64 since_us;    /* UTC time since which the text card is shown; 0: a picture is shown */
     gint64 seen_utc_us; /* instant that the newest picture shows, UTC */

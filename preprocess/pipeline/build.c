@@ -28,7 +28,8 @@ static void hash_text(XXH3_state_t *state, const char *text)
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-/* Returns the number of sensors on the asset in the same group as sensor `sensor`, not counting those with an assumed position. */
+/* Returns the number of sensors on the asset in the same group as sensor `sensor`. Does not count those with an assumed
+   position (only their equipment is known). */
 static size_t count_of_group(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     size_t found = 0;

@@ -19,15 +19,15 @@ struct sensor_distances {
  * call sensor_distances_finish(). */
 bool sensor_distances_find(struct sensor_distances *measured, struct log *log, struct workers *workers, const struct build_input *input,
                            const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
-/* Returns whether any sensor has a known position. A sensor with an assumed position colours the whole asset evenly: if all
- * positions are assumed, distances have no effect and no surface is needed. */
+/* Returns whether any sensor has a known position. A sensor with an assumed position (only its equipment is known) colours the
+   whole asset evenly. If all positions are assumed, distances have no effect and no surface is needed. */
 bool sensor_distances_matter(const struct plant *plant, const struct plant_sensor *sensors, size_t count);
 /* Replaces sensor_distances_find() if sensor_distances_matter() is false: projects each sensor onto the nearest triangle of the
  * geometry, even if other parts hide it. */
 void sensor_distances_assume(struct sensor_distances *measured, struct workers *workers, const struct build_input *input,
                              const struct geometry *geometry);
-/* Creates distances for sensors with assumed positions: 0 at every vertex, so that each sensor colours the whole asset evenly.
- * The caller frees them (distance_rows_finish()). */
+/* Creates distances for sensors with assumed positions (only their equipment is known): 0 at every vertex, so that each sensor
+   colours the whole asset evenly. The caller frees them (distance_rows_finish()). */
 void sensor_distances_even(struct distance_rows *distances, size_t sensor_count, uint32_t vertex_count);
 /* Frees surface, distances and sensors. */
 void sensor_distances_finish(struct sensor_distances *measured);

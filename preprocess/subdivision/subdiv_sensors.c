@@ -11,7 +11,8 @@
 /* distance of a sensor from a vertex or an edge, relative to the asset's size, up to which that vertex, or a new vertex on that
    edge, becomes the sensor's */
 #define ON_OF_SIZE 1e-5
-/* maximum number of edges split at one sensor because another level of detail has split them elsewhere */
+/* maximum number of edges split to find the vertex at one sensor; another level of detail may have split these edges at other
+   points */
 #define MAX_CUTS 30
 /* number of sensors up to which every triangle is compared with every sensor; for more, a bounding volume hierarchy is built */
 #define FEW 32

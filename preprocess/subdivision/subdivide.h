@@ -27,7 +27,8 @@ struct subdiv_input {
     struct linear_error *linear; /* error measure; subdivide_levels() calls linear_error_set_radius() */
     const struct surface *surface;
     const struct surface_field *field; /* distances from the sensors */
-    /* subdivide_levels() sets their nearest_vertex to the finest level's vertex inserted at the sensor */
+    /* the asset's sensors; subdivide_levels() sets the member nearest_vertex of each to the vertex that it inserts at the
+       sensor in the finest level */
     struct asset_sensor *sensors;
     struct workers *workers;           /* worker threads; may be NULL */
     struct subdiv_cache *cache;        /* cache of measured errors from earlier runs; zeroed or NULL: nothing is cached */

@@ -60,8 +60,8 @@ export class Model {
             this.proofs.set(index, { state, timeUs, value, expected, tolerance, who, remark });
     }
 
-    // Returns the loop check state of a tag that has not passed. Returns null if the tag has passed, is a derived tag, or if no tag was
-    // ever checked.
+    // Returns the state of a tag that has not passed its loop check, in which a technician forces the transmitter to see
+    // whether the right reading changes. Returns null if the tag has passed, is a derived tag, or if no tag was ever checked.
     unproven(tag) {
         const state = this.proofs.get(tag.index)?.state ?? 'none';
         return this.provingBegun && tag.source && state !== 'pass' ? state : null;

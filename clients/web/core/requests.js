@@ -32,8 +32,8 @@ export function actOnAlarm(session, action, alarms, more = {}) {
     session.post({ type: 'alarm', seq: ++session.alarmSeq, action, alarms, ...more });
 }
 
-// Sends a message of the engineering panel: place, gaps, save_tags or prove; the server answers with an event of the same type. Returns the
-// message's sequence number; 0 if not connected.
+// Sends a message of the engineering panel: place (draft positions), gaps, save_tags or prove (result of a loop check). The
+// server answers with an event of the same type. Returns the message's sequence number; 0 if not connected.
 export function tellAsEngineer(session, type, fields = {}) {
     if (!session.welcomed)
         return 0;

@@ -13,7 +13,7 @@ export const PARAMS = [
     'show', 'split',
 ];
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // parameters that the server reports
-// Parameters that only engineers may send. The build generates the server's list from this line.
+// Parameters that only engineers may send. The build copies this list into the server, from the following line.
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors'];
 export const withoutEngineers = (params) => Object.fromEntries(Object.entries(params).filter(([name]) => !ENGINEERS.includes(name)));
 // parameters shared by both halves of a split view

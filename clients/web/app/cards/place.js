@@ -11,7 +11,7 @@ import { closeButton, fill } from '../common/widgets.js';
 const SAME_M = 0.05;
 
 export class Place {
-    // showAsset(how, asset) hides an asset, makes it transparent or isolates it.
+    // showAsset(how, asset) hides an asset, makes it transparent or isolates it (hides all others).
     constructor({ session, viewport, overlay, showAsset }) {
         Object.assign(this, { session, viewport, overlay, showAsset });
         this.element = byId('place');

@@ -47,8 +47,8 @@ export class TagTable {
             make('div', { class: 'line' }, this.count, this.back, this.keep));
     }
 
-    // Returns true if the sensor of this name has a position of its own, not one assumed on its equipment; null if the tag is
-    // not a sensor on equipment.
+    // Returns true if the sensor of this name has a position of its own, false if only its equipment is known, so that its
+    // position is assumed; null if the tag is not a sensor on equipment.
     isPlaced(name) {
         const tag = this.page.session.model?.tag(name);
         return tag?.asset && tag.group ? Boolean(tag.position) && tag.place !== 'equipment' : null;
