@@ -21,7 +21,9 @@ enum {
     /* seconds that the current asset may still take after a signal; service managers and container runtimes kill a process
      * after 10 s or more */
     GRACE_S = 5,
-    ASSET_LIMIT_S = 3600, /* seconds after which an asset, or reading the models, counts as hung */
+    /* seconds after which reading the models, or preparing one asset, counts as hung, so that no more time is requested from
+       the service manager */
+    ASSET_LIMIT_S = 3600,
 };
 
 static const char usage[] =

@@ -12,7 +12,7 @@ struct brush_box {
 enum brush_align { BRUSH_LEFT, BRUSH_CENTRE, BRUSH_RIGHT };
 /* Draws one line of text at the top of a box; a text that is wider than the box ends with an ellipsis. */
 void brush_text(cairo_t *cairo, const struct brush_box *box, double size_px, bool bold, enum brush_align align, const char *text);
-/* Returns the width of a text in one line. */
+/* Returns the width in pixels of a text in one line. */
 double brush_width(cairo_t *cairo, double size_px, bool bold, const char *text);
 
 #endif

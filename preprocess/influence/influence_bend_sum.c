@@ -74,7 +74,8 @@ static double worst_of(double plus, double minus, double around)
 enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
 /* a triangle counts as wholly hidden if more than this share of its area is hidden; below 1 because of rounding */
 #define ALL_OF_IT 0.999
-/* largest share of sample points per coarse triangle with unknown error; coarse triangles do not lie on the surface */
+/* A triangle of a coarse level counts as unknown if the error is unknown at more than this share of its sample points. The
+   share is large because such triangles do not lie on the surface. */
 #define COARSE_UNKNOWN 0.5
 
 static enum triangle_state state_of(const struct influence_bend *bend, size_t tri)

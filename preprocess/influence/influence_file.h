@@ -40,8 +40,8 @@ struct influence_input {
     struct bend_report *bend;   /* receives the measured interpolation errors if a group requests harmonic, fin or gp */
 };
 
-/* Returns whether any group with at least one of these sensors requests an interpolation that the influence file contains (any
- * but distances). */
+/* Returns whether an influence file is needed: any of these sensors has a known position and belongs to a group with an
+   interpolation that plantcast-prep computes and stores there. */
 bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 /* Computes the interpolations that the groups request and writes the file. Returns false with the reason in why. */
 bool influence_file_make(struct log *log, struct workers *workers, const struct influence_input *input, char why[200]);

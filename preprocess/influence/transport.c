@@ -115,8 +115,8 @@ static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
     return count;
 }
 
-/* Returns the approximate length of the longest path within any connected component: finds the point farthest from an arbitrary
- * one, then the longest path from there. */
+/* Returns the approximate length, in metres, of the longest path within any connected component: finds the point farthest from
+   an arbitrary one, then the longest path from there. */
 static double longest_way_m(const struct intrinsic *in, size_t point_count)
 {
     struct ways ways;

@@ -178,7 +178,8 @@ bool build_report_from_json(const json_t *numbers, struct build_report *report)
     for (size_t i = 0; i < report->level_count; i++)
         if (!all_from_json(level_numbers, json_array_get(levels, i), &report->levels[i]))
             return false;
-    const json_t *cloud = json_object_get(numbers, "cloud"); /* "cloud" is missing if no group requests distances by heat */
+    /* the member "cloud" may be missing: a report has it only if a group requests distances by heat */
+    const json_t *cloud = json_object_get(numbers, "cloud");
     if (cloud && !all_from_json(cloud_numbers, cloud, report))
         return false;
     const json_t *bend = json_object_get(numbers, "between_corners");

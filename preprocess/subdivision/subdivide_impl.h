@@ -31,7 +31,7 @@ struct subdiv {
     /* State of the current level: */
     uint32_t level; /* index of the level of detail being subdivided */
     bool finest;
-    double on_surface_m; /* points farther than this from the surface count as hidden inside another part */
+    double on_surface_m; /* distance in metres from the surface beyond which a point counts as hidden inside another part */
     double error_m, shortest_m, slack_m;
     double jump_m;    /* length in metres below which an edge is not split where the distance along the surface jumps */
     bool finest_full; /* true: the finest level of detail has as many triangles as its limit allows */

@@ -36,8 +36,8 @@ export class Tree {
         this.folded.delete(asset.area ?? '');
     }
 
-    // Returns the rows. find(asset) is the search of search.js: it returns { asset, tags, byTag }, or null for an asset to leave out. find
-    // null: no search is active.
+    // Returns the rows of the equipment list. find(asset) is the search of search.js: it returns { asset, tags, byTag }, or
+    // null for an asset to leave out. find null: no search is active.
     rows(find = null) {
         const rows = [];
         for (const { name, assets } of this.areas) {

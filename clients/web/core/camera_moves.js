@@ -54,7 +54,7 @@ export function fit(camera, box, aspect, margin = 1.08) {
     return validOr({ ...camera, eye: along(centre, forward, -Math.min(far, most)), target: centre }, camera);
 }
 
-// Returns the distance from the eye to the target.
+// Returns the distance in metres from the camera's eye to its target.
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
 
 // Returns how many degrees the eye is above the target.

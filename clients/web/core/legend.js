@@ -9,7 +9,8 @@ export function niceStep(range, most) {
 
 const MOST_MULTIPLES = 1000; // no scale has more
 
-// Returns the multiples of a step from min to max; an empty list if there are too many.
+// Returns the multiples of a step from min to max; an empty list if there would be more than MOST_MULTIPLES, or the step is not
+// positive.
 export function multiples(min, max, step) {
     const slack = (max - min) * 1e-9, list = [];
     if (!(step > 0 && (max - min) / step <= MOST_MULTIPLES && Math.abs(min / step) < Number.MAX_SAFE_INTEGER))

@@ -372,7 +372,7 @@ void root_matrix(bool y_up, double out[16])
     memcpy(out, y_up ? as_is : z_up, sizeof(z_up));
 }
 
-/* Returns the diagonal of the bounding box around all shapes; infinity if there is no box. */
+/* Returns the diagonal of the bounding box around all shapes in millimetres; infinity if there is no box. */
 double longest_mm(const occt_reader &r, const TDF_LabelSequence &shapes)
 {
     Bnd_Box box;

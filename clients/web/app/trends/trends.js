@@ -213,7 +213,8 @@ export class Trends {
         this.open();
     }
 
-    // Returns true if the tag can be added to the open chart.
+    // Returns true if the tag can be added to the open chart: the chart has fewer tags than the maximum and does not show this
+    // tag yet.
     takes(tag) {
         return this.isOpen && this.tags.length < MOST && !this.tags.includes(tag);
     }
