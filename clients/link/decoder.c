@@ -4,7 +4,6 @@
 
 #include <png.h>
 #include <stdio.h>
-#include <string.h>
 #include <turbojpeg.h>
 #ifdef PLANTCAST_H264
 #include <libyuv.h>

@@ -4,7 +4,6 @@
 
 #include <gst/rtsp-server/rtsp-server.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { SESSION_S = 60, LOOK_S = 5 };
 static const char PATH[] = "/plantcast", READER[] = "reader";

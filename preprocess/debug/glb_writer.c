@@ -2,11 +2,8 @@
 /* Builds a GLB file: the JSON with jansson, the buffer as bytes. */
 #include "preprocess/debug/glb_writer.h"
 
-#include <errno.h>
 #include <jansson.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/files/atomic_file.h"
 #include "base/image/srgb.h"

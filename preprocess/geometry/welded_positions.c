@@ -3,7 +3,6 @@
 #include "preprocess/geometry/welded_positions.h"
 
 #include <meshoptimizer.h>
-#include <string.h>
 
 #include "base/mem.h"
 

@@ -4,7 +4,6 @@
 #include "preprocess/import/conversion.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,6 @@
 /* Chooses between the text encoding given by the user, the one given in the file, and the detected one. */
 #include "preprocess/import/encoding.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"

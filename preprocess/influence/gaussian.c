@@ -6,7 +6,6 @@
 #include <cblas.h>
 #include <math.h>
 #include <stdatomic.h>
-#include <string.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"

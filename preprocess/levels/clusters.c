@@ -2,7 +2,6 @@
 /* Builds clusters (groups of adjacent triangles) from meshoptimizer's meshlets, which grow over adjacent triangles. */
 #include "preprocess/levels/clusters.h"
 
-#include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
 

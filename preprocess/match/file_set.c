@@ -13,8 +13,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/mem.h"
-
 /* seconds after which a temporary file is removed as a leftover; its writer may be a process of another container or machine,
  * which cannot be seen from here, but would have finished by then */
 enum { LEFT_S = 60 };

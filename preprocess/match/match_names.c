@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "preprocess/match/matcher_impl.h"
 

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "preprocess/match/matcher_impl.h"
 
 bool method_attributes(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)

@@ -4,7 +4,6 @@
 #include "preprocess/match/name_tokens.h"
 
 #include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decodes KHR_draco_mesh_compression: each compressed primitive gets its own plain accessors. */
-#include <stdio.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "preprocess/model/draco_shim.h"

@@ -3,7 +3,6 @@
 #include "preprocess/model/model_files.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"

@@ -3,8 +3,6 @@
 #include "preprocess/pipeline/build.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #define XXH_STATIC_LINKING_ONLY /* makes xxhash.h declare the hash state as a complete type, so that it can be a local variable */
 #include <xxhash.h>

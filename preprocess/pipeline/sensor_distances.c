@@ -3,7 +3,6 @@
 #include "preprocess/pipeline/sensor_distances.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"

@@ -2,7 +2,6 @@
 /* Flips edges: replaces the common edge of two triangles by the other diagonal. Where that reduces the interpolation error as
  * much as splitting the edge would, it saves a triangle. */
 #include <math.h>
-#include <string.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"

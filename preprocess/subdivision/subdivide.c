@@ -4,7 +4,6 @@
 #include "preprocess/subdivision/subdivide.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/math/vec.h"

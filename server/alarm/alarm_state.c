@@ -2,8 +2,6 @@
 /* State machine of one alarm: how events change its state. */
 #include "alarm/alarm_state.h"
 
-#include <string.h>
-
 static const char *const event_names[ALARM_EVENTS] = { "raise",    "clear",      "acknowledge",    "reset",      "shelve", "unshelve",
                                                        "suppress", "unsuppress", "out_of_service", "in_service", "carry",  "call" };
 

@@ -2,7 +2,6 @@
 /* The thread that writes the alarm journal, and functions that read the journal. */
 #include "alarm/journal.h"
 
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>

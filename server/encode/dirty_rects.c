@@ -2,7 +2,6 @@
 /* Compares two frames tile by tile, and covers the tiles that differ with rectangles. */
 #include "encode/dirty_rects.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The cache of computed fields (states) and of sensors' weights, with its eviction. */
-#include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"
 

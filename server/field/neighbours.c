@@ -3,7 +3,6 @@
 #include "field/neighbours.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "field/influence_fill.h"

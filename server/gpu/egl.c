@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Windowless GL contexts from EGL: on a chosen device, or on Mesa's surfaceless platform. */
-#include <stdlib.h>
 #include <string.h>
 
 #include <glad/egl.h>

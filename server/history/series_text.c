@@ -2,9 +2,6 @@
 /* Writes the points and buckets of history series as text directly, not through a JSON tree, because they are large. */
 #include "history/series_text.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "history/month.h"
 #include "base/text/timestamp.h"
 

@@ -2,8 +2,6 @@
 /* Computes cameras that show an asset, a tag or the whole plant, for the messages `camera` and `fit`. */
 #include "message/fit_message.h"
 
-#include <math.h>
-
 #include "message/json_fields.h"
 #include "message/json_values.h"
 #include "render/overlay/overlay.h"

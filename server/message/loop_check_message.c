@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "base/mem.h"
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
 #include "message/json_values.h"

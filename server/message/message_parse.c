@@ -2,8 +2,6 @@
 /* Parses a client's JSON message into a struct message and checks its values. */
 #include "message/message_parse.h"
 
-#include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 #include "message/view_query_write.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/text/text.h"
 #include "message/names.h"

@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text/hex.h"
-#include "message/names.h"
 
 static bool hand_on(void *arg, const struct session *session, const char *text)
 {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The event loop during a plant reload: sessions and requests release the old plant and take the new one. */
-#include <pthread.h>
 
 #include "base/clock.h"
 #include "base/mem.h"

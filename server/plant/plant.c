@@ -8,7 +8,6 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-#include "base/math/search.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/plant_impl.h"

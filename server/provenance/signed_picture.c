@@ -8,7 +8,6 @@
 #include <openssl/evp.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "base/text/hex.h"
 #include "provenance/picture_statement.h"
 #include "provenance/png_text.h"

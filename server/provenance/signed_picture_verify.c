@@ -9,7 +9,6 @@
 #include "provenance/signed_picture.h"
 #include "provenance/png_pixels.h"
 #include "provenance/png_text.h"
-#include "value/quality.h"
 
 #define FAIL(...) (snprintf(why, SIGNED_PICTURE_WHY_BYTES, __VA_ARGS__), false)
 

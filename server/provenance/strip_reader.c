@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "base/color/lab.h"
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };

@@ -3,7 +3,6 @@
 #include "render/frame_record.h"
 
 #include <stdatomic.h>
-#include <string.h>
 
 #include "base/mem.h"
 

@@ -4,7 +4,6 @@
 
 #include <math.h>
 
-#include "base/clock.h"
 #include "base/mem.h"
 #include "render/frame_pool.h"
 #include "render/gl/gl_backend.h"

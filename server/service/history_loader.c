@@ -2,7 +2,6 @@
 /* The thread that loads the readings of past instants. */
 #include "service/history_loader.h"
 
-#include <errno.h>
 #include <stdatomic.h>
 #include <string.h>
 

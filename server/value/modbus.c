@@ -3,7 +3,6 @@
 #include "value/modbus_impl.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "clients/link/decoder.h"
 #include "deploy/demo/sim_values.h"
 #include "encode/encoder.h"

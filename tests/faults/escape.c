@@ -6,7 +6,6 @@
    program may write (default: the current one). The file `escaped` in it receives the output, or stdout if that file cannot be
    made. With the input "hang" it waits forever. usage: escape INPUT OUTPUT ... */
 #include <arpa/inet.h>
-#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -35,7 +34,6 @@
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
-#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

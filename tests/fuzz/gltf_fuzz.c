@@ -4,10 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-#include "base/mem.h"
 #include "preprocess/geometry/geometry.h"
 #include "tests/support/temp.h"
 #include "tests/fuzz/promise.h"

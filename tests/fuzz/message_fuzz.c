@@ -5,12 +5,9 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "session/view/resume.h"
 #include "session/session.h"
 #include "tests/support/small_scene.h"

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "preprocess/import/cad_attributes.h"
 #include "preprocess/import/rvm.h"

@@ -6,12 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #include <zlib.h>
 
-#include "base/mem.h"
 #include "base/text/charset.h"
 #include "base/text/text.h"
 #include "preprocess/match/tag_export.h"

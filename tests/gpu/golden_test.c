@@ -12,7 +12,6 @@
 #include "scene/framing.h"
 #include "tests/support/rig.h"
 #include "value/alarm.h"
-#include "value/quality.h"
 
 enum { WIDTH = 480, HEIGHT = 270, BYTES = WIDTH * HEIGHT * 4 };
 static struct rig rig;

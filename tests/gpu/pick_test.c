@@ -6,7 +6,6 @@
 #include "tests/support/renderer_compare.h"
 #include "tests/support/test.h"
 #include <time.h>
-#include <unistd.h>
 
 #include "scene/framing.h"
 #include "scene/scene_create.h"

@@ -5,7 +5,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 
 static void add_chunk(struct text *file, const char *type, const void *bytes, size_t count, char fill)

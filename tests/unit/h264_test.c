@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* H.264: libavcodec decodes each frame to what was encoded; key frames come when requested, and the stream states its colour space. */
 #include "tests/support/test.h"
-#include <errno.h>
 
 #include "encode/encoder.h"
 

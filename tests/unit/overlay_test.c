@@ -8,7 +8,6 @@
 #include "render/overlay/overlay_words.h"
 #include "tests/support/toy.h"
 #include "value/alarm.h"
-#include "value/quality.h"
 
 enum { WIDTH = 1280, HEIGHT = 720 };
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of plantcast-sim: encoding compared with the daemon's decoding, the process model, and recorded series and their mapping. */
 #include "tests/support/test.h"
-#include <unistd.h>
 
 #include "base/files/atomic_file.h"
 #include "deploy/demo/sim_encode.h"

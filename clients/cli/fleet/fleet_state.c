@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "base/text/json_text.h"
 
 /* --- one plant -------------------------------------------------------------------------------------------------------------- */

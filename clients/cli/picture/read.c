@@ -2,7 +2,6 @@
 /* `plantcast read`: reads which measured value the colour of a picture's pixel shows. The picture needs a legend strip
    along its edge, which contains the colour scale; no other data is used. */
 #include <cairo.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "offline_renderer.h"
 #include "render/overlay/overlay.h"
 #include "value/quality.h"

@@ -6,8 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/mem.h"
-
 static void add_encoded(struct text *path, const char *arg)
 {
     for (; *arg; arg++)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast tags --probe`: prints what a field device has at one address, in every type and byte order. It never writes to the device. */
-#include <errno.h>
 #include <modbus.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,6 @@
 /* Pairs the nodes of an old and a new model by several methods, from the most to the least certain. A pair, once made, is never changed. */
 #include "preprocess/import/revision/node_pairs.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

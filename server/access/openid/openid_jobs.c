@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Queues of requests to the identity provider that wait to be sent by a thread. */
-#include <string.h>
 
 #include "access/openid/openid_impl.h"
 #include "base/files/secret.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/image/image_impl.h"
-#include "base/mem.h"
 
 struct png_reader {
     const unsigned char *at;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names and MESSAGE_IDs of events. An identifier must never change, because programs match it. */
-#include <stddef.h>
 
 #include "base/log/log.h"
 

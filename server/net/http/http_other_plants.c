@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "net/connection.h"
 #include "net/http/http_impl.h"
 #include "views/other_plants.h"

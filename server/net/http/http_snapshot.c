@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Answers HTTP requests for pictures and for picks (what is at a pixel), of the present or of a past instant. */
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"

@@ -3,7 +3,6 @@
 #include <limits.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "plant/plant_impl.h"
 
 enum { DEFAULT_TIMEOUT_S = 900 };

@@ -2,7 +2,6 @@
 /* The table of engineering units, and the comparison of unit names in the spellings that people use. */
 #include "plant/tags/units.h"
 
-#include <ctype.h>
 #include <stddef.h>
 #include <string.h>
 #include <strings.h>

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the plant file's `walls`: what each display of a control room shows. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"

@@ -2,8 +2,6 @@
 /* Collects draw commands into batches of equal GL state; commands within a batch keep their order. */
 #include "render/gl/draw_batches.h"
 
-#include <string.h>
-
 #include "base/math/search.h"
 #include "base/mem.h"
 

@@ -3,7 +3,6 @@
 #include "render/gl/gpu_scene.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "gpu/program.h"

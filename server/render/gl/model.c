@@ -2,8 +2,6 @@
 /* Uploads an asset file's geometry to the GPU and groups its triangles by material into submeshes. */
 #include "render/gl/model.h"
 
-#include <math.h>
-
 #include "base/mem.h"
 
 static bool make_mesh(struct gl_model *model, struct gl *gl)

@@ -3,7 +3,6 @@
    plane, and draws the plane where there is a body. */
 #include "render/gl/section_caps.h"
 
-#include "base/mem.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
 #include "render/gl/surface_pass.h"

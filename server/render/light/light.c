@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 
 static const size_t LIGHT_BYTES = 256 << 20;
 static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* time to wait for an environment map to load */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws the arrows of a field that has directions, such as flow. An arrow's length shows the value; a cross marks an unknown direction. */
 #include <math.h>
-#include <stdio.h>
 
 #include "render/overlay/overlay_pen.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws the machine-readable legend strip (protocol/strip_format.h) pixel by pixel, without smoothing the edges of its cells. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/color/lab.h"
 #include "protocol/strip_format.h"

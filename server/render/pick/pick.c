@@ -9,7 +9,6 @@
 #include "protocol/asset_distance.h"
 #include "render/pick/markers.h"
 #include "scene/raycast.h"
-#include "value/quality.h"
 
 static const double MARKER_PX = 9; /* maximum distance in pixels from a click to the marker that it picks */
 /* within this distance from a sensor, in pixels or in metres (the larger one counts), a pick returns the sensor's measured

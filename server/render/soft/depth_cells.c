@@ -2,8 +2,6 @@
 /* Computes the cells of a depth grid (depth_grid.h): nearest and farthest depth, and the pixels on the nearer side of a depth step. */
 #include "render/soft/depth_cells.h"
 
-#include <math.h>
-
 #include "render/soft/lanes.h"
 
 /* Smallest gap between the two sides of a depth step, as a fraction of the cell's depth range; with a smaller gap the cell is

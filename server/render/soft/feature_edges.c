@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws feature edges: thin dark lines where the depth buffer shows the rim of a shape; a C version of shaders/edges.frag. */
-#include <math.h>
 
 #include "render/soft/kernels.h"
 #include "render/soft/refined_impl.h"

@@ -2,7 +2,6 @@
 /* Draws ghosted assets: lines where their depth has edges or creases, and a thin horizontal line every ten pixels; a C version of
    shaders/ghost.frag. */
 #include <math.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "render/soft/soft_impl.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds the parts (groups of triangles, soft/parts.h) of assets that a frame may show, and their rectangles in the frame. */
-#include <float.h>
-#include <math.h>
 
 #include "base/math/search.h"
 #include "base/mem.h"

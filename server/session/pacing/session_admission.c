@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Counts the pixels that a session's view takes from the admission budget. They are reserved when the view gets its size, and
    returned while the page is hidden. */
-#include <string.h>
 
 #include "base/clock.h"
 #include "session/session_impl.h"

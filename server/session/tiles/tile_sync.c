@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "session/tiles/tile_sync.h"
 
-#include <string.h>
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 

@@ -2,7 +2,6 @@
 /* Makes a session show another session's view, and keeps the session's own camera, parameters and size meanwhile. */
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/mem.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decides for two kinds of triangles whether they are hidden: small visible groups among hidden triangles (interior_islands),
    and triangles that stand across a thin part (interior_resolve_across). */
-#include <math.h>
 
-#include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/repair/interior.h"
 

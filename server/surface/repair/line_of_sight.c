@@ -2,8 +2,6 @@
 /* Finds the point of another body that a point of the mesh faces (line_of_sight.h). */
 #include "surface/repair/line_of_sight.h"
 
-#include <math.h>
-
 #include "base/math/vec.h"
 #include "base/mem.h"
 

@@ -3,7 +3,6 @@
    triangles. */
 #include "surface/repair/mesh_edit.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

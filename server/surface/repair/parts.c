@@ -4,7 +4,6 @@
 #include "surface/repair/parts.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"

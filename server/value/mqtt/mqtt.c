@@ -3,7 +3,6 @@
    publish only two messages, if the plant file allows them. These are the request for a Sparkplug birth certificate, and a last
    will on a topic below plantcast/. */
 #include <errno.h>
-#include <string.h>
 #include <sys/random.h>
 
 #include "base/clock.h"

@@ -2,7 +2,6 @@
 /* Writes the values of an MQTT message to the tags of its topic. */
 #include <ctype.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/clock.h"
 #include "value/mqtt/mqtt_impl.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An OPC UA source: connects to a server, subscribes, and marks all its readings as lost when the connection is lost. */
 #include <errno.h>
-#include <stdio.h>
 
 #include "base/clock.h"
 #include "base/log/log_pace.h"
@@ -9,7 +8,6 @@
 #include "value/backoff.h"
 #include "value/lookup.h"
 #include "value/opcua/opcua_client.h"
-#include "value/quality.h"
 #include "value/source_impl.h"
 
 /* time limit for opening a session, and for subscribing to all nodes */

@@ -4,7 +4,6 @@
 #include "value/opcua/opcua_browse.h"
 
 #include <errno.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"

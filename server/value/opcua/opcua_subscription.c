@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/mem.h"
 #include "plant/sources/opcua_address.h"
 #include "value/opcua/opcua_client.h"
