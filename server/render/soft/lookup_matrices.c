@@ -8,7 +8,7 @@
 #include "render/light/sky.h"
 #include "render/matrix.h"
 
-static void copy_columns(const double from[16], float to[4][4])
+void raster_copy_columns(const double from[16], float to[4][4])
 {
     for (int c = 0; c < 4; c++)
         for (int r = 0; r < 4; r++)
@@ -34,7 +34,7 @@ static void aim_sun(struct raster *raster, const double clip[16])
     matrix_multiply(out, clip, out);
     for (int c = 0; c < 4; c++)
         out[4 * c + 2] += frame_sun_slack(context) * out[4 * c + 3];
-    copy_columns(out, raster->sun_from_pixel);
+    raster_copy_columns(out, raster->sun_from_pixel);
 }
 
 /* Computes raster->ray_from_pixel: a matrix from pixels to directions of view rays, like near.xyz / near.w in shaders/sky.vert.

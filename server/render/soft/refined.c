@@ -66,13 +66,6 @@ size_t refined_bytes(const struct refined *refined)
 
 /* --- steps ------------------------------------------------------------------------------------------------------------------- */
 
-static void copy_columns(const double from[16], float to[4][4])
-{
-    for (int c = 0; c < 4; c++)
-        for (int r = 0; r < 4; r++)
-            to[c][r] = (float)from[4 * c + r];
-}
-
 static void aim(struct refined *refined, const struct light *light)
 {
     struct raster *raster = &refined->raster;
@@ -96,7 +89,7 @@ static void aim(struct refined *refined, const struct light *light)
             refined->ground_step[r] += refined->sun_from_normal[c][r] * (float)refined->raster.soft->gpu_scene->up[c];
     }
     matrix_multiply(sun, light->plant_from_ground, matrix);
-    copy_columns(matrix, refined->sun_from_ground);
+    raster_copy_columns(matrix, refined->sun_from_ground);
 }
 
 /* Prepares the refined frame for its next step; called because other frames may have been drawn since the last step. Returns false when out

@@ -227,6 +227,7 @@ void raster_finish(struct raster *raster); /* frees the raster's memory; the ras
 size_t raster_bytes(const struct raster *raster);
 void refined_destroy(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 size_t refined_bytes(const struct refined *refined);
+void raster_copy_columns(const double from[16], float to[4][4]); /* copies a column-major matrix */
 /* Steps of drawing a frame, declared in calling order. */
 void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
 /* Prepares for the depth grid (coarse depth for clients, render/depth_grid.h), if the frame gets one; call it after raster_aim(). Without
