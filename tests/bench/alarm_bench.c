@@ -95,7 +95,7 @@ static void row(const char *name, double value, double goal)
 
 enum { YEAR_S = 365 * 86400, KEPT = 300000, KEPT_ALARMS = 2000, INSTANTS = 21 };
 
-/* Fills a journal with more than 800 changes of 2,000 alarms per day. */
+/* Fills a journal with KEPT changes of 2,000 alarms, spread over a year: more than 800 changes per day. */
 static bool fill_journal(struct journal_file *file)
 {
     struct journal_entry *entries = mem_array(KEPT, sizeof(*entries));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of the field, in time and in processor work on all cores, printed as one JSON line per row. */
+/* Cost of computing the field, i.e. the values that the sensors' readings give at the vertices of an asset: elapsed time and
+   processor time on all cores. Prints one JSON object per line. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -66,7 +67,8 @@ static void drag_decay(struct field_bench *bench)
     bench->params.decay = 0.5 + synthetic_random_unit(&bench->random);
 }
 
-/* Times a change of readings or parameters. goal_ms: longest time allowed; 0: none. */
+/* Measures how long the field takes to compute after change() has changed readings or parameters. goal_ms: longest time
+   allowed; 0: no limit. */
 static void measure(struct field_bench *bench, const char *name, void (*change)(struct field_bench *), double goal_ms)
 {
     double ms[ROUNDS], work_ms[ROUNDS];
@@ -92,7 +94,7 @@ static void measure(struct field_bench *bench, const char *name, void (*change)(
     fflush(stdout);
 }
 
-/* Measures how long a thread is blocked that requests the field in pieces, as the render thread does. */
+/* Measures for how long each call blocks the render thread, which computes the field piece by piece. */
 static void measure_pieces(struct field_bench *bench, const char *kind, void (*change)(struct field_bench *))
 {
     enum { MOST = 4096 };
@@ -153,7 +155,8 @@ static void measure_plant(struct workers *workers, size_t sensors)
     synthetic_destroy(&bench.plant);
 }
 
-/* Measures a plant with so many sensors that the field does not cache their columns but recomputes them from distances at each change. */
+/* Measures a plant with so many sensors that the field cannot cache each sensor's weights ("columns"), but recomputes them from
+   distances at each change. */
 static void measure_many(struct workers *workers, size_t sensors)
 {
     struct field_bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };

@@ -55,7 +55,7 @@ static double counted(struct counters *counters, const char *name)
     return (double)*counters_add(counters, name, "counter", "");
 }
 
-/* Measures 100,000 values per second into the store and onto the disk. */
+/* Measures the cost of recording 100,000 values per second, from writing them to the store until they are on the disk. */
 static void record(const char *name, double noise_size)
 {
     char *folder = temp_folder();
@@ -103,7 +103,8 @@ static double process_io(const char *name)
     return bytes;
 }
 
-/* One second of samples at 2 Hz, like those of a PLC's transmitters: 32-bit, noisy, and with the same time for all tags of a source. */
+/* Records the two samples per tag of one second. They are like those of a PLC's transmitters: noisy, stored as 32-bit floats,
+   and with one time stamp for all tags of a source. */
 static void sample_second(struct recorder *recorder, int64_t t_us, double *values, struct recorder_rows *rows)
 {
     for (int half = 0; half < 2; half++) {
@@ -168,7 +169,8 @@ static void measure_disk(struct log *log)
     mem_free(tags);
 }
 
-/* Writes samples that all exceed the deadband, so that none is dropped, and rollups for every minute. */
+/* Writes DAYS days of samples to the history. Consecutive samples differ by more than the deadband, so that none is dropped.
+   Also writes the summaries of every minute (rollups). */
 static void fill(struct log *log, const char *folder, const struct history_tag *tags, int64_t end_us)
 {
     size_t count = DAYS * 86400 / STEP_S;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of predicting sensors from the others, for all sensors at once as the daemon does and for single ones, compared with the
-   cost of a changed reading. A plate of 37,000 vertices with 5 and with 512 sensors; prints one JSON line per row. */
+/* Cost of predicting a sensor's reading from the other sensors, for all sensors at once as the daemon does and for single ones,
+   compared with the cost of recomputing the field after one reading changed. Uses a plate of 37,000 vertices with 5 and with
+   512 sensors; prints one JSON object per line. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -73,7 +74,7 @@ static void draw_field(struct neighbours_bench *bench)
         abort();
 }
 
-/* Advances the time until the cached predictions expire, then requests all. */
+/* Advances the time until the cached predictions have expired, then requests the predictions of all sensors. */
 static void ask_all(struct neighbours_bench *bench)
 {
     bench->snapshot->taken_mono_ns += 2 * NEIGHBOURS_FRESH_NS;
@@ -81,7 +82,8 @@ static void ask_all(struct neighbours_bench *bench)
         abort();
 }
 
-/* Measures the work on all cores in ms[], sorted. Returns the median. */
+/* Measures the processor time of work() on all cores. ms[] receives the times of all rounds in ms, sorted. Returns the median.
+   */
 static double time_of(struct neighbours_bench *bench, void (*work)(struct neighbours_bench *), double ms[ROUNDS])
 {
     for (int i = -WARM_UP; i < ROUNDS; i++) {

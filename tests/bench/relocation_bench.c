@@ -44,7 +44,8 @@ static const struct asset_view *find(const struct scene *scene, const char *id)
     return NULL;
 }
 
-/* Measures the time from the request until the distances of all vertices, straight-line and along the surface, are ready. */
+/* Measures the time from requesting a sensor's move until its new distances to all vertices, straight-line and along the
+   surface, are ready. */
 static void measure(struct relocation *relocation, const struct asset_view *view)
 {
     double ms[ROUNDS];
@@ -70,7 +71,8 @@ static void measure(struct relocation *relocation, const struct asset_view *view
     mem_free(euclidean_m);
 }
 
-/* Creates the relocation with the surface cached by plantcast-prep. Returns NULL if there is no such surface. */
+/* Creates the object that computes a moved sensor's distances, from the surface that plantcast-prep has cached. Returns NULL if
+   there is no such surface. */
 static struct relocation *create_mover(struct log *log, struct workers *workers, const struct asset_view *view)
 {
     const struct asset_level *finest = &view->levels[0];

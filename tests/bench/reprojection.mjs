@@ -17,7 +17,7 @@ const folder = process.argv[2], isByProcessor = process.argv[3] === 'processor';
 const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer_20'];
 const OFF = 16;          // a pixel counts as different if a channel differs by at least this much, of 255
 const NEAREST = 0.05;    // same value as in app/picture/warp.js
-const MOST_ERROR = 0.03; // largest error of a value, as a fraction of the range
+const MOST_ERROR = 0.03; // a value read from a colour counts as correct up to this error, as a fraction of the range
 const REDUCED = 4, LATTICE_PX = 14, MARK = 0.08 * 255; // as in app/picture/warp.js
 
 const load = (name) => ({
@@ -25,7 +25,8 @@ const load = (name) => ({
     pixels: readFileSync(join(folder, `${name}.bgrx`)), depth: readFileSync(join(folder, `${name}.depth`)),
 });
 
-// Draws a mesh from another camera. Returns for each pixel the index of the first picture's pixel that it shows; -1: none.
+// Draws the first picture's mesh as seen by another camera. Returns, for each pixel drawn, the index of the pixel of the first
+// picture that it shows; -1: nothing is drawn there.
 function rasterize({ vertices, indices }, matrix, grid, width, height) {
     const shown = new Int32Array(width * height).fill(-1), depths = new Float64Array(width * height).fill(Infinity);
     const count = vertices.length / FLOATS, clip = new Float64Array(count * 4);
@@ -109,8 +110,8 @@ function half({ width, height, values }) {
     return out;
 }
 
-// Returns the mip levels of a warped picture, from which greys are computed. The first is a linear blit: the mean of the four
-// pixels in the middle of each square.
+// Returns the mip levels of a reprojected picture; the greys of undrawn areas are computed from them. The first level is a
+// linear blit: each of its pixels is the mean of the four in the middle of a square.
 function levelsOf(pixels, shown, width, height) {
     const wide = Math.ceil(width / REDUCED), middle = REDUCED / 2, values = new Float64Array(2 * wide * Math.ceil(height / REDUCED));
     for (let i = 0; i < values.length / 2; i++)
@@ -135,8 +136,8 @@ function sample({ width, height, values }, u, v) {
         (at(left, top + 1, c) * (1 - p) + at(left + 1, top + 1, c) * p) * q);
 }
 
-// Returns a level with the greys around areas that are not drawn, and how wide these areas are, computed like the page's
-// shaders.
+// Returns, for each pixel of the finest level, the grey with which an undrawn area is filled there, and the width of that area,
+// computed like the page's shaders.
 function greysOf(levels) {
     const { width, height } = levels[0], values = new Float64Array(2 * width * height);
     for (let i = 0; i < width * height; i++) {
@@ -173,7 +174,8 @@ function warped({ pixels, width, height }, shown) {
 
 const swapped = (pixel) => -0x1000000 | (pixel & 255) << 16 | pixel & 0xff00 | pixel >> 16 & 255; // converts a pixel between BGRX and RGBA
 
-// Draws as browsers without a GPU do. shown: -1 where the picture has nothing to show.
+// Draws the first picture from another camera with the page's own rasterizer, as browsers without a GPU do. shown: -1 at pixels
+// where the first picture has nothing to show, otherwise 0.
 function movedByProcessor({ pixels, width, height }, part, matrix) {
     const source = Int32Array.from(new Int32Array(pixels.buffer, pixels.byteOffset, width * height), swapped);
     const raster = new Raster(width, height);
@@ -193,8 +195,8 @@ function movedPicture(first, second) {
     return { shown, pixels: warped(first, shown) };
 }
 
-// Returns a function that finds the position of a pixel's colour (flat look) in the colour map; it returns -1 if the map lacks
-// the colour.
+// Returns a function that returns the index of a pixel's colour in the colour map, in pictures of the flat look (no shading);
+// -1 if the map lacks the colour.
 function reader(map) {
     const places = new Map();
     for (let i = 0; i < 256; i++)

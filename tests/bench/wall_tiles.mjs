@@ -30,7 +30,7 @@ async function measure(plant) {
     let seq = 0;
     runAs('-r', '-p', '1');
     const move = setInterval(() => {
-        const turn = ++seq / HZ / 4; // angle; the camera turns by a radian in 4 s
+        const turn = ++seq / HZ / 4; // angle of the camera around the plant in radians; it moves by one radian in 4 s
         const eye = [8 + 38 * Math.sin(turn), 6 - 38 * Math.cos(turn), 18];
         leader.say({ type: 'camera', seq, eye, target: [8, 6, 4], up: [0, 0, 1], fov: 40 });
     }, 1000 / HZ);

@@ -46,7 +46,8 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Starts a daemon that trusts no loopback connection, as if it listened on an address that other machines can reach.
+// Starts a daemon with --behind-proxy: it grants connections from loopback no rights, as if it listened on an address that
+// other machines can reach.
 async function behindProxy(...args) {
     await plant.daemon?.stop();
     await plant.startDaemon('--behind-proxy', '--host', 'plant.example', ...args);
@@ -148,7 +149,7 @@ walls:
         await streamsOnlyItsViews(lobby, whole);
         await until('the refusal in the trail', () =>
             /"who":"lobby"[^\n]*view: “rest” is not allowed: this token/.test(readFileSync(path('views.log'), 'utf8')));
-        // For every role, a named view shows the same as an equal query, but without readings.
+        // Readings are hidden from nobody in a named view: its picture has about as many bytes as that of an equal query.
         const query = 'group=temperature&hidden=P-101A&camera=0,-4,2,0,0,0,40&width=320&height=200';
         const [named, asked] = [await picture('view=left&width=320&height=200', whole), await picture(query, whole)];
         assert.equal(named.status, 200);
@@ -194,8 +195,9 @@ async function streamsOnlyItsViews(lobby, whole) {
     assert.match((await wrong.text('error')).text, only);
     assert.equal((await wrong.until('a close', (c) => c.closed)).code, 1008);
     assert.equal(wrong.frames.length, 0);
-    assert.equal((await anyone.hello({ token: whole, named: 'rest' })).view.group, 'pressure'); // any client may begin with a named view
-    // The token's list of views changes: the session must reconnect.
+    // a client with a token that is not limited to certain views may begin with any named view
+    assert.equal((await anyone.hello({ token: whole, named: 'rest' })).view.group, 'pressure');
+    // Adding, changing or revoking a token's views ends its sessions: the client must connect again.
     token('revoke', path('limited'), 'lobby');
     assert.equal((await other.until('a close', (c) => c.closed)).code, 1008);
     anyone.close();
@@ -224,7 +226,8 @@ test('an idle session is locked, a wall display\'s is not; the sign-in notice is
     clearInterval(timer);
     assert.deepEqual([clients[1].closed, clients[2].closed], [null, null]);
     clients.forEach((client) => client.close());
-    const back = await open(); // an automatic reconnection does not count as user activity
+    // A connection that the page opens again by itself does not count as user activity, so the session stays locked.
+    const back = await open();
     back.say({ type: 'hello', token: desk, width: 320, height: 180, codecs: ['jpeg'], idle_ms: 60000 });
     assert.equal((await back.text('error')).code, 'locked');
     back.close();
@@ -265,7 +268,8 @@ test('each URL requires its role', { skip }, async () => {
     let guesses = 0;
     const statuses = async (url) => {
         const all = [];
-        const from = `203.0.113.${++guesses}`; // each address may fail ten times within a minute
+        // each call uses another client address, because an address may fail only ten times within a minute
+        const from = `203.0.113.${++guesses}`;
         for (const bearer of [null, 'pc_wrong', tokens.viewer, tokens.operator, tokens.engineer])
             all.push((await ask(url, { bearer, from })).status);
         return all;
@@ -413,7 +417,8 @@ test('the limit of sessions applies to each client address that the proxy names'
     await other.hello();
     assert.equal((await (await of('203.0.113.9')).until('a close', (c) => c.closed)).code, 1013);
     clients[0].close();
-    const again = await until('room for another', async () => { // succeeds once the daemon has noticed that the first client is gone
+    // waits until the daemon has noticed that the first client has gone, and accepts another one
+    const again = await until('room for another', async () => {
         const client = await of('203.0.113.7');
         client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'] });
         await client.until('welcome or a close', ({ texts, closed: end }) => end ?? texts.some(({ type }) => type === 'welcome'));
@@ -505,7 +510,8 @@ test('the daemon works behind nginx with the configuration from deploy/proxy',
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://plant.example' }), 101);
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://evil.example' }), 403);
         await plant.daemon.stop();
-        // starts a daemon that was not told about the proxy; requests carry an unknown host name
+        // Starts a daemon without --behind-proxy: it refuses requests that nginx forwards, because their host name is unknown
+        // to it, and grants the proxy no rights.
         await plant.startDaemon('--port', String(plant.port));
         assert.equal(await throughNginx(port, '/healthz'), 403);
         assert.equal(await throughNginx(port, '/api/v1/tags', null, { Host: 'localhost' }), 403);
@@ -523,7 +529,8 @@ test('the page asks a user for a token, then shows the plant', {
     try {
         await page.waitForSelector('#token[open]');
         for (let i = 0; i < 3; i++)
-            await page.keyboard.press('Escape'); // without a token the page shows nothing, so these keys have no effect
+            // Escape does not close the token dialog, because without a token the page has nothing else to show
+            await page.keyboard.press('Escape');
         await page.waitForSelector('#token[open]');
         await page.fill('#token-text', 'pc_wrong');
         await page.click('#token-form button');

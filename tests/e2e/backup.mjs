@@ -10,7 +10,8 @@ import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const skip = notBuilt();
-const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400; // 40 days back, so that the recorded time includes the beginning of a month
+// the recorded series begins 40 days ago, so that it spans at least two calendar months, each with its own history file
+const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400;
 let plant;
 
 before(async () => {
@@ -58,7 +59,7 @@ test('a restore into another folder returns the recorded history, point by point
     assert.ok(names.filter((name) => /^history-\d{4}-\d\d\.sqlite$/.test(name)).length >= 2, names.join(' '));
     assert.ok(names.includes('backup.json') && names.includes('plant.yaml') && names.includes('tags.csv'));
     assert.ok(!names.some((name) => /-wal|-shm|part/.test(name)), names.join(' '));
-    // the daemon's metrics report the time of this file as the last backup
+    // The backup stamps the file `last-backup`; the daemon's metrics report that file's time as the last backup.
     const stamp = statSync(join(plant.file.replace(/yaml$/, 'history'), 'last-backup')).mtimeMs;
     assert.ok(stamp > began - 1000 && stamp < Date.now() + 1000,
         `time of the backup ${stamp}, not ${began} or later`); // files have a coarser clock

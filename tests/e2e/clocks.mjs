@@ -16,8 +16,8 @@ let nodes;
 before(async () => {
     if (options.skip)
         return;
-    // lets the device answer slowly: otherwise readings would be Bad on a busy machine, and a picture without a Good reading
-    // has no age
+    // slowDevice: the daemon waits longer for the device's answers. Otherwise readings would become Bad on a busy machine, and
+    // a picture without any Good reading has no age.
     nodes = await Nodes.create({ slowDevice: true });
     await nodes.plant.set({ 'TI-1': 20, 'TI-2': 20, 'PI-1': 5 });
 });

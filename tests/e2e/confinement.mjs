@@ -19,7 +19,7 @@ const ENDLESS_S = 200;
 const absent = [...missing(), ...['plantcast-import', 'plantcast-match'].filter((name) => !existsSync(join(BIN, name)))];
 absent.push(...[ESCAPE, `${ESCAPE}.so`].filter((path) => !existsSync(path)));
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
-// landlock_create_ruleset, which returns the Landlock ABI version
+// Python program that prints the Landlock ABI version of this kernel; 444 is the system call landlock_create_ruleset.
 const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))';
 const abi = Number(spawnSync('/usr/bin/python3', ['-c', ASK], { encoding: 'utf8' }).stdout);
 const unguarded = skip || (abi >= 2 ? false : `this kernel has ABI ${abi} of Landlock; 2 is needed to hold all of this back`);
@@ -92,7 +92,7 @@ test('a compromised matcher can access nothing of the daemon or the machine', { 
     }
 });
 
-// The models have changed, so the daemon prepares the plant at start.
+// The models have changed since they were prepared, so the daemon runs plantcast-prep when it starts.
 test('a compromised plantcast-prep of the daemon can access nothing of the daemon or the machine', { skip: unguarded }, () => inFolder(
     async (folder) => {
         const plant = await TinyPlant.create(), port = await freePort(), bin = programs(folder, ESCAPE, 'plantcastd');
@@ -208,7 +208,7 @@ const TRIANGLE = `<geometry id="g"><mesh><source id="p"><float_array id="a" coun
 <param name="Z" type="float"/></accessor>
 </technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="1">
 <input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>`;
-// Each node contains the next one ten times.
+// COLLADA file in which each node contains the next one ten times, so that `levels` nodes expand to 10^(levels - 1) triangles.
 const tenfold = (levels) => collada(TRIANGLE, Array.from({ length: levels }, (_, i) => `<node id="n${i}">${(i + 1 < levels
     ? `<instance_node url="#n${i + 1}"/>` : '<instance_geometry url="#g"/>').repeat(i + 1 < levels ? 10 : 1)}</node>`).join(''),
 '<node id="root"><instance_node url="#n0"/></node>');
@@ -221,7 +221,7 @@ function stlOf(count) {
 }
 const step = (data) => `ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n` +
     `FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n${data}ENDSEC;\nEND-ISO-10303-21;\n`;
-function rvmOf(depth) { // returns an RVM file of nested groups
+function rvmOf(depth) { // returns an RVM file of `depth` nested groups that never end
     const words = (...numbers) => Buffer.concat(numbers.map((n) => { const b = Buffer.alloc(4); b.writeUInt32BE(n >>> 0); return b; }));
     const name = (text) => Buffer.concat([...text].map((c) => words(c.charCodeAt(0))));
     const chunk = (id) => Buffer.concat([name(id), words(0xffffffff, 1)]);

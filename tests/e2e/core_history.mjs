@@ -107,7 +107,7 @@ test('the page of a renderer shows trends and the past', options, async () => {
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-1')));
-    // Clicks by script: a card that moves between press and release of the mouse would get no click.
+    // Clicks by script: if the card moves between press and release of the mouse button, the browser sends no click.
     await page.locator('#card .trend').evaluate((button) => button.click());
     await page.locator('#trend-chart canvas').waitFor();
     await page.locator('#trend-tags', { hasText: /TI-1.*°C/ }).waitFor();
@@ -115,7 +115,7 @@ test('the page of a renderer shows trends and the past', options, async () => {
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, at(900));
     await settle(page);
     await page.locator('#trend-span label', { hasText: '1 h' }).click();
-    // the chart shows an hour with a reading each second
+    // waits until the chart shows the whole hour (a reading per second), more than 100 points
     await page.waitForFunction(() => globalThis.plantcast.trends.chart.data[0].length > 100);
     await page.locator('#clock-name', { hasText: /^Time shown/ }).waitFor();
     await shoot(page, 'core-history');
@@ -180,7 +180,7 @@ test('without its core a renderer logs once that it has no history; history retu
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
     assert.deepEqual(await recorded(path), before_);
     assert.equal((await renderer.fetch(picture)).status, 200);
-    core.program.child.kill('SIGSTOP'); // the core accepts the request but does not answer
+    core.program.child.kill('SIGSTOP'); // stopped by SIGSTOP, the core's system still accepts connections, but the core does not answer
     const waits = renderer.fetch(path).catch(() => null);
     await sleep(300);
     assert.equal((await renderer.fetch('/healthz')).status, 200, 'other clients do not wait');

@@ -126,7 +126,7 @@ test('HTTP: valid and invalid paths get well-formed answers', { skip }, async ()
         [['accept-encoding', undefined, undefined], ['accept-encoding', 'gzip', undefined]]);
     assert.equal(gunzipSync(packed.body).compare(page.body), 0);
     assert.notEqual(packed.headers.etag, page.headers.etag);
-    // the server closes the connection after a refused method, and says so
+    // after refusing a request method, the server closes the connection and announces that in the header Connection
     assert.equal((await get(port, '/', 'DELETE', 'Content-Length: 0\r\n')).headers.connection, 'close');
     assert.equal((await get(port, '/stream')).status, 426);
 });
@@ -163,7 +163,8 @@ test('/snapshot returns a picture, or names the fault of the query', { skip }, a
     const file = join(plant.folder, 'mapped.yaml'), mapped = 'colormaps: [{ name: Mine, image: map.png }]\n';
     writeFileSync(join(plant.folder, 'map.png'), good.body);
     writeFileSync(file, readFileSync(plant.file, 'utf8') + mapped);
-    for (const program of [['plantcastd', '--check'], ['plantcast-prep']]) // both programs must load the code that reads images
+    // both programs must be linked with the code that reads the colour map's image
+    for (const program of [['plantcastd', '--check'], ['plantcast-prep']])
         assert.equal(runProgram(program[0], [...program.slice(1), file]).code, 0, program[0]);
     for (const query of ['width=0', 'width=1000000000', 'height=nan', 'group=none', 'camera=1,2', 'colour=red', 'power=1e999', 'look=%01',
         'x'.repeat(400)])
@@ -222,7 +223,7 @@ test('clients that request depth get each depth grid before its picture', { skip
     const isStill = (f) => f.camera_seq === 2 && f.params_seq === 1 && (f.flags & 2) !== 0;
     const still = await client.frameWhere('the still picture', isStill);
     assert.ok(client.frames.every((f) => (f.flags & DEPTH) !== 0), 'every picture has depth');
-    // leaves out the newest grid if its picture has not arrived yet
+    // skips the newest depth grid if the picture that belongs to it has not arrived yet
     for (const depth of client.depths.filter(({ before }) => before < client.frames.length)) {
         const frame = client.frames.find((f) => f.seq === depth.seq);
         assert.equal(client.frames.indexOf(frame), depth.before, 'each depth grid comes right before its picture');
@@ -238,7 +239,8 @@ test('clients that request depth get each depth grid before its picture', { skip
     await plant.tell('set TI-1 33');
     const recoloured = await client.frameWhere('a picture of the new reading', (f, i) => i >= pictures && (f.flags & 2) !== 0);
     assert.equal(recoloured.flags & DEPTH, DEPTH);
-    // On a slow machine a preview with another grid may come in between. Bytes 8 to 11 are the sequence number.
+    // Consecutive depth grids must differ. On a slow machine a preview with another grid may come between two equal ones. The
+    // sequence number (bytes 8 to 11) is left out of the comparison.
     const grids = client.depths.slice(newest).map(({ message }) => message.toString('hex', 0, 8) + message.toString('hex', 12));
     assert.ok(grids.every((grid, i) => grid !== grids[i - 1]), 'the same depth is not sent twice in a row');
     client.say({ type: 'params', seq: 2, split: { group: 'pressure' } });
@@ -264,7 +266,7 @@ test('sessions with equal views share one render', { skip }, async () => {
     for (let i = 0; i < 8; i++) {
         const had = clients.map((client) => client.frames.length);
         await plant.tell(`set TI-1 ${i % 2 ? 10 : 90}`);
-        // waits until no client is still owed a frame, so that the next change is drawn for all at once
+        // waits until each client has got a complete frame, so that the next change is rendered once for all clients
         await Promise.all(clients.map((client, k) => client.frameWhere('the change', (f, n) => n >= had[k] && (f.flags & 2) !== 0)));
     }
     const after = await counts(), renders = after[0] - before[0], frames = after[1] - before[1];
@@ -424,7 +426,8 @@ test('a changed reading is sent and drawn; a lost PLC is reported, and so is its
 
 test('plantcast tags and plantcast probe print the PLC\'s tags and values', { skip }, async (t) => {
     const url = `http://127.0.0.1:${plant.port}/`;
-    await until('a line of a good reading', () => { // the device's answers may be late for a moment
+    // repeats until TI-1 is Good: on a busy machine the device may answer late for a moment
+    await until('a line of a good reading', () => {
         const { code, out, err } = runProgram('plantcast', ['tags', url]);
         assert.equal(code, 0, err);
         return /TI-1 .*°C .*Good .*temperature .*E-101/.test(out);
@@ -435,7 +438,8 @@ test('plantcast tags and plantcast probe print the PLC\'s tags and values', { sk
     assert.ok(report.frames > 0 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0, probe.out);
     promise(t, 'from one frame of the probe to the next', 1000 / report.fps, 1000);
     promise(t, 'from one frame of its two sessions to the next', 1000 / report.frames, 250);
-    // Every camera that was sent counts as an input, not only those that a frame showed.
+    // The probe measures a time for every camera position that it sent, even for those that no frame showed because a newer one
+    // replaced them.
     assert.ok(report.input_to_frame_ms.count >= Math.min(60, 3 * report.frames),
         `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
     const crowd = ['--sessions', '40', '--follow', '--blind', '--hz', '10', '--seconds', '6', '--size', '640x360', '--json'];

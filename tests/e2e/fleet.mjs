@@ -33,7 +33,8 @@ async function serve(file) {
         stop: () => new Promise((done) => { child.removeAllListeners('exit').on('exit', done); child.kill(); }) };
 }
 
-// Starts a fake server with these /metrics; `asked` records the times of requests. The picture is a real PNG.
+// Starts a fake server that answers /metrics with this text and /snapshot.png with a real PNG of one pixel; `asked` records the
+// times of the requests.
 const PNG = Buffer.from('iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==', 'base64');
 async function pretend(metrics = '', status = 200, headers = {}) {
     const asked = { metrics: [], picture: [] };
@@ -172,8 +173,8 @@ test('no server is polled faster than configured, and Retry-After is obeyed', op
     try {
         await until('enough requests', () => quick.asked.metrics.length >= 6 && slow.asked.metrics.length >= 3 &&
             slow.asked.picture.length >= 2 && busy.asked.metrics.length >= 2);
-        // Each pause follows an answer, so the nth request comes at least n pauses after the start, however late it is noticed
-        // here.
+        // The fleet page pauses after each answer before it polls again, so request n (from 0) comes at least n pauses after
+        // the start, however slow this machine is.
         for (const [name, times, pause_ms] of [['quick', quick.asked.metrics, 1000], ['slow', slow.asked.metrics, 4000],
             ['picture', slow.asked.picture, 6000], ['busy', busy.asked.metrics, 5000]])
             assert.ok(times.every((at, n) => at - began >= n * pause_ms), `${name}: ${times.map((at) => Math.round(at - began))} ms`);

@@ -39,7 +39,8 @@ after(async () => {
     await plant?.stop();
 });
 
-// Waits until the watchdog's band appears on the display or has gone.
+// Waits until the watchdog's coloured band is visible on the display (wanted true) or has disappeared (false). Returns the
+// display's pixels.
 async function seesVeil(wanted) {
     const end = performance.now() + PATIENCE_MS;
     for (;;) {
@@ -104,7 +105,8 @@ test('a desk page that hangs reports the hang until it responds; the daemon logs
         savePng(display.grab(), join(SCREENSHOTS, 'hang-desk-again.png'));
     }));
 
-// Draws call-outs once their module is loaded, in a page or in the panes of a wall. Does not return if the page hangs.
+// Draws the alarm call-outs in the page (no selector), or in the panes of a wall (selector of their frames), after loading the
+// module for them. Never returns if the page hangs.
 const drawCallouts = (page, selector) => page.evaluate(async (which) => {
     const windows = which ? [...document.querySelectorAll(which)].map((frame) => frame.contentWindow) : [globalThis];
     for (const { plantcast } of windows) {

@@ -89,11 +89,12 @@ test('each eye sees the plant from its own position; a turned head shows the cha
     for (const away of [2, 20]) {
         const eye = [0, -0.5 - away, 0]; // the eye is 2 or 20 m in front of the box's side, which is at y = -0.5
         await lookFrom(page, eye, [0, 1, 0]);
-        const { left, right } = await seen(page), row = EYE.height / 2 + (away === 2 ? 30 : 6); // row: a row of pixels beside the markers
+        // row: index of a row of pixels next to the markers, so that no marker covers the box's edges there
+        const { left, right } = await seen(page), row = EYE.height / 2 + (away === 2 ? 30 : 6);
         const trueRuns = await Promise.all([-1, 1].map(async (side) => runOf(await truth(page, eye, side), row)));
         const runs = [left, right].map((picture) => runOf(picture, row));
         t.diagnostic(`${away} m: runs ${JSON.stringify(runs)}, true ${JSON.stringify(trueRuns)}`);
-        for (const i of [0, 1]) { // index of the box's edge: left, right
+        for (const i of [0, 1]) { // i: 0 for the box's left edge, 1 for its right edge
             const [own, real] = [runs, trueRuns].map(([a, b]) => a[i] - b[i]);
             assert.ok(Math.abs(own - real) <= 1, `at ${away} m: a disparity of ${own} px instead of ${real}`);
             assert.ok(Math.abs(runs[0][i] - trueRuns[0][i]) <= 2, `at ${away} m: ${runs[0][i]} px instead of ${trueRuns[0][i]}`);
@@ -137,7 +138,7 @@ test('hands can teleport on the floor, select equipment, read a sensor, use the 
     await pull(page);
     await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.hands.card?.picked.sensor === 'TI-2');
     await keep(page, 'headset-sensor');
-    await aimAt(page, [0.1, -0.2, 0.5]); // aim at the top of the box
+    await aimAt(page, [0.1, -0.2, 0.5]); // aims the controller at the top of the box and pulls the trigger, which moves the user there
     await pull(page);
     await page.waitForFunction(() => Math.abs(globalThis.plantcast.modules.there('enterVr').headset.rig.at[2] - 0.5) < 0.02);
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0], true);
@@ -160,7 +161,8 @@ test('hands can teleport on the floor, select equipment, read a sensor, use the 
         device.controllers.right.updateButtonValue('squeeze', 1);
         await frame();
         await frame();
-        device.controllers.right.position.set(0.2, 1.3, 0.1); // the hand pulls towards the body
+        // while it squeezes the grip, the hand moves towards the body, which must pull the user forwards
+        device.controllers.right.position.set(0.2, 1.3, 0.1);
         await frame();
         await frame();
         device.controllers.right.updateButtonValue('squeeze', 0);

@@ -101,18 +101,20 @@ test('ten thousand messages a second are read at the permitted rate, and all of 
     t.after(() => client.close());
     const pings = Buffer.concat(Array.from({ length: PINGS }, (_, t) => encodeFrame(1, `{"type":"ping","t":${t}}`)));
     const before = [await metric('plantcast_messages_total'), await metric('plantcast_message_errors_total')];
-    const began = performance.now(); // the first second of counting begins with hello
+    const began = performance.now(); // the daemon begins to count messages per second when hello arrives
     await client.hello();
     client.write(pings);
     await client.until('the last answer', (c) => c.texts.some((m) => m.type === 'pong' && m.t === PINGS - 1), PATIENCE_MS);
-    // messages for one more second may be in the socket's buffer
+    // full: seconds for which reading is limited. One second less, because the messages for one more second may be in the
+    // socket's buffer.
     const took = performance.now() - began, full = Math.floor(PINGS / MESSAGES_PER_S) - 1;
     assert.ok(took >= 1000 * full, `${PINGS} messages in ${took.toFixed(0)} ms, at ${MESSAGES_PER_S} a second`);
-    // the counter is updated once a second at least
+    // waits for the metric, which the daemon updates at least once a second
     await until('all messages', async () => await metric('plantcast_messages_total') > before[0] + PINGS);
     const told = await metric('plantcast_message_errors_total') - before[1];
-    // A daemon too slow to read that many messages within a second cannot notice that the client sends too fast. One that reads
-    // all of them in time has read its maximum in every second but the last.
+    // The daemon reports "too fast" once for each second in which it has read its maximum. A daemon too slow to read that many
+    // messages in a second cannot notice the excess. If it reads all messages in time, it has read the maximum in every second
+    // but the last.
     const reads = took < 1000 * (PINGS / MESSAGES_PER_S), said = `too fast: said ${told} times in ${took.toFixed(0)} ms`;
     assert.ok(told >= full || !reads, said);
     assert.equal(client.texts.some((m) => m.code === 'too_fast'), told > 0, said);
@@ -134,7 +136,7 @@ test('all kinds of bad clients at once: each gets its answer, and no other clien
     const mute = await PlainClient.open(port);
     const flood = await PlainClient.open(port, { acknowledge: false });
     await flood.hello();
-    flood.socket.pause(); // this client does not read its answers
+    flood.socket.pause(); // stops reading: the server's answers to this client pile up
     const camera = encodeFrame(1, '{"type":"camera","seq":1,"eye":[5,-6,4],"target":[1e300,0,0]}');
     const cameras = Buffer.concat(Array(FLOOD_PER_S / 10).fill(camera));
     const guesses = [];
@@ -164,7 +166,8 @@ test('all kinds of bad clients at once: each gets its answer, and no other clien
     assert.equal((await closed(half)).code, 1008);
     assert.match((await closed(mute)).text, /no hello/);
     for (const guess of guesses)
-        // 1008 for the first ten guesses; 1013 for later ones, which are throttled
+        // close code 1008 (wrong token) for the first ten guesses; 1013 (try again later) for later ones, which the lock-out
+        // refuses
         assert.ok([1008, 1013].includes((await closed(guess)).code));
     assert.equal(guesses[0].texts[0].code, 'bad_token');
     flood.close();

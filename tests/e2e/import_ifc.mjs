@@ -49,7 +49,8 @@ for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
 
 const hasOcct = existsSync(join(BIN, 'plantcast-import-occt'));
 
-// Tolerances for areas that the second reader computes. Infinity: its shape is wrong, as its volume or bounding box shows.
+// By element name: largest relative difference between our surface area and that of the second IFC reader, and the reader's
+// flaw that causes it. Infinity: its shape is wrong, so its area is not compared.
 const SECOND_OFF = [[/elbow/, Infinity, 'fills the hole'], [/half of an arc/, Infinity, 'takes the whole arc'],
     [/on a (wall|cylinder)|gradient|sloping/, Infinity, 'lays the profile flat'], [/two outer bounds/, Infinity, 'draws one of two faces'],
     [/polyline|composite|(mapped|clipped) pipe/, 0.085, 'pinches a pipe at a corner'], [/B-rep with/, 0.05, 'draws circles coarsely'],
@@ -142,7 +143,7 @@ test('a swept pipe with curve parameters and a basin with round edges have the r
     const { status, stderr } = plantcast(['import', join(found, 'basin_brep/basin_brep.ifc'), '-o', join(folder, 'basin')]);
     assert.equal(status, 0, stderr);
     const { volume, size } = volumeOf(join(folder, 'basin/basin_brep.glb'));
-    // the volume of the closed body is 2.04 litres
+    // expected: 2.03 to 2.06 litres, since the closed body of the basin has 2.04
     assert.ok(near(size, [0.61, 0.4223, 0.094]) && volume > 0.00203 && volume < 0.00206,
         `the basin's volume is ${volume} m3, its size ${size}`);
 }));

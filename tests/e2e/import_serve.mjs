@@ -239,7 +239,7 @@ test('a failed import gives one error line, and the previous plant stays', optio
 
 test('an import that fails or is cancelled after placing its models restores the previous models, too', options, async () => {
     const served = await Served.start();
-    // returns the folder's files by name, without kept versions of replaced files (NAME.1, ...)
+    // hashes of the folder's files by name, without earlier versions of replaced files (NAME.1, NAME.2, ...)
     const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true })
         .filter((entry) => entry.isFile() && !/\.\d+$/.test(entry.name))
         .map(({ name }) => [name, createHash('md5').update(readFileSync(join(served.folder, name))).digest('hex')]));
@@ -289,8 +289,8 @@ test('an import that fails or is cancelled after placing its models restores the
                 await new Promise((done) => setTimeout(done, 10));
             assert.equal((await (await served.api('')).json()).phase, 'preparing');
             assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
-            // No other Plantcast program changes the folder meanwhile, and a program that changes it without locking loses
-            // nothing.
+            // While the import holds the folder's lock, other Plantcast programs refuse to change the folder. A program that
+            // ignores the lock and writes a file (matches.csv) does not lose it when the import is cancelled.
             const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
             assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using the folder\n$/);
             if (saves)
@@ -326,7 +326,7 @@ test('the import reports duplicate rows and a tag name with control characters',
     const [model, list] = ['plant.gltf', 't.csv'].map((name) => join(given, name));
     writeFileSync(model, boxes(NAMES));
     writeFileSync(list, [...TAGS.trim().split('\n'), ...lines.slice(0, 5), '"P-201B\u0007_TT",0,1,degC,x'].join('\n'));
-    const served = await Served.start(model, list); // files on the command line are imported like files dropped on the page
+    const served = await Served.start(model, list); // files given on the command line must be imported like files dropped on the page
     try {
         const state = await served.idle();
         assert.equal(state.failed, null, state.failed);
@@ -356,7 +356,8 @@ after(async () => {
 test('an empty plant opens the import panel; a model and a tag list make a plant', options, async () => {
     await waitForPicture(page);
     await page.locator('#import.new .drop').waitFor();
-    await page.locator('.drop-zone').waitFor(); // an empty plant shows this instead of a picture, which would show only the human figure
+    // for an empty plant the page shows a drop zone instead of the picture, which would contain only the human figure
+    await page.locator('.drop-zone').waitFor();
     assert.equal(await page.locator('#import .measures').isVisible(), false, 'an empty plant shows no measurements');
     assert.deepEqual(await assetsOf(page), ['person']);
     await settle(page);
@@ -446,7 +447,8 @@ test('a tag can be placed by hand in the engineer\'s panel, and then counts as p
     });
     await becomes(async () => (await shown()).isolate, ['E-101']);
     await page.getByRole('button', { name: 'Show all' }).click();
-    // Placed on equipment other than the matched one: reported during the trial and before saving.
+    // Places the tag's sensor on P-201A, not on the equipment that the tag was matched with: the page must report this during
+    // the trial and again before saving.
     const { min, max } = await page.evaluate(() => {
         const { session: { model }, cameraController } = globalThis.plantcast, { bounds } = model.asset('P-201A');
         cameraController.flyToBox(bounds, 4);
@@ -510,7 +512,7 @@ function namesIn(path) {
 }
 const seenRows = (text, status) => text.split('\n').filter((line) => line.includes(`,${status},`));
 
-const large = sweep(test, () => {}); // only in long runs, because walk.mjs does the same with a plant room
+const large = sweep(test, () => {}); // runs only in long runs, because walk.mjs covers the same steps with a plant room
 large('400,000 triangles and 300 tags: a first picture within 5 minutes of the first command', { skip: noData, timeout: 4e5 }, async () => {
     const models = ['models/duplex_mep.glb', 'models/plm_plant_5parts.glb'].map((name) => join(DATA, name));
     const list = join(mkdtempSync(join(tmpdir(), 'plantcast-list-')), 'tags.csv');
@@ -575,7 +577,7 @@ test('a data source is entered, its values are seen, it is corrected, and it sur
         assert.equal(own.read('plant.yaml').match(/type: modbus/g).length, 1, 'the first source was changed, not added again');
         assert.match(own.read('tags.csv'), /^E-101\.TT-01,400001,Float,.*,plc,temperature,E-101,/m);
         const still = join(own.root, 'still.csv'), tags = ['E-101.TT-01', 'P-201A.TT-01', 'P-201B.PT-01'];
-        writeFileSync(still, `Time_s,${tags}\n0,60,50,8\n`); // constant values, because each change would have a picture drawn
+        writeFileSync(still, `Time_s,${tags}\n0,60,50,8\n`); // all values are constant, because each change would cost a rendered picture
         sim = new Program('plantcast-sim', [join(own.folder, 'plant.yaml'), '--values', still,
             ...tags.flatMap((tag) => ['--map', `${tag}=${tag}`])]);
         await sim.line(/^plantcast-sim: listening/m);
@@ -603,7 +605,7 @@ test('a data source is entered, its values are seen, it is corrected, and it sur
         assert.match((await own.idle()).failed, /upload a tag list first: without one, the plant would lose its data source 127\.0\.0\.1/);
         assert.ok(own.read('plant.yaml').includes(sources));
         assert.equal((await own.post('/upload?name=tags.csv', list)).status, 200);
-        // A line that the user wrote is kept.
+        // After a user has edited the source's line (here: poll_ms), an import refuses to change it, and the line stays.
         writeFileSync(join(own.folder, 'plant.yaml'), own.read('plant.yaml').replace('CDAB }', 'CDAB, poll_ms: 2000 }'));
         await own.post(`/source?host=127.0.0.1&port=${wrongPort}&order=CDAB`);
         assert.match((await own.idle()).failed,

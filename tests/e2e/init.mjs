@@ -132,7 +132,8 @@ test('an own certificate is renewed before it expires, clients that trust the ol
     assert.equal(openssl('x509', '-in', tls('fullchain.pem'), '-noout', '-pubkey').stdout,
         openssl('pkey', '-in', tls('privkey.pem'), '-pubout').stdout);
     assert.equal(renew(), '');
-    // the authority may sign only for this plant, so a certificate for another host is refused
+    // The authority made by init may sign only for this plant's host names: a certificate for bank.example that it signs must
+    // be invalid.
     openssl('req', '-new', '-key', tls('privkey.pem'), '-subj', '/CN=bank.example', '-addext', 'subjectAltName=DNS:bank.example',
         '-out', tls('csr'));
     byAuthority('3');
@@ -184,7 +185,7 @@ test('a second `make run` on a machine takes another port, and both plants get v
 const OUT = resolve(process.env.PLANTCAST_OUT ?? 'build/release');
 const notReleased = OUT === join(BIN, 'release') ? false : 'not the release build';
 
-// Returns a plant's processes, identified by the plant file in their arguments.
+// Returns the names of the running plantcast programs that have this plant file among their arguments.
 const processesOf = (file) => readdirSync('/proc').filter((pid) => /^\d+$/.test(pid)).map((pid) => {
     try {
         return readFileSync(`/proc/${pid}/cmdline`, 'utf8').split('\0');
@@ -202,7 +203,8 @@ for (const [how, end] of sweep(ENDINGS, [ENDINGS[1], ENDINGS[2]]))
         const make = spawn('make', ['run', `build=${BIN}`, `PLANT=${own.file}`, `PORT=${port}`], { detached: true });
         t.after(() => {
             try {
-                process.kill(-make.pid, 'SIGKILL'); // a run that did not end must not keep this program waiting
+                // kills a `make run` that the test did not end, because its open outputs would keep this test program waiting
+                process.kill(-make.pid, 'SIGKILL');
             } catch {
                 // it has ended
             }
@@ -215,7 +217,7 @@ for (const [how, end] of sweep(ENDINGS, [ENDINGS[1], ENDINGS[2]]))
         assert.ok(said.trim().split('\n').length < 20, said);
         assert.match(said.trim().split('\n').at(-1), new RegExp(`^plantcast: ready http://127.0.0.1:${port}/$`));
         assert.equal(statSync(join(OUT, 'codecs')).mtimeMs, stamp, 'the next make compiles everything again');
-        // a program that is starting another appears twice
+        // waits, because a program that is just starting another one appears twice between fork and exec
         await becomes(() => processesOf(own.file).sort(), ['plantcast-sim', 'plantcastd']);
         make.removeAllListeners('exit');
         end(make);

@@ -74,7 +74,7 @@ const inForce = async () => (await fetched('/api/v1/notes')).list.filter(({ ende
 const listed = async (where) => (await ask(where)).text();
 const trail = () => linesOf(path('audit.log')).map((line) => JSON.parse(line));
 
-// Fills the disk, as another program might.
+// Fills the disk completely, as another program might do; free() removes the file again.
 const fill = () => assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${path('full')}`, 'bs=4k']).status, 0);
 const free = () => rmSync(path('full'), { force: true });
 
@@ -93,8 +93,8 @@ const onAlarm = (more) => ({ type: 'alarm', alarms: [['TI-1', 'H']], ...more });
 const device = (at = port) => fetch(`http://127.0.0.1:${at}/api/v1/pair?wall=room&display=1`,
     { headers: { Authorization: `Pairing ${SECRET}` } });
 
-// name; message, or a function that returns it; type of the answer; event in the audit trail; and a check that asks the daemon
-// whether the action took effect.
+// Each row: name of the action; message, or a function that sends or returns it; type of the answer; event in the audit trail;
+// check that asks the daemon whether the action took effect.
 const ACTIONS = [
     ['acknowledge', onAlarm({ action: 'acknowledge' }), 'alarmed', 'alarm', async () => (await alarm()).state === 'acknowledged'],
     ['shelve', onAlarm(shelve), 'alarmed', 'alarm', async () => (await alarm()).state === 'shelved'],
@@ -154,13 +154,14 @@ test('on a full disk each action is answered "not kept" with the reason; once th
     t.after(free);
     const unkept = [], unaudited = [];
     for (const [i, [name, message, type]] of ACTIONS.entries()) {
-        if (/^(remove|revoke|unshelve|put back)/.test(name)) // skipped, because its message would undo an action that could not be kept
+        // skips actions that undo an earlier one of this list: the earlier one could not be kept, so there is nothing to undo
+        if (/^(remove|revoke|unshelve|put back)/.test(name))
             continue;
         fill();
         const { answer, client } = await act(message, type, i + 1);
         client.close();
         if (isDone(answer))
-            continue; // the disk still had room for this action: it was kept
+            continue; // the disk still had room for this action, which was therefore kept as usual
         unkept.push(name);
         assert.match(whyNot(answer), FULL, `${name}: ${JSON.stringify(answer)}`);
         if (answer.unaudited)
@@ -206,7 +207,9 @@ test('an action answered as done survives a kill -9 at that moment, and is in th
         const line = trail().slice(lines).find((one) => one.event === event && one.result === 'done');
         assert.ok(line, `${name} is not in the audit trail`);
     }
-    const { status } = await upload('part.obj', 'v 0 0 0\n'); // the upload's line in the audit trail follows within a second
+    // kills the daemon right after the answer; the upload's line in the audit trail may come up to a second later and is not
+    // checked
+    const { status } = await upload('part.obj', 'v 0 0 0\n');
     await killed();
     assert.equal(status, 200);
     assert.deepEqual((await fetched('/api/v1/import')).files.map(({ name, bytes }) => [name, bytes]), [['part.obj', 8]]);
@@ -294,8 +297,8 @@ test('while the disk hangs, each action is answered "not kept", and other client
         assert.match(first.why, /the server’s disk does not answer/);
         assert.match(first.unaudited, /the server’s disk does not answer/);
         assert.equal(last.done, 0);
-        // requests that store nothing are answered meanwhile; if they waited for the disk, too, there would be only one answer
-        // per action
+        // While the disk hangs, requests that store nothing must still be answered. If they waited for the disk, too, there
+        // would be only one answer per action.
         assert.ok(served > 6, `${served} requests answered in ${ms} ms`);
         for (const [i, [message, type]] of files.entries()) {
             client.say({ ...message, seq: 40 + i });

@@ -14,8 +14,8 @@ const MANY = 20000;
 const name = (i) => `X-${String(i).padStart(5, '0')}`;
 let plant;
 
-// As many tags as fit into 65,536 registers, on one device, each with a limit. The first registers belong to the tiny plant's
-// own tags.
+// Sets up 20,000 tags on one device, each with a high limit, in registers from 400101 on, which nearly fill the table of
+// 65,536. The registers below belong to the tiny plant's own tags.
 before(async () => {
     if (options.skip)
         return;

@@ -43,7 +43,7 @@ async function start(...more) {
     broker = plant.broker = await Broker.start(more);
 }
 
-// Starts a daemon that gets no readings, and waits for the reason in its log.
+// Starts a daemon with these keys of the source; asserts that it gets no readings and that its log gives the reason `why`.
 async function refused(keys, why) {
     plant.write(keys, ROWS);
     assert.equal(plant.plant.prepare().code, 0);
@@ -61,7 +61,8 @@ test('TLS: broker and daemon each verify the other\'s certificate', options, asy
     publisher = await broker.client({ ca: pem('ca.crt'), cert: pem('ca-client.crt'), key: pem('ca-client.key') });
     await publisher.tell('plant/ti1', 21.5);
     await plant.until('TI-1', { ...good, value: 21.5 });
-    await publisher.tell('plant/ti1', '5'.repeat(3 << 20)); // send a message larger than one TLS record
+    // a message of 3 MB, larger than one TLS record: it must arrive whole, as its value is no valid reading
+    await publisher.tell('plant/ti1', '5'.repeat(3 << 20));
     await plant.until('TI-1', { quality_name: 'Bad_ConfigurationError' });
     await publisher.tell('plant/ti1', 22);
     await plant.until('TI-1', { ...good, value: 22 });

@@ -19,7 +19,9 @@ async function createPlant(notify, extra = 0) {
     const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv');
     const place = '"more, of it",temperature,E-101,0.5,0,0,600';
     const rows = Array.from({ length: extra }, (_, i) => `X-${i},${410001 + 2 * i},Float,°C,${place}\n`);
-    plant.keepFresh(); // a reading that is Bad for a moment would end an alarm, which would be notified, and raise it again
+    // keeps readings good on a busy machine: a reading that is Bad for a moment would end its alarm and raise it again, and
+    // both would be notified
+    plant.keepFresh();
     const text = (readFileSync(tags, 'utf8') + rows.join('')).trim().split('\n');
     writeFileSync(tags, `${[`${text[0]},H,HH`, ...text.slice(1).map((row) => `${row},50,60`)].join('\n')}\n`);
     makeCertificate(plant.folder);
@@ -134,7 +136,8 @@ notify:
         await calm(plant, EXTRA);
         await plant.startDaemon();
         await isCalm(plant);
-        // stops the daemon meanwhile, so that it reads all values at once, however long setting them takes
+        // stops the daemon while all tags are set, so that it then reads all values in one poll, however long setting them
+        // takes
         plant.daemon.child.kill('SIGSTOP');
         for (let i = 0; i < EXTRA; i++)
             await set(plant, `X-${i}`, limits.high);
@@ -152,7 +155,7 @@ notify:
         await until('the other one has given up', async () => await plant.metric('plantcast_notify_failed_total{recipient="ops"}') >= 2);
         assert.equal(await plant.metric('plantcast_notify_waiting{recipient="ops"}'), EXTRA);
         const took_ms = [];
-        for (let i = 0; i < 5; i++) { // five requests, because slow ones may be due to other load
+        for (let i = 0; i < 5; i++) { // measures five requests and takes the fastest, because other load may delay single ones
             const asked = performance.now();
             await fetch(`http://127.0.0.1:${plant.port}/api/v1/alarms?limit=1`);
             took_ms.push(performance.now() - asked);
@@ -215,7 +218,7 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
     try {
         await calm(plant);
         await plant.startDaemon();
-        hooks[0].status = 503; // the first attempts to send fail
+        hooks[0].status = 503; // the first recipient answers 503 for a while, so that the first attempts to send fail
         await set(plant, 'TI-1', limits.high);
         await until('a try', () => hooks[0].posts.length > 0);
         hooks[0].status = 200;
@@ -224,8 +227,8 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
         const [next] = await until('the next one is told', () => hooks[1].taken.length > 0 && hooks[1].taken);
         assert.deepEqual(next.alarms.map(({ tag, escalation }) => [tag, escalation]), [['TI-1', 1]]);
         await acknowledge(plant, 'TI-1', ['H']);
-        // raises an alarm that reaches all recipients in turn; by the time it reaches the last one, TI-1's alarm would have
-        // done so too
+        // TI-1's alarm, now acknowledged, must not escalate further. An alarm of TI-2 does escalate to the last recipient; if
+        // TI-1's escalated too, it would have arrived there by then.
         await set(plant, 'TI-2', limits.high);
         const [last] = await until('the last one is told', () => hooks[2].taken.length > 0 && hooks[2].taken);
         assert.deepEqual(last.alarms.map(({ tag }) => tag), ['TI-2']);

@@ -27,7 +27,7 @@ async function recorded(what, where) {
 }
 const trail = () => linesOf(path('audit.log')).map((line) => JSON.parse(line));
 
-// A browser that only keeps cookies.
+// A browser reduced to what sign-in needs: it keeps cookies and sends them again, and does not follow redirects by itself.
 class Browser {
     constructor() { this.jar = new Map(); }
 
@@ -89,7 +89,8 @@ before(async () => {
     chmodSync(path('secret'), 0o600);
     token = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'break-glass']).out.trim();
     provider = new IdentityProvider();
-    await provider.listen(await freePort()); // a port that no other program takes while the provider is down
+    // the provider listens on a reserved port, so that no other program takes it while tests stop the provider
+    await provider.listen(await freePort());
     port = await freePort();
     writeConfig();
     await start();
@@ -229,7 +230,8 @@ test('a user who loses all rights loses the session; a smaller role applies at o
     await browser.signIn();
     const none = await browser.stream();
     await none.hello();
-    delete provider.claims.groups; // some providers omit the claim if there are no groups
+    // The ID token has no claim `groups`, as some providers send for a user without groups: the session must end.
+    delete provider.claims.groups;
     assert.equal((await none.until('a close', (c) => c.closed)).code, 1008);
     provider.claims.groups = ['operators'];
     await browser.signIn();
@@ -270,7 +272,9 @@ test('without refresh tokens a session ends with its access token; log and trail
     provider.refreshes = false;
     const browser = new Browser();
     assert.equal((await browser.signIn()).status, 303);
-    await browser.has('nobody'); // there is no UserInfo to ask either
+    // the user must lose all rights when the access token ends: there is neither a refresh token nor a UserInfo endpoint to
+    // renew them
+    await browser.has('nobody');
     provider.refreshes = true;
     const said = plant.daemon.said + readFileSync(path('audit.log'), 'utf8');
     for (const secret of ['geheim', token, ...browser.jar.values(), 'eyJ'])
@@ -346,7 +350,7 @@ test('made-up codes slow their own address, and others sign in meanwhile', { ski
     };
     const [, , person] = await Promise.all([guess(), guess(), sleep(200).then(() => new Browser().signIn())]);
     assert.equal(person.status, 303);
-    // upper bound of the guesses that the server checks: the first ten, then one every 5 s, and a margin
+    // largest number of guesses that the server may check: ten at once, then one per 5 s, plus a margin of ten
     const checked = 20 + (performance.now() - began) / 5000;
     assert.ok(200 - slowed <= checked, `${slowed} of 200 guesses were slowed`);
     assert.ok(refusals() - lines <= checked + sumsSince(began), String(refusals() - lines));
@@ -365,7 +369,8 @@ test('with a slow provider, waiting codes are bounded, and the rights of 40 user
     provider.delay_ms = 1000;
     const began = Date.now(), answers = [];
     let answerCodes;
-    provider.codesWait = new Promise((done) => { answerCodes = done; }); // the provider answers no code before all codes are sent
+    // the provider keeps all codes waiting until the test has sent the last one
+    provider.codesWait = new Promise((done) => { answerCodes = done; });
     for (let i = 0; i < 90; i++)
         answers.push((await beginFrom(`127.0.0.${20 + i % 9}`))('code=made-up').then((response) => response.statusCode));
     answerCodes();
@@ -421,7 +426,7 @@ test('failing key requests end no session; signing out during a check leaves no 
     t.after(() => { Object.assign(provider, { keysStatus: 200, delay_ms: 0 }); });
     const browser = new Browser();
     await browser.signIn();
-    await sleep(10500); // waits long enough that keys may be requested again
+    await sleep(10500); // waits 10.5 s, because the daemon requests the provider's keys again at most every 10 s
     provider.keysStatus = 503;
     provider.rotate();
     await plant.daemon.line(/openid: http.*keys.*stay signed in/);
@@ -454,7 +459,7 @@ test('a user who leaves all pages idle is signed out, after a notice', {
         for (let i = 0; i < 14; i++, await sleep(1000)) // simulates activity of the user
             await page.mouse.move(400 + i, 300);
         assert.equal(await page.locator('#token').evaluate((dialog) => dialog.open), false);
-        await page.locator('#token .sign-in').waitFor(); // the activity has ended, so the user is signed out
+        await page.locator('#token .sign-in').waitFor(); // no more mouse moves: the page must now sign the user out
         assert.equal(await page.locator('.stage').evaluate((stage) => getComputedStyle(stage).visibility), 'hidden');
         await shoot(page, 'locked');
         await page.reload();
@@ -568,6 +573,8 @@ test('with Debian\'s Glewlwyd, code flow and changing and ending groups work', {
     await browser.has('operator');
     await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'lookers' }));
     await browser.has('viewer');
-    await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'cleaners' })); // Glewlwyd renews tokens even of disabled users
+    // takes the user out of all groups with rights; disabling the user would not do, because Glewlwyd renews tokens even of
+    // disabled users
+    await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'cleaners' }));
     await browser.has('nobody');
 });

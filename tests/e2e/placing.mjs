@@ -48,7 +48,8 @@ const probe = (client) => {
     return client.text('picked');
 };
 
-// Waits until distances along the surface are computed.
+// Waits until the server has computed the distances along the surface for all sensors that this client has placed. Returns its
+// answer.
 async function placed(client) {
     for (;;) {
         const message = await client.text('placed');
@@ -145,11 +146,13 @@ test('saving a list first shows the difference; then the list is active for all,
     ]);
     assert.equal(readFileSync(tagsFile, 'utf8'), old, 'nothing is written before it is confirmed');
 
-    engineer.say({ type: 'save_tags', seq: ++seq, confirm: '0123456789abcdef' }); // refused, because this is the hash of another change
+    // must be refused: the hash of the confirmed change is not that of this change
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: '0123456789abcdef' });
     await engineer.text('tags_diff');
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
 
-    engineer.socket.cork(); // sends both messages at once, so that the second arrives while the first is being processed
+    // cork() makes both messages arrive together, so that the second is received while the first list is still being applied
+    engineer.socket.cork();
     engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash });
     engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash });
     engineer.socket.uncork();
@@ -166,7 +169,9 @@ test('saving a list first shows the difference; then the list is active for all,
         assert.equal(again.plant.configuration, saved.configuration);
         assert.deepEqual(again.tags.find(({ name }) => name === 'TI-9').position.map((x) => Math.round(x * 1000)), [0, 500, 123]);
     }
-    let nearest = []; // repeats the pick, because a sensor counts only once its first reading has arrived from the device
+    // picks repeatedly until the sensor is among the nearest: a sensor without a reading does not count, and the first reading
+    // of TI-9 takes a poll
+    let nearest = [];
     while (nearest.length === 0) {
         other.say({ type: 'pick', seq: ++seq, x: 160, y: 90, camera: { eye: [0.1, 4, 0.15], target: [0, 0, 0.1] } });
         ({ nearest } = await other.text('picked'));
@@ -252,8 +257,8 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is using the folder; try again/);
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
-    // Saving waits for a short match or import and then locks the folder itself. On a busy machine the other program may take
-    // too long.
+    // While another program holds the folder's lock for a short time, saving waits and then succeeds. On a busy machine the
+    // program may hold it longer than saving waits, so this tries again.
     await until('a list that is saved', async () => {
         engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
         await new Promise((done) => setTimeout(done, 300));

@@ -42,7 +42,7 @@ after(async () => {
     await broker?.destroy();
 });
 
-// Records from now on what any subscriber receives.
+// Subscribes to all topics and records, from now on, the newest payload of each topic (heard) and the number of messages.
 async function listen() {
     client?.end(true);
     heard = {};

@@ -32,9 +32,10 @@ before(async () => {
 after(() => plant?.destroy());
 
 const said = () => plant.daemon.said;
-// Returns how much the log grew while an event happened `times` times, and for a while after.
+// Causes an event `times` times, waits, and records in costs[what] how many bytes and lines the log grew per event. Returns the
+// new text.
 async function measure(what, times, happen, settleMs = 3000) {
-    await sleep(1500); // waits, because repeated log lines are counted for a second
+    await sleep(1500); // waits 1.5 s before it begins: the log counts repeated lines for a second and then prints their number
     const from = said().length;
     for (let i = 0; i < times; i++)
         await happen(i);

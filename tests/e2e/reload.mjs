@@ -12,7 +12,7 @@ import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const options = { skip, timeout: 300000 };
-const patienceMs = 100000; // timeout: a reload takes a second, but longer on a busy machine
+const patienceMs = 100000; // timeout of a reload in ms: it takes a second, but longer on a busy machine
 let plant, tagsFile, firstTags;
 
 before(async () => {
@@ -22,7 +22,8 @@ before(async () => {
     tagsFile = join(plant.folder, 'tags.csv');
     // A late reading or poll on a busy machine must not look like a gap caused by the reload.
     firstTags = readFileSync(tagsFile, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',60,');
-    writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,60,', 'E-101,0.5,0,0,60,-1')); // a limit H of -1, which TI-1 exceeds
+    // TI-1 gets the high limit -1, so that its alarm is always active
+    writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,60,', 'E-101,0.5,0,0,60,-1'));
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000')}alarms: local\n`);
     await plant.start();
 });
@@ -168,7 +169,8 @@ test('repeated reloads by signal, under clients that move, disconnect nobody', o
     }
 });
 
-// Reading a named pipe blocks until a writer opens it, so the test decides when the reload finishes.
+// The tag list is replaced by a named pipe: reading it blocks until a writer opens the pipe, so the test decides when the
+// reload ends.
 test('a client whose answer takes too long gets an error, and can ask again', options, async () => {
     const other = await TinyPlant.create(), tags = join(other.folder, 'tags.csv'), aside = join(other.folder, 'aside.csv');
     const ask = () => fetch(`http://127.0.0.1:${other.port}/api/v1/reload`, { method: 'POST' });
@@ -185,12 +187,15 @@ test('a client whose answer takes too long gets an error, and can ask again', op
         const pipe = join(other.folder, 'pipe');
         renameSync(tags, pipe);
         renameSync(aside, tags);
-        let again; // the empty pipe is refused as a tag list, also for requests made before that is known; 503 on a slow machine
+        // the blocked reload, and requests that joined it, fail because the pipe is empty; the loop repeats the request until
+        // one reads the restored list
+        let again;
         for (let i = 0; i < 100 && again?.status !== 200; i++) {
             try {
-                closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK)); // releases the reload that waits for the pipe
+                // opens the pipe for writing, which lets a reload that waits for it go on
+                closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK));
             } catch (error) {
-                assert.equal(error.code, 'ENXIO'); // ENXIO: no reload has the pipe open for reading
+                assert.equal(error.code, 'ENXIO'); // ENXIO: no reload has the pipe open for reading, so none is blocked
             }
             again = await ask();
         }

@@ -17,7 +17,9 @@ import { until } from './support/until.mjs';
 const skip = notBuilt();
 const has = (program) => spawnSync('which', [program]).status === 0;
 const WATCHDOG_S = 10, WITHIN_S = 30; // as in the systemd unit
-const DESCENDANT_MS = 2000; // a descendant that outlives the daemon may keep its outputs open
+// how long to wait for the daemon's outputs to close after its exit: a child process that outlives the daemon may keep them
+// open
+const DESCENDANT_MS = 2000;
 let plant, runtime;
 const running = new Set();
 
@@ -31,7 +33,8 @@ function serve(args, managed = []) {
     const closed = new Promise((done) => child.once('close', done));
     service.ended = new Promise((done) => child.once('exit', async (code) => {
         running.delete(child);
-        await Promise.race([closed, sleep(DESCENDANT_MS, null, { ref: false })]); // the last output is read after the end
+        // waits for the last output, which may still be in the pipe after the process has exited
+        await Promise.race([closed, sleep(DESCENDANT_MS, null, { ref: false })]);
         service.isOver = true;
         done(code);
     }));
@@ -138,7 +141,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
     test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s, and not before`, { skip, timeout: 240000 }, async (t) => {
         const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]);
         await service.said(/^notify: READY=1$/m);
-        // watchdog messages are 2 s apart, so six take longer than the watchdog's interval
+        // six watchdog messages, 2 s apart, take 12 s: longer than the watchdog's 10 s, so the daemon was alive because of them
         await service.said(/(notify: WATCHDOG=1[^]*){6}/);
         service.order(`freeze ${thread}`);
         await service.said(new RegExp(`^frozen: ${thread}$`, 'm'));
@@ -153,7 +156,8 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
 
 test('during a restart connections wait in the manager\'s socket; clients are told when the daemon will be back',
     { skip, timeout: 120000 }, async () => {
-        const service = serve(['--port', '1'], ['--socket']); // plantcastd ignores --port when it gets a socket
+        // --port 1 would fail, but plantcastd ignores --port when the service manager passes it a listening socket
+        const service = serve(['--port', '1'], ['--socket']);
         const port = Number((await service.said(/^port: (\d+)$/m))[1]);
         assert.equal((await get(port, '/readyz')).status, 200, 'a request sent before the daemon ran is answered');
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${port}/`]).code, 0);
@@ -268,7 +272,9 @@ test('metrics include build, process and certificate, and no names from before a
     const left = number('plantcast_certificate_expiry_timestamp_seconds') - Date.now() / 1000;
     assert.ok(left > 2.9 * 86400 && left < 3.1 * 86400, String(left));
     const after_s = number('process_start_time_seconds') - began / 1000, took_s = (Date.now() - began) / 1000;
-    assert.ok(after_s > -2 && after_s < took_s, `${after_s} of ${took_s} s`); // the kernel reports its start time in whole seconds
+    // the start may seem up to 2 s too early: the kernel reports it in clock ticks after the boot time, which is in whole
+    // seconds
+    assert.ok(after_s > -2 && after_s < took_s, `${after_s} of ${took_s} s`);
     assert.ok(number('process_cpu_seconds_total') > 0 && number('process_threads') > 3);
     assert.ok(number('process_max_fds') >= number('process_open_fds'));
     assert.ok(number('process_open_fds') > 5 && number('process_virtual_memory_bytes') > number('process_resident_memory_bytes'));

@@ -117,7 +117,8 @@ test('another picture\'s statement, and a signature with another key, are detect
         /the signature is wrong/);
 });
 
-// Returns the picture with a changed statement, signed by the server's key.
+// Changes the statement in a PNG file and signs the result with the server's own key, so that only the statement's content can
+// be wrong. Returns the new file.
 function resigned(png, change) {
     const key = createPrivateKey(readFileSync(path('server.pem'))), text = change(textOf(png, STATEMENT));
     assert.notEqual(text, textOf(png, STATEMENT));
@@ -133,8 +134,8 @@ test('a statement of another version with a valid signature is reported as not u
         refused(resigned(picture, (text) => text.replace(from, to)), /the picture's signed statement was not written by Plantcast/);
 });
 
-// Before session pictures were signed, statements contained neither overlay nor tier: all were complete pictures of
-// /snapshot.png.
+// Statements of version 1 lack `overlay` and `tier`: only complete pictures of /snapshot.png were signed then, so the redrawing
+// assumes a full overlay and the refined tier.
 test('a statement of version 1 is verified, and its picture drawn again', { skip }, () => {
     const first = resigned(picture, (text) => text.replace('"plantcast_statement":2', '"plantcast_statement":1')
         .replace('"overlay":"full",', '').replace('"tier":"refined",', ''));
@@ -208,8 +209,8 @@ test('a PNG with extra chunks that could change its look is refused, and the chu
 });
 
 const url = () => `http://127.0.0.1:${plant.port}/`;
-// Runs a probe that saves at least `least` signed frames, for longer on a busy machine. Returns the probe and the names of the
-// files.
+// Runs `plantcast probe` to save signed frames into `folder`; repeats it four times as long while it saves fewer than `least`,
+// as on a busy machine. Returns the run and the names of the saved files.
 function probe(folder, least, ...args) {
     for (let seconds = 1; ; seconds *= 4) {
         mkdirSync(folder);
@@ -260,7 +261,8 @@ test('sessions of one view get one signed frame, drawn and encoded once', { skip
     const hello = { type: 'hello', width: 320, height: 200, codecs: ['png'], signed: 'refined' };
     const clients = await Promise.all([1, 2].map(() => PlainClient.open(plant.port)));
     clients.forEach((client) => client.say(hello));
-    // A frame is cached for half a second: on a busy machine, the second session may request it too late.
+    // Repeats until both sessions share a frame: a signed frame is cached for half a second only, and on a busy machine the
+    // second request may come later.
     for (let seq = 1, shared = 0, end = performance.now() + 90000; shared < 2; seq++) {
         for (const client of clients)
             client.say({ type: 'camera', seq, eye: [4, -3, 1 + seq % 9], target: [1, 0, 0], up: [0, 0, 1], fov: 40 });
@@ -363,7 +365,7 @@ test('verification after a change of the plant says that the plant has changed',
     assert.match(renamed.out, /DIFFERS: configuration: .* was [0-9a-f]{16}, now [0-9a-f]{16}/);
 });
 
-// Repeats a comparison until it agrees, because history is written some seconds after the readings.
+// Repeats a comparison of a picture with the history for up to 90 s, because readings reach the history some seconds late.
 const recorded = (compare) => {
     let said = null;
     return until('agreement with the history', () => {
@@ -531,7 +533,9 @@ test('the event loop does not wait for signatures: 10,000 readings are signed in
     assert.equal(plant.prepare().code, 0);
     await plant.daemon.stop();
     chmodSync(path('server.pem'), 0o600);
-    await plant.sim.stop(); // stops the simulator, because changing readings would be work of the event loop, too
+    // without the simulator readings do not change, because handling changed readings would add work to the event loop that is
+    // measured here
+    await plant.sim.stop();
     await plant.startDaemon('--signing-key', path('server.pem'));
     const { pid } = plant.daemon.child, count = 10;
     const whole = await fetchPicture('width=320&height=200');

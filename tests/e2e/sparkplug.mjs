@@ -20,7 +20,7 @@ const good = { quality_name: 'Good' }, dead = { quality_name: 'Bad_Communication
 let broker, plant, nodes = [];
 const until = (...args) => plant.until(...args), metric = (name) => plant.metric(`${name}{source="broker"}`);
 
-// Starts a node with one device; births: how often births were requested or sent.
+// Starts a Sparkplug edge node with one device. node.births counts the birth certificates that it has published.
 async function startNode(more = {}) {
     const node = sparkplug.newClient({ serverUrl: `mqtt://127.0.0.1:${broker.port}`, username: '', password: '', groupId: 'U100',
         edgeNode: 'edge', clientId: `edge${Math.random()}`, ...more });
@@ -52,7 +52,7 @@ async function allDead(...names) {
         await until(name, dead);
 }
 
-// Closes without a message: the broker publishes the death certificate.
+// Closes the node's connection without a DISCONNECT message, so that the broker publishes the node's death certificate.
 const kill = (node) => node.client.stream.destroy();
 
 before(async () => {
@@ -93,7 +93,8 @@ test('births and data of every number type are read, by name and by alias', opti
         { alias: 4, type: 'Boolean', value: true, properties: { Quality: { type: 'Int32', value: 0 } } }] });
     await until('PI-1', { quality_name: 'Bad_SensorFailure' });
     await until('XS-1', { quality: 'bad' });
-    // the device numbers its own metrics from 1, although aliases must be unique within a node
+    // The device's aliases begin at 1 and so repeat those of its node, although Sparkplug demands unique aliases within a node:
+    // both must still be read correctly.
     node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', alias: 1, type: 'Float', value: 4 },
         { name: 'Raw', alias: 2, type: 'UInt16', value: 13824 }, { name: 'Running', alias: 3, type: 'Boolean', value: true }] });
     node.publishNodeData({ timestamp: Date.now(), metrics: [{ alias: 1, type: 'Double', value: 22.5 }] });
@@ -159,7 +160,9 @@ test('a lost message leaves no value Good; the node is asked for a rebirth only 
         await plant.daemon.stop();
         const closed = new Promise((done) => node.client.once('close', done));
         node.stop();
-        await closed; // this node's death certificate must not arrive after the next node's birth
+        // waits until the node is disconnected, so that its death certificate does not arrive after the next node's birth
+        // certificate
+        await closed;
     }
 });
 
@@ -205,7 +208,8 @@ test('invalid Sparkplug payloads, and metrics that change their type, are refuse
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.from([0xff, 0xff, 0xff, 0xff, 0x0f, 1, 2, 3]));
     await plant.daemon.line(/NDATA\/edge: a message of 8 bytes was refused: not a Sparkplug B payload/);
     await stranger.tell(`spBv1.0/U100/DDATA/edge/${'x'.repeat(65000)}`, encode({ metrics: [] }));
-    await refused(2); // the log has at most one line per minute about refused messages
+    // checks the counter of refused messages: the log would not do, because it has at most one line per minute about them
+    await refused(2);
     await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.alloc(5 << 20)).catch(() => {});
     await stranger.leave();
     node.bear();
@@ -216,12 +220,13 @@ test('invalid Sparkplug payloads, and metrics that change their type, are refuse
     await until('XS-1', { ...good, value: 0 });
     await refused(3);
     node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', type: 'Int32', value: -5 }] });
-    await until('TI-2', { ...good, value: -5 }); // another birth certificate of the device is accepted
+    // although PI-1's metric is missing in it, this new birth certificate of the device is accepted for TI-2
+    await until('TI-2', { ...good, value: -5 });
     await until('PI-1', { quality_name: 'Bad_ConfigurationError' });
     await plant.daemon.line(/U100\/edge\/skid: the Sparkplug birth certificate has no metric 'Raw', nor metrics of other tags/);
 });
 
-// 4,000 metrics, five times a second, `each` of them per message.
+// A node sends 4,000 metrics five times a second, split into messages of `each` metrics.
 for (const each of [4000, 40])
     test(`20,000 metrics a second, ${each} in a message, all arrive`, options, async () => {
         const MANY = 4000, SECONDS = 4, name = (i) => `N-${i}`;
@@ -231,7 +236,7 @@ for (const each of [4000, 40])
         const born = numbers.map((i) => ({ name: name(i), alias: i, type: 'Float', value: -1 }));
         node.publishNodeBirth({ timestamp: Date.now(), metrics: born });
         await until(name(MANY - 1), { ...good, value: -1 });
-        const own = 1; // number of metrics in startNode() that are tags
+        const own = 1; // number of metrics in the birth certificate of startNode() that belong to a tag of this plant
         await waitFor('all births being counted', async () => await metric('samples_total') >= MANY + own);
         const before = await metric('samples_total'), begun = performance.now();
         let sent = 0, round = 0;

@@ -72,14 +72,17 @@ for (const reloads of [false, true])
                     return;
                 await until('acknowledged at the leader', async () => (await core.node.alarm()).state === 'acknowledged');
                 core.program.child.kill('SIGHUP');
-                // Without the database, the leader ends if a reload takes longer than its lease.
+                // Waits until the reload ends, or until the leader does: without the database it gives up its role if the
+                // reload takes longer than the lease.
                 await Promise.race([core.program.line(/reload: configuration/), core.program.ended]).catch(() => core.program.ended);
             });
             const isConfirmed = confirms() > 1, { state } = await other.node.alarm();
             t.diagnostic(`${isConfirmed ? 'confirmed' : 'not confirmed'}, and ${state} at the next leader`);
             assert.ok(!isConfirmed || state === 'acknowledged', `a confirmed acknowledgement is ${state} at the next leader`);
             anna.close();
-            if (state !== 'acknowledged') { // another operator acknowledges the alarm again, so that it can end
+            // The new leader never got the acknowledgement, and the client knew: another operator acknowledges the alarm, so
+            // that it can end before the next case.
+            if (state !== 'acknowledged') {
                 const ben = await other.node.client({}, { token: two.nodes.tokens.operator });
                 acknowledge(ben);
                 await ben.text('alarmed');

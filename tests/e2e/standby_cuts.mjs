@@ -137,7 +137,7 @@ test('of two simultaneous bids for the lease in the database, exactly one wins',
         two.server.ask("SELECT 1 FROM pg_stat_activity WHERE wait_event_type = 'Lock' AND query LIKE 'UPDATE lease%'").length;
     try {
         await Promise.all([two.start('one'), two.start('two')]);
-        await sleep(4000); // waits until both cores have asked for the lease
+        await sleep(4000); // waits 4 s for both cores' requests for the lease, which hang at the locked row, and for their repetitions
         await until('bids that wait', () => waiting() >= 4);
         t.diagnostic(`${waiting()} bids wait`);
     } finally {
@@ -169,7 +169,8 @@ test('a standby of another version is named, shows nothing, votes and takes over
     await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);
     assert.equal(await core.node.metric('plantcast_core_standby'), 0, 'a core of another version does not count as a standby');
     assert.equal(await (await core.node.fetch('/readyz')).text(), 'ok, but no standby follows: the log says why\n');
-    await core.toDatabase.cut(); // cuts the database link, so that only the standby's promise keeps the leader in its role
+    // cuts the leader from the database: it may only go on because the standby, connected to it, has promised not to take over
+    await core.toDatabase.cut();
     await two.goesOn(t, core, 4);
     await core.toDatabase.mend();
     const { leads } = await two.takeOver(t, core, kill(core, 'SIGTERM'));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A standby loads changed files when the leader does. A core that took over and is reloaded at once still reads the points that
-// the other recorded during a cut. For a standby that keeps reconnecting, it reads them at most twice more.
+// Reload of two cores. A standby loads changed files when the leader does. A core that has taken over and is reloaded at once
+// still reads from the database the points that the other core recorded while the link between the cores was cut. If the
+// standby keeps reconnecting, the leader reads these points at most twice more.
 import assert from 'node:assert/strict';
 import { copyFileSync, cpSync, readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -22,7 +23,7 @@ const valuesOf = async (core, from_us, to_us) => {
 test('points recorded during a cut are read although the plant is reloaded meanwhile', options, async (t) => {
     const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
     await other.toOther.cut();
-    for (let i = 0; i < CUT_S * 2; i++) { // changes that the other core misses because of the cut
+    for (let i = 0; i < CUT_S * 2; i++) { // the readings change twice a second during the cut, so that the other core misses these points
         await two.plant.tell(`set TI-1 ${i % 2 ? 71 : 31}`);
         await sleep(500);
     }
@@ -82,7 +83,7 @@ test('a standby with the same changed files loads them when the leader does', op
     core.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration \w+ replaced \w+ after [\d.]+ s, requested by the core/);
     await two.followed(core);
-    // reloads the same configuration again, as if models had changed
+    // a reload without changes in the plant file (as after changed models): the standby must reload, too
     other.program.said = '';
     core.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration (\w+) replaced \1 after [\d.]+ s, requested by the core/);

@@ -85,13 +85,14 @@ test('clients of an unknown proxy get 403, however the daemon listens', { skip }
             for (const Host of args.includes('--host') ? ['localhost', 'plant.example'] : ['localhost'])
                 for (const [path, headers] of [['/api/v1/tags', {}], ['/metrics', bearer(tokens.viewer)], ['/stream', UPGRADE]])
                     assert.equal((await ask(path, { ...headers, Host, [name]: value }, secure)).status, 403, `${what}: ${name} ${path}`);
-        // a client that uses a host name open to others has no rights either
+        // A host name from --host admits the request, but gives it no rights without a token.
         if (args.includes('--host') && !args.includes('--trust-local'))
             assert.ok([401, 403].includes((await ask('/api/v1/tags', { Host: 'plant.example' }, secure)).status), what);
     }
 });
 
-// Tag names appear in what an engineer saves, writes and checks. Session numbers must not be guessable.
+// An engineer first causes messages with tag and user names: saves a list, writes a note, checks a loop. An open viewer (a
+// client without a token) must get none of them.
 test('an open viewer gets no reading, tag or user name, and can follow nobody by guessing session numbers', { skip }, async () => {
     await plant.startSim();
     await serve('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--tokens', tokensFile);
@@ -119,7 +120,8 @@ test('an open viewer gets no reading, tag or user name, and can follow nobody by
         assert.equal((await stranger.text('error')).code, 'bad_field', String(session));
     }
     assert.ok(Math.abs(engineer.welcome.session - welcome.session) > 1000 && Number.isSafeInteger(welcome.session));
-    stranger.say({ type: 'follow', session: engineer.welcome.session }); // the session number comes from a link that the engineer shared
+    // a viewer that knows the session number, here from a link that the engineer shared, may follow that session
+    stranger.say({ type: 'follow', session: engineer.welcome.session });
     const following = await stranger.text('following');
     assert.deepEqual([following.session, following.sensors, following.baselines], [engineer.welcome.session, {}, []]);
     stranger.say({ type: 'follow', session: null });
@@ -132,8 +134,8 @@ test('an open viewer gets no reading, tag or user name, and can follow nobody by
     }
     assert.ok(picks.some((pick) => pick.asset && pick.position), 'the viewer\'s picks find assets and positions');
     assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
-    // Readings are sent at most twice a second, and markers before a picture. When the second change and its picture arrive,
-    // all messages that the first change caused have therefore arrived.
+    // Two changes, because the server sends readings at most twice a second, and sends markers before pictures: once the second
+    // change's picture has arrived, so have all messages caused by the first one.
     const changes = [];
     for (const value of [82.5, 61.5]) {
         await plant.tell(`set TI-1 ${value}`);
@@ -150,7 +152,8 @@ test('an open viewer gets no reading, tag or user name, and can follow nobody by
     assert.doesNotMatch(all, /TI-\d|PI-\d|Kim|engineer-1|8[12]\.\d|20\.5|61\.5/);
     const picture = (headers = {}) => ask('/snapshot.png?width=320&height=200', { Host: 'plant.example', ...headers });
     assert.equal((await picture()).status, 200);
-    // Wherever a name may appear, an existing tag's name gets the same answer as an unknown one.
+    // Error messages must not tell whether a tag exists: each request with an existing tag's name gets the same answer as one
+    // with an unknown name.
     const hidden = (text, name) => text.replaceAll(name, 'NAME');
     for (const [i, names] of [['TI-1', 'TI-9'], ['PI-1', 'PI-9']].entries()) {
         const answers = [];
@@ -214,8 +217,10 @@ test('text that is not UTF-8 is closed with 1007, and user texts cannot become f
     }
     const client = await PlainClient.open(plant.port);
     await client.hello();
-    client.write(encodeFrame(10, Buffer.from([0x80, 0xff, 0xc0, 1]))); // a pong is not text, even if a text came before it
-    const two = Buffer.from('{"type":"ping","t":7,"x":"\u20ac"}'), half = two.indexOf(0x82); // split the message within a character
+    // a pong with bytes that are no valid UTF-8 is allowed, because a pong is not text
+    client.write(encodeFrame(10, Buffer.from([0x80, 0xff, 0xc0, 1])));
+    // splits the message into two frames within the bytes of one character, which is allowed
+    const two = Buffer.from('{"type":"ping","t":7,"x":"\u20ac"}'), half = two.indexOf(0x82);
     client.write(Buffer.concat([encodeFrame(1, two.subarray(0, half), { fin: false }), encodeFrame(0, two.subarray(half))]));
     assert.equal((await client.text('pong')).t, 7);
     client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true, remark: '=HYPERLINK("http://x")' });
@@ -265,7 +270,8 @@ test('every accepted or refused token is logged; ten wrong tokens slow an addres
         assert.ok(!plant.daemon.said.includes(token.slice(3)), 'no token is in the log');
 });
 
-// Header names that libwebsockets knows: on the beginning of such a name, its parser waits forever for the rest.
+// All header names that libwebsockets recognises. If a request has a header whose name is only the beginning of one of these,
+// the parser waits for the rest of the name and never ends the request.
 const KNOWN = `accept accept-charset accept-encoding accept-language accept-ranges access-control-allow-origin
 access-control-request-headers age allow authorization cache-control connection content-disposition content-encoding content-language
 content-length content-location content-range content-type cookie date dnt etag expect expires forwarded from host http2-settings
@@ -275,7 +281,8 @@ sec-websocket-extensions sec-websocket-key sec-websocket-protocol sec-websocket-
 transfer-encoding upgrade upgrade-insecure-requests user-agent vary via www-authenticate x-auth-token x-forwarded-for x-frame-options
 x-real-ip`.split(/\s+/);
 
-// Resolves with the first words of the server, or "" if it closes without any.
+// Sends `text` after idleMs. Resolves with the first line of the server's answer, or "" if the server closes the connection
+// without an answer.
 function speak(text, secure = false, idleMs = 0) {
     return new Promise((done, fail) => {
         const where = { port: plant.port, host: '127.0.0.1', rejectUnauthorized: false };
@@ -293,7 +300,7 @@ function speak(text, secure = false, idleMs = 0) {
 
 const ENDING = 'a header whose name is the beginning of a known one ends its request within seconds, with 408';
 test(ENDING, { skip, timeout: 200000 }, async () => {
-    // a long idle timeout, so that it does not end the connection first
+    // patience: 60 s of allowed silence, so that this limit does not close the connections before the limit under test
     await serve('--limit', 'address-connections=2000', '--limit', 'patience=60');
     const names = [...new Set(KNOWN.flatMap((name) => [...name].map((_, i) => name.slice(0, i + 1))))], heads = {};
     const said = await Promise.all(names.map((name) => speak(`GET /healthz HTTP/1.1\r\nHost: localhost\r\n${name}: 1\r\n\r\n`)));

@@ -26,7 +26,8 @@ const served = (name) => ['--listen', '0.0.0.0', '--tls-cert', path('cert.pem'),
     '--audit', path(`${name}.audit`)];
 // Returns the complete lines of a daemon's audit trail.
 const audited = (name) => linesOf(path(`${name}.audit`)).map((line) => JSON.parse(line));
-// The trail is written by another thread, so this waits for a matching line. Returns the first one.
+// Waits for a matching line in the node's audit trail, which another thread of the daemon writes later. Returns the first such
+// line.
 const recorded = (name, is) => until(`a line in the trail of ${name}`, () => audited(name).find(is));
 const isRefused = ({ event, result, from }) => event === 'login' && result === 'refused' && from;
 const bearer = (token, more = '') => `Authorization: Bearer ${token}\r\n${more}`;
@@ -87,9 +88,11 @@ test('eighty sessions of twenty clients on two nodes are all admitted, with the 
 
 test('only a client with wrong tokens is slowed, also when that client forges X-Forwarded-For', options, async () => {
     const [liar, user] = ['127.0.0.40', '127.0.0.41'];
-    for (const page of ['/api/v1/tags', '/api/v1/history?tags=TI-1']) { // renderers answer the first page, the core the second
+    // the balancer sends the first request to the renderers and the second to the core, so both kinds of node are tested
+    for (const page of ['/api/v1/tags', '/api/v1/history?tags=TI-1']) {
         const answers = [], forged = `X-Forwarded-For: ${user}\r\nForwarded: for=${user}\r\nX-Real-IP: ${user}\r\n`;
-        // the last six answers, of both nodes, are "too many requests"
+        // the client counts as slowed when its last six requests, which went to both nodes, were answered with 429 (too many
+        // requests)
         const isSlowed = () => answers.length >= 6 && answers.slice(-6).every((status) => status === 429);
         while (!isSlowed() && answers.length < 200)
             answers.push(await ask(liar, bearer(WRONG, forged), page));

@@ -69,7 +69,7 @@ test('each pane shows its configured content', options, async () => {
         const { clientWidth, clientHeight } = document.querySelector('.pane.views iframe').contentDocument.getElementById('viewport');
         return clientWidth > 400 && clientHeight > 300;
     });
-    await page.waitForFunction(() => { // waits for a picture from the home camera in the pane's final shape
+    await page.waitForFunction(() => { // waits for a picture from the home position of the camera, as fitted to the pane's final shape
         const { session } = document.querySelector('.pane.views iframe').contentWindow.plantcast, { width, height } = session.size;
         const { eye } = session.homeIn(width, height);
         return session.picture?.camera.eye.every((m, i) => Math.abs(m - eye[i]) < 0.01);
@@ -106,7 +106,8 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
         };
         look();
     });
-    await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor(); // waits for the view that does not contain the pump
+    // waits until the tour shows the view that does not contain PI-1's pump, so that the alarm must replace the view
+    await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor();
     await plant.ask('set PI-1 95');
     await page.locator('.pane.views.called h2', { hasText: 'PI-1' }).waitFor();
     await page.locator('.pane.alarms li.waiting', { hasText: 'PI-1' }).waitFor();
@@ -123,7 +124,8 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
     await shoot(page, 'wall-display-alarm');
     await plant.ask('set TI-1 95');
     await plant.ask('set TI-2 95');
-    await page.waitForFunction(() => { // alarms that lack room for long rows get short ones, and the rest are counted
+    // the pane has no room for three long rows: it shows short ones with name and value, and the number of those left out
+    await page.waitForFunction(() => {
         const { alarms } = globalThis.wall.session.model, rows = [...document.querySelectorAll('.pane.alarms li.brief')];
         const more = document.querySelector('.pane.alarms .more'), count = more.hidden ? 0 : Number(/\d+/.exec(more.textContent)[0]);
         return alarms.list().length >= 3 && rows.length > 0 && rows.length + count === alarms.list().length &&
@@ -141,7 +143,7 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
 });
 
 test('a second display shows its own panes', options, async () => {
-    let answer; // holds back the module for trends, so that the pane has no trend for a while
+    let answer; // delays the trend module until answer() is called, so that the pane's text `waiting for values` can be seen
     const held = new Promise((done) => { answer = done; });
     const arrange = (one) => one.route(/app\/trends\/trends\.js/, async (route) => { await held; await route.continue(); });
     const other = await openPage(`${plant.url}?wall=room&display=2&lang=ko`, { viewport: { width: 960, height: 540 } }, null, arrange);
@@ -227,7 +229,7 @@ test('a view that names things the plant lacks is not shown, and is reported', o
     await right.locator('h2 .about', { hasText: 'Temperature' }).waitFor();
     assert.equal(await right.locator('.why').isVisible(), false);
     await shoot(other.page, 'wall-display-wrong-view');
-    await plant.ask('set TI-2 95'); // an alarm can still be shown in the pane
+    await plant.ask('set TI-2 95'); // the pane whose view is invalid can still show an alarm
     await other.page.waitForFunction(() => document.querySelector('.pane.views.called:not(.unshown, .coming)'));
     assert.equal(await left.locator('iframe').isVisible(), true);
     await plant.ask('set TI-2 20');
@@ -236,7 +238,8 @@ test('a view that names things the plant lacks is not shown, and is reported', o
     await other.page.locator('#named-list em').first().waitFor();
     const said = await other.page.locator('#named-list em').allTextContents();
     assert.equal(said.length, 2, 'the list marks the two invalid views');
-    const lines = await other.page.evaluate(() => { // the German name of the demo plant's vibration
+    // puts in the German name of the demo plant's vibration, a long word; returns the number of lines that the title then takes
+    const lines = await other.page.evaluate(() => {
         const [name] = document.querySelector('#legend h2').childNodes, range = document.createRange();
         name.textContent = 'Schwinggeschwindigkeit';
         range.selectNodeContents(name);
@@ -259,13 +262,13 @@ test('a tour shows each view for its time, with its text', options, async () => 
         session.on('alarms', acknowledge);
         acknowledge();
     });
-    // Records the titles; the times at which the pane begins another view, whose picture may come later; and how long it could
-    // not do so because timers were late or an alarm waited.
+    // Records the pane's titles (titles) and the times at which it begins another view (begun), which precede the view's
+    // picture. late: time in ms by which it had to be later, because timers were late or an alarm waited.
     const watch = () => {
         const log = globalThis.titles = [], begun = globalThis.begun = [], { setItem } = Storage.prototype;
         let last = performance.now(), late = 0;
         Storage.prototype.setItem = function set(key, value) {
-            if (key.startsWith('plantcast.at.')) { // the pane stores which view it shows
+            if (key.startsWith('plantcast.at.')) { // the pane stores the view that it begins to show, so this write marks the beginning
                 const now = performance.now();
                 begun.push({ at: now, late: late + Math.max(0, now - last - 50) });
                 late = 0;
@@ -287,7 +290,7 @@ test('a tour shows each view for its time, with its text', options, async () => 
     const [titles, begun] = await other.page.evaluate(() => [globalThis.titles, globalThis.begun]);
     const texts = ['From above · Seen from the stack', 'Whole unit'];
     assert.deepEqual(titles.slice(0, 4), [...texts, ...texts]);
-    // how long each of the first two views was shown; the first one counts once the page has its shape
+    // checks for how long each of the first two views was shown
     for (const [i, dwellMs] of [[0, 6000], [1, 4000]]) {
         const tookMs = begun[i + 1].at - begun[i].at, { late } = begun[i + 1];
         assert.ok(tookMs > dwellMs - late - 300 && tookMs < dwellMs + late + 600, `view ${i} was shown for ${tookMs} ms, late by ${late}`);

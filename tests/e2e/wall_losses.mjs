@@ -46,7 +46,8 @@ const live = (since) => wall.page.waitForFunction(([picture, words]) => {
 }, [since.picture, since.words], { polling: 200 });
 
 test(`each of ${LOSSES} losses of the server is reported, and the wall recovers by itself`, options, async (t) => {
-    await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0); // waits for the wall; until then another page is loaded
+    // waits until the wall page has built its panes; before that, another page is loaded
+    await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0);
     await live({ picture: 0, words: 0 });
     let slowest = 0;
     for (let i = 0; i < LOSSES; i++) {

@@ -90,7 +90,8 @@ test('a wall tile takes its display\'s token: a viewer\'s token can neither lead
     assert.match((await hello(tokens.tile, 1)).texts[0].text, /this token belongs to display 2 of wall tiled/);
     const tile = await hello(tokens.tile, 2);
     await tile.until('the lead', () => tile.texts.some(({ type, leads }) => type === 'tiles' && leads));
-    assert.deepEqual((await tile.text('tiles')).missing, [1]); // refused clients do not count as displays
+    // only display 1 is missing: the clients refused above do not count as displays
+    assert.deepEqual((await tile.text('tiles')).missing, [1]);
     const other = await hello(tokens.engineer, 1);
     await other.until('both', () => other.texts.some(({ type, missing: gone }) => type === 'tiles' && gone.length === 0));
     open.forEach((client) => client.close());
@@ -101,7 +102,7 @@ test('an unpaired display shows six digits, and nothing of the plant', options, 
     assert.equal(await wall.page.locator('.pane').count(), 0);
     await shoot(wall.page, 'wall-pairing');
     await wall.page.reload();
-    assert.equal(await digitsOf(wall.page), digits); // the digits stay the same until they expire
+    assert.equal(await digitsOf(wall.page), digits); // a reload of the page keeps the digits, until they expire
 });
 
 test('digits that no display shows, other secrets and other users change nothing', options, async () => {
@@ -115,7 +116,7 @@ test('digits that no display shows, other secrets and other users change nothing
     assert.equal((await get('api/v1/devices')).status, 401);
     for (let i = 0; i < 7; i++)
         assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing pc_${String(i).repeat(64)}`)).status, 200);
-    // the wall is the eighth waiting device
+    // the wall and the seven devices above are eight waiting for approval, the maximum: a ninth gets 503
     assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing pc_${'a'.repeat(64)}`)).status, 503);
 });
 
@@ -148,7 +149,8 @@ test('a paired display is that display only, as a viewer, also after a restart o
     await wall.page.locator('.pane.alarms').waitFor();
 });
 
-// Connects a client of that display; pairs: the desk first approves its digits.
+// Connects a client with the secret of a display of the wall `room`. pairs: first lets the desk approve the digits that the
+// server gives for this secret.
 async function displayClient(display, secret, pairs) {
     if (pairs) {
         const { digits } = await (await get(`api/v1/pair?wall=room&display=${display}`, `Pairing ${secret}`)).json();
@@ -173,7 +175,8 @@ const PATHS = ['tags', 'plant', 'views', 'notes', 'alarms', 'alarms/journal', 'p
 
 test('a display\'s secret reads only that display, even before its first message', options, async () => {
     const first = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
-    const second = `pc_${'1'.repeat(64)}`; // the secret with which display 2 connects once its digits are approved
+    // a secret made up by this test; display 2 may connect with it once the desk has approved its digits
+    const second = `pc_${'1'.repeat(64)}`;
     const tiles = await displayClient(2, second, true), pictures = await displayClient(1, first, false);
     for (const secret of [first, second])
         for (const path of [...PATHS.map((one) => `api/v1/${one}`), 'metrics', 'snapshot.png', 'snapshot.png?view=whole'])
@@ -195,7 +198,8 @@ test('a display\'s secret reads only that display, even before its first message
         const { values } = await tiles.text('tags', 20000);
         values.forEach(([tag]) => read.add(tag));
     }
-    assert.deepEqual([...read].sort((a, b) => a - b), mine.sort((a, b) => a - b)); // the display reads only the tags that it shows
+    // display 2 got the values of all tags in its tiles, and of no others
+    assert.deepEqual([...read].sort((a, b) => a - b), mine.sort((a, b) => a - b));
     const frame = await tiles.frameWhere('a picture', () => true);
     assert.deepEqual([frame.width, frame.height], [16, 16]);
     assert.equal(tiles.texts.filter(({ type }) => ['markers', 'proofs'].includes(type)).length, 0);
@@ -205,9 +209,10 @@ test('a display\'s secret reads only that display, even before its first message
         assert.match((await tiles.text('error')).text, /this token belongs to display 2 of wall room/, message.type);
     }
     await pictures.hello({ width: 640, height: 480 });
-    // all tags, because an alarm may move the camera to any part of the plant
+    // a display with pictures gets all tags, because an alarm may move its camera to any part of the plant
     assert.equal((await pictures.text('tags', 20000)).values.length, 3);
-    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 }); // the display uses picks to find a side from which that point is visible
+    // a display with pictures may send picks: the page uses them to find a side from which an alarm's position is visible
+    pictures.say({ type: 'pick', seq: 1, x: 320, y: 240 });
     assert.equal((await pictures.text('picked', 20000)).seq, 1);
     assert.deepEqual((await pictures.text('views', 20000)).list.map(({ id: view }) => view), ['whole']);
     pictures.close();
@@ -262,7 +267,7 @@ test('a viewer can note, send and point at nothing; the audit trail names users 
         await page.evaluate(([messages, of]) => messages.forEach((message) => globalThis[of].session.post(message)), [asked, name]);
     };
     await post(wall.page, 'wall');
-    // three were refused: a note, a view sent to the wall, and a pointer
+    // of the messages posted at the wall, three were refused: a note, a view sent to a pane, and a pointer
     await recorded(/refused.*room\.1\.1.*to write or remove notes: this needs the role operator/);
     await recorded(/(refused.*room\.1\.1.*to send views or a pointer to a wall: this needs the role operator[^]*){2}/);
     await post(desk.page, 'plantcast');

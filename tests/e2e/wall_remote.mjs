@@ -65,8 +65,8 @@ test('a note is seen by all users, and on the wall, until it is removed', option
     assert.ok(list[0].until_us > list[0].time_us);
 });
 
-// Waits until all sessions of a page are open: the desk's, or those of the wall and its pane. isOld true: marks their models;
-// false: waits until they have other models, from another start of the daemon.
+// Waits until all sessions of a page are connected: the desk's one, or the wall's and its pane's. A restarted daemon gives each
+// session a new model. isOld true: marks the present models; false: waits until all models are unmarked, i.e. new.
 const opened = (page, isOld) => page.waitForFunction((marks) => {
     const all = globalThis.wall ? [globalThis.wall, document.querySelector('.pane.views iframe')?.contentWindow.plantcast]
         : [globalThis.plantcast];
@@ -151,7 +151,8 @@ test('an alarm replaces a sent view, and the sent view returns afterwards', opti
     await plant.ask('set TI-1 95');
     await wall.page.locator('.pane.views.called h2', { hasText: 'TI-1' }).waitFor();
     await plant.ask(`set TI-1 ${usual}`);
-    await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor(); // the alarm has returned, but nobody has acknowledged it
+    // the alarm's value is back within its limits, but nobody has acknowledged it, which the hollow symbol shows
+    await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor();
     await wall.page.evaluate(() => {
         const { session } = globalThis.wall, alarms = [...session.model.alarms.rows.values()].filter(({ state }) => ['unacknowledged',
             'returned'].includes(state))

@@ -36,7 +36,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Returns the whole picture as a single client of that size gets it: { width, at(x, y) }.
+// Returns the picture of both displays and the margin around them, drawn for a single client of that size: { width, at(x, y) }.
 async function wholePicture() {
     const client = await PlainClient.open(plant.port), width = 2 * WIDTH + 2 * MARGIN, height = HEIGHT + 2 * MARGIN;
     await client.hello({ width, height, codecs: ['png'] });
@@ -52,8 +52,9 @@ const pictureOf = ({ width, height, rgb }) => ({ width, height, at: (x, y) => [0
 // colours may differ slightly, because pictures are sent as JPEG or H.264
 const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) < 40);
 
-// Returns the smallest share of pixels on two displays that equal the large picture: along the seam, at the lower edge between
-// legend and corner, and where a box is (pixels that are neither white nor grey).
+// Compares the pixels of two displays with the large picture, which is shifted by (x0, y0). Returns the smaller share of equal
+// pixels: of those near edges (along the seam, and at the lower edge between legend and corner), or of those that show a box
+// (neither white nor grey).
 function agreement(screens, large, [x0, y0]) {
     const parts = { edges: [0, 0], box: [0, 0] };
     const look = (i, x, y, part = parts.edges) => {

@@ -33,7 +33,7 @@ before(async () => {
     appendFileSync(plant.file, WALLS);
     plant.keepFresh();
     await plant.start();
-    const values = { 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }; // from now on no reading changes by itself
+    const values = { 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }; // sets constant values, so that no reading changes unless a test changes it
     for (const [tag, value] of Object.entries(values))
         await plant.tell(`set ${tag} ${value}`);
     for (let read = []; read.length === 0 || read.some(({ name, value }) => value !== values[name]); await sleep(20))
@@ -62,7 +62,8 @@ function canvasAt(client, seq) {
     return canvas;
 }
 
-// Returns the newest picture that all clients were told to show: [{ seq, at_us }, ...] by client.
+// Returns, for each client, the message { seq, at_us } that tells it to show a picture; the picture is the newest one that all
+// clients were told to show.
 const picture = (clients) => clients[0].until('a picture that all show', () => {
     const common = presents(clients[0]).reverse().find(({ picture: number }) => clients.every((client) =>
         presents(client).some((one) => one.picture === number)));
@@ -105,7 +106,7 @@ async function moveUntil(client, wanted, still) {
     throw new Error('no such picture');
 }
 
-// Returns what one client sees that has the whole picture.
+// Returns the picture of a single client that has the size of all tiles together, as the reference.
 async function whole(width, height, still) {
     const client = await PlainClient.open(plant.port);
     await client.hello({ width, height, codecs: ['png'] });
@@ -154,7 +155,7 @@ async function compare(wall, columns, rows, [across, down]) {
     return undefined;
 }
 
-// A preview once differed while other programs ran, so only make test-long runs this case.
+// runs only in make test-long: when other programs were running, a preview differed once, for an unknown reason
 test('six tiles equal the large picture, pixel by pixel, preview and refined', { ...options, skip: options.skip || long },
     () => compare('seamless', 3, 2, [0, 0]));
 test('the picture continues behind the bezels', options, async () => {
@@ -176,8 +177,11 @@ test('every 3 minutes all tiles shift at the same instant', { ...options, timeou
     assert.equal(new Set(shown.map(({ at_us: us }) => us)).size, 1);
     assert.ok(shown[0].at_us % 180e6 < 5e6, `the shift is ${shown[0].at_us % 180e6 / 1e6} s after the full 3 minutes`);
     const more = await metric('plantcast_renders_total') - drawn;
-    assert.ok(more <= 6, `${more} pictures were drawn`); // a picture for each tile and step would be more
-    for (const [i, client] of clients.entries()) { // compares the area that was inside the tile before and after the shift
+    // pictures drawn for the shift of all tiles; drawing each tile in each step of the shift would take more
+    assert.ok(more <= 6, `${more} pictures were drawn`);
+    // Compares each tile's new picture with its old one, moved by the shift; leaves out a rim of 8 pixels, which may have been
+    // outside the tile.
+    for (const [i, client] of clients.entries()) {
         const now = canvasAt(client, shown[i].seq), was = canvases[i], edge = 8, bytes = (WIDTH - 2 * edge) * 3;
         for (let row = edge; row < HEIGHT - edge; row++) {
             const at = (row * WIDTH + edge) * 3, then = ((row + shift[1] - y) * WIDTH + edge + shift[0] - x) * 3;
@@ -260,7 +264,7 @@ test('a tile that reads nothing is left out and notified, and can return', optio
     const isLate = (text) => text.type === 'tiles' && text.late.some(({ display }) => display === 4);
     const at = await leader.until('what is late', () => leader.texts.some(isLate) && leader.texts.findIndex(isLate));
     await stuck.until('being told', () => tilesSaid(stuck).late.some(({ display, since_us: us }) => display === 4 && us > 1.6e15));
-    // the last picture ordered before that display was left out
+    // number of the last picture that the tiles were told to show before the stalled display was left out
     const then = leader.texts.slice(0, at).findLast(({ type }) => type === 'present').picture;
     assert.ok(then <= number + 3, 'no picture is shown without the stalled tile until that tile is left out');
     await leader.until('pictures of the others', () => presents(leader).at(-1).picture > then + 5);
@@ -286,8 +290,8 @@ test('an invalid tile is refused by name', options, async () => {
     assert.ok(client.frames[0].flags & KEY);
     const widest = Math.max(...client.frames.map(({ full_width: width }) => width));
     assert.ok(widest <= 2730, `the tile has ${widest} pixels in width: three tiles exceed the limit`);
-    // Reloads the plant three times. Returns the tile's part before and after, as text; starts over if the burn-in shift moved
-    // meanwhile.
+    // Reloads the plant three times. Returns the tile's part of the large picture before and after, as JSON text. If the
+    // burn-in shift, which also moves that part, changed meanwhile, starts over.
     const reloaded = async () => {
         const part = () => JSON.stringify(tilesSaid(client).part), shift = await shiftHeld(), before = part(), said = client.texts.length;
         for (let i = 0; i < 3; i++) {

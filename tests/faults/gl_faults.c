@@ -25,15 +25,15 @@ enum gl_object_kind { BUFFER, TEXTURE };
 
 struct faults {
     /* --- below: written by the test */
-    uint32_t losses;      /* number of contexts to lose in total */
-    uint32_t loss_calls;  /* number of GL calls from the request for a loss until the loss */
-    uint32_t refusals;    /* number of context creations that will fail; counts down */
-    uint32_t hardware;    /* report the renderer as a GPU; set before the first context is created */
+    uint32_t losses;      /* number of contexts to destroy, counted from the beginning; a loss begins while `lost` is smaller */
+    uint32_t loss_calls;  /* number of GL calls that still succeed after a loss was requested */
+    uint32_t refusals;    /* this many further creations of a context fail; the library counts down */
+    uint32_t hardware;    /* nonzero: contexts claim to be rendered by a GPU, not in software; set before the first context is created */
     uint64_t room_bytes;  /* limit on the bytes of all buffers and textures; 0: unlimited */
     /* --- below: written by this library */
-    uint32_t lost, contexts;  /* lost: number of losses so far; contexts: number of existing contexts */
+    uint32_t lost, contexts;  /* lost: number of contexts destroyed so far; contexts: number of existing contexts */
     uint64_t used_bytes, most_bytes;
-    uint32_t objects, refused; /* objects: number of existing objects; refused: allocations that exceeded the limit */
+    uint32_t objects, refused; /* objects: number of existing buffers and textures; refused: allocations refused because of room_bytes */
     uint32_t made;             /* number of contexts created so far */
 };
 
@@ -47,7 +47,7 @@ struct object {
 /* Only one thread calls GL at a time: a context belongs to one thread, and during a plant reload the other thread waits. */
 static struct faults *faults;
 static struct object objects[OBJECTS];
-static EGLContext current, gone; /* current context, and the lost context, which stays the current one */
+static EGLContext current, gone; /* current: the context in use; gone: the one that was lost, which stays current until it is replaced */
 static EGLDisplay display;
 static uint32_t calls_left;
 static bool full; /* true: the next glGetError must report "out of memory" */
@@ -116,7 +116,7 @@ static bool take_room(enum gl_object_kind kind, GLuint name, uint64_t bytes)
 {
     int i = 0;
     if (gone == current || !name || !bytes)
-        return true; /* nothing to count: the context is lost, or nothing is allocated */
+        return true; /* nothing is counted in a lost context, without an object or for zero bytes */
     if (faults->room_bytes && faults->used_bytes + bytes > faults->room_bytes) {
         faults->refused++;
         full = true;

@@ -17,7 +17,8 @@
 #define EXPORTED __attribute__((visibility("default")))
 #define FDS 4096
 
-static atomic_llong asked_ms[FDS]; /* by socket: time when poll() first asked whether it is writable since the last write; 0: not asked */
+/* by socket number: time at which poll() was first asked, after the last write, whether the socket is writable; 0: not asked */
+static atomic_llong asked_ms[FDS];
 
 static long long now_ms(void)
 {

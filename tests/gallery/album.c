@@ -24,7 +24,7 @@ static bool draw(struct offline_renderer *offline, char *plant, char *line)
     struct snapshot_options options;
     struct view view;
     int count = 3 + split(line, words + 3);
-    optind = 0; /* makes getopt_long() start again at the first word */
+    optind = 0; /* makes getopt_long(), which has parsed the previous line, begin again with the first word */
     bool first = !offline->gl, good = snapshot_parse(count, words, false, &options) < 0;
     good = good && (first ? offline_renderer_open(offline, &options, &view) : offline_renderer_reopen(offline, &options, &view)) == 0;
     good = good && (!first || offline_renderer_open_gl(offline, &options));

@@ -21,7 +21,8 @@ static struct toy *make_wall(void)
     return toy;
 }
 
-/* Counts the wall's pixels with a colour of the map that change when the plates are added. */
+/* Counts the pixels that have a colour of the map (i.e. show the wall's field) without the plates, and another colour with
+   them. */
 static size_t differences(const struct frame *both, const struct frame *wall)
 {
     size_t count = 0, pixels = (size_t)wall->width_px * (size_t)wall->height_px;

@@ -193,7 +193,8 @@ TEST(test_together_as_one_by_one)
     }
 }
 
-/* Readings that arrive during a progressive render do not show in it, although one buffer stores both. */
+/* Readings that arrive while a frame is drawn in steps must not show in it, although the buffer on the GPU that holds its
+   readings is also used for the new ones. */
 TEST(test_a_picture_under_way_keeps_its_readings)
 {
     struct stand stand;
@@ -243,8 +244,8 @@ struct calls {
     uint64_t all, draws;
 };
 
-/* Counts the GL calls for the second of two frames. changes: all readings change before it; otherwise it is identical to the
-   first and uses caches. */
+/* Draws the same view twice. Returns the number of GL calls for the second frame. changes: all readings change between the
+   frames; otherwise the frames are identical, so caches serve the second one. */
 static struct calls count_calls(struct stand *stand, enum tier tier, int least, bool changes)
 {
     struct view view;

@@ -51,7 +51,8 @@ static double value_at(const struct scalars *scalars, int x, int y)
     return u > v ? a + u * (b - a) + v * (c - b) : a + v * (b - a) + u * (c - b);
 }
 
-/* Returns whether the pixel has exactly a colour of the map. Refined frames average samples, so neighbouring colours may mix. */
+/* Returns whether the pixel has the map's colour for this value, give or take rounding. In refined frames, which average
+   samples, its channels may differ by up to 4 levels. */
 static bool is_color_of(const struct view *view, double value, const uint8_t *bgrx)
 {
     struct scale scale;
@@ -67,7 +68,7 @@ static bool is_color_of(const struct view *view, double value, const uint8_t *bg
     return false;
 }
 
-/* Returns whether an isoline runs through the pixel or a neighbour. */
+/* Returns whether an isoline runs through the pixel or within two pixels of it. */
 static bool near_line(const struct view *view, const struct scalars *scalars, int x, int y)
 {
     double lines[VIEW_ALL_LINES], low = INFINITY, high = -INFINITY;
@@ -137,7 +138,8 @@ TEST_WITH(test_logarithmic_scale, set_up, stand_tear_down)
     }
 }
 
-/* Isolines are dark where the field has their value, and about as wide as specified. */
+/* Isolines at 30 and 60 darken the pixels where the field has these values, and no others, and are about as wide as specified.
+   */
 TEST_WITH(test_isolines_run_where_the_value_is, set_up, stand_tear_down)
 {
     struct view view;
@@ -251,7 +253,7 @@ TEST_WITH(test_no_data_is_grey_stripes, set_up, stand_tear_down)
     }
 }
 
-/* The area around a lost sensor shows no colour of the map; everything else stays. */
+/* The area around a lost sensor is grey, i.e. shows no value; the other sensors' areas keep their colours. */
 TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, stand_tear_down)
 {
     struct view view;
@@ -286,7 +288,8 @@ TEST_WITH(test_uncertain_is_stippled, set_up, stand_tear_down)
     }
 }
 
-/* Returns the first sensor's share of the weight at a pixel's centre, for Shepard with power 2. */
+/* Returns the part, 0 to 1, that the first sensor has in the value at a pixel's centre: its Shepard weight (1 / distance^2)
+   divided by all sensors' weights. */
 static double part_of_first(int x, int y)
 {
     static const double sensors[PLATE_TAGS][2] = { { 0, 0 }, { 4, 1 }, { 2, 4 } };
@@ -300,7 +303,8 @@ static double part_of_first(int x, int y)
     return first / sum;
 }
 
-/* The border of uncertainty runs between vertices, not along them, although each triangle spans a twelfth of the plate. */
+/* The border between certain and uncertain areas crosses the triangles where the weights say, and does not follow triangle
+   edges, although a triangle is a twelfth of the plate wide. */
 TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, stand_tear_down)
 {
     const double slack = 0.02;
@@ -375,7 +379,7 @@ TEST_WITH(test_operator_sees_limits, set_up, stand_tear_down)
     for (int i = 0; i < LIMIT_COUNT; i++)
         stand.toy->plant.tags[2].alarms.limits[i] = NAN;
     toy_set(stand.snapshot, 0, 45, QUALITY_GOOD);
-    toy_set(stand.snapshot, 1, 80, QUALITY_GOOD); /* this reading is beyond the alarm limit H */
+    toy_set(stand.snapshot, 1, 80, QUALITY_GOOD); /* tag 1 reads 80, above its limit H of 70 */
     view.field.show = SHOW_OPERATOR;
     view_default_scale(&stand.toy->scene, &view);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -392,7 +396,8 @@ TEST_WITH(test_operator_sees_limits, set_up, stand_tear_down)
     check_alarms(&view);
 }
 
-/* Markers show each sensor's distance from the selected sensor; on a plate both distances are equal. */
+/* When distances are shown, each marker shows its sensor's distance from the selected sensor 1. On a flat plate the distance
+   along the surface equals the straight line. */
 TEST_WITH(test_markers_tell_distances, set_up, stand_tear_down)
 {
     const double want_m[PLATE_TAGS] = { hypot(4, 1), 0, hypot(2, 3) };
@@ -485,7 +490,7 @@ TEST_WITH(test_default_look_keeps_to_the_palette, set_up, stand_tear_down)
     struct view view;
     look_down(&view);
     view.look = LOOK_DEFAULT;
-    view.ramp_interval = 200; /* a single band has one colour, in which only lightness may differ */
+    view.ramp_interval = 200; /* bands of 200 units: the whole range is one band of one colour, so pixels may differ in lightness only */
     uint8_t rgb[3], shaded[3];
     memcpy(rgb, colormap_at(NULL, 0)->rgb[128], 3);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -502,7 +507,8 @@ TEST_WITH(test_default_look_keeps_to_the_palette, set_up, stand_tear_down)
     }
 }
 
-/* A model without sensors whose strips have the map's own colours: these colours appear in no view of a field. */
+/* Materials of a model without sensors ("context") must not look like values: here they have colours of the map, and no picture
+   that shows a field may contain one of these colours. */
 TEST_WITH(test_context_has_no_color, set_up, stand_tear_down)
 {
     enum { STRIPS = 16 };

@@ -40,7 +40,7 @@ static void look_down(struct view *view, enum tier tier)
     view->tier = tier;
 }
 
-/* Returns the pixel at a position on the plates. */
+/* Returns the pixel at (x_m, y_m), in metres from the lower left corner of the plates; clamped to 2 pixels inside the frame. */
 static const uint8_t *pixel_at(const struct frame *frame, double x_m, double y_m)
 {
     int x = (int)(x_m / side_m * HEIGHT_PX), y = (int)((side_m - y_m) / side_m * HEIGHT_PX);
@@ -49,7 +49,8 @@ static const uint8_t *pixel_at(const struct frame *frame, double x_m, double y_m
     return frame_pixel(frame, x, y);
 }
 
-/* Returns the index of the colour shown there, or -1 if it is not in the map. Refined frames average a pixel's samples. */
+/* Draws a frame. Returns the map's index of the colour at (x_m, y_m), or -1 if the map lacks it. Refined frames average
+   samples, so there the nearest colour of the map counts, unless the pixel is grey. */
 static int shown_at(const struct view *view, double x_m, double y_m)
 {
     struct frame *frame = stand_draw(&stand, view);
@@ -85,9 +86,11 @@ TEST_WITH(test_the_hottest_goes_bad, set_up, stand_tear_down)
         assert_in_range(shown_at(&view, 2, 2), 235, 245);
         toy_set(stand.snapshot, HOTTEST, 95, QUALITY_BAD_SENSOR_FAILURE);
         assert_true(is_hatched(&view, 2, 2, 0.7));
-        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the other sensors remain, and the lost sensor's 95 has no effect on them */
+        /* near the other sensors the colours stay, and the lost sensor's last reading of 95 has no effect on them */
+        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62);
         view.field.fill = FILL_NEIGHBOURS;
-        assert_false(is_hatched(&view, 2, 2, 0.7)); /* neighbours fill the gap as requested, and the area is stippled */
+        /* with FILL_NEIGHBOURS the other sensors' values fill the gap, which is stippled instead of hatched */
+        assert_false(is_hatched(&view, 2, 2, 0.7));
         struct frame *frame = stand_draw(&stand, &view);
         int dots = 0;
         for (double y = 1.5; y < 2.5; y += 0.021)
@@ -141,7 +144,8 @@ TEST_WITH(test_a_part_that_nobody_reaches, set_up, stand_tear_down)
     struct view view;
     for_each_tier(&view)
     {
-        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* no path along the surface leads to the second plate */
+        /* hatched: no path along the surface leads from a sensor to the second plate */
+        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8));
         assert_true(shown_at(&view, 3.5, 2) >= 0);
         view.field.distance = DISTANCE_EUCLIDEAN; /* straight-line distances reach the second plate, too */
         assert_false(is_hatched(&view, 1.5 * side_m, 2, 1.8));
@@ -184,10 +188,11 @@ TEST_WITH(test_a_sensor_at_a_vertex_is_exact, set_up, stand_tear_down)
     {
         for (double power = 0.5; power <= 16; power *= 2) {
             view.field.power = power;
-            assert_in_range(shown_at(&view, 2.002, 2.002), power < 1 ? 200 : 235, 245); /* a reading of 95 has the colour number 243 */
+            /* near the sensor that reads 95, which has the map's colour 243 */
+            assert_in_range(shown_at(&view, 2.002, 2.002), power < 1 ? 200 : 235, 245);
         }
         view.field.interpolation = INTERPOLATION_PAPER;
-        assert_true(shown_at(&view, 2, 2) >= 0); /* the value is neither 0/0 nor infinite */
+        assert_true(shown_at(&view, 2, 2) >= 0); /* the pixel has a colour of the map: the value is a number, neither 0/0 nor infinite */
     }
 }
 

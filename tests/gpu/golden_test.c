@@ -23,8 +23,8 @@ struct golden {
     enum look look;
     double ramp_interval;
     int selected_asset;
-    bool overlay, opened; /* overlay: with overlay; opened: orthographic, with a section and a ghost */
-    double far_part;      /* fraction of pixels that may differ by more than FAR in a channel */
+    bool overlay, opened; /* overlay: draws legend and labels; opened: orthographic view with a section plane and a ghosted asset */
+    double far_part;      /* largest allowed fraction of pixels with a channel that differs from the golden file by more than FAR */
     bool split;           /* left: operator's view; right: isolines and breaks on a logarithmic scale */
     bool dark;
 };
@@ -157,7 +157,7 @@ static void test_golden(void **state)
 static void fill(void)
 {
     toy_fill(stand.snapshot, 0);
-    for (int i = 0; i < 7; i++) /* the last tag keeps no limits */
+    for (int i = 0; i < 7; i++) /* sets the limits of all tags but the last one, which has none */
         memcpy(stand.toy->plant.tags[i].alarms.limits, (double[]){ 10, 20, 70, 100 }, LIMIT_COUNT * sizeof(double));
     alarm_by_limits(&stand.toy->plant, stand.snapshot);
 }

@@ -52,7 +52,8 @@ static int count_steps(struct light *light, const struct light_key *key)
     return steps;
 }
 
-/* Baking in steps equals baking at once, both with the sky light for the first sun and without it for the second. */
+/* A light baked in small steps has the same bits as one baked at once, both for the first sun, for which the sky light is baked
+   too, and for the second, which reuses the sky light. */
 TEST(test_bits_make_the_same_light)
 {
     struct gpu_scene gpu_scene;
@@ -82,8 +83,8 @@ static void damage(const char *path)
     fclose(file);
 }
 
-/* The next start reads the cached openness, bakes the rest and gets the same light, for another sun too. A damaged cache, or
-   one of a plant whose assets have moved since, is not used. */
+/* The second start reads the sky's openness from the cache of the first, bakes only the rest and gets the same light, for
+   another sun, too. A damaged cache, or one made before the plant's assets moved, is not used. */
 TEST(test_openness_is_kept)
 {
     struct gpu_scene gpu_scene;
@@ -171,7 +172,7 @@ static int forget_openness(void **state)
     return 0;
 }
 
-/* Forty sessions, each with a different sun; one of them is being drawn all the time. */
+/* Many sessions request lights, each for another sun (40 in a long run), while one light stays in use. Memory stays within the limit of three lights. */
 TEST_WITH(test_many_lights_fit_in_a_bound, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
@@ -214,7 +215,7 @@ TEST_WITH(test_the_nearest_sun_stands_in, keep_openness, forget_openness)
     gpu_scene_finish(&gpu_scene);
 }
 
-/* When all lights but one are dropped, the default light stays if it is cached. */
+/* light_drop() with the default light leaves exactly one light in memory: the default one if it is there, otherwise another. */
 TEST_WITH(test_one_light_stays, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;
@@ -243,7 +244,8 @@ static bool same_pixels(const struct frame *a, const struct frame *b)
     return !memcmp(a->bgrx, b->bgrx, (size_t)a->stride_bytes * (size_t)a->height_px);
 }
 
-/* A session with a moving camera rotates the sun: no frame waits for baking, and a few frames later the session has the requested light. */
+/* A session that only draws previews rotates the sun: no frame waits until the new light is baked, and a few frames later the
+   light is ready and shown. */
 TEST(test_a_moving_session_does_not_wait)
 {
     struct view view;

@@ -58,7 +58,8 @@ static const struct asset_view *file(void)
 
 /* --- slow truth --------------------------------------------------------------------------------------------------------------- */
 
-struct plate_spot { /* a point on the plate, given by its triangle and weights */
+/* a point on the plate: its position, the corners of its triangle, and the weights (`parts`) with which it lies between them */
+struct plate_spot {
     double at_m[2], parts[3];
     const uint32_t *corners;
 };
@@ -90,7 +91,8 @@ static double distance_of(const struct plate_spot *spot, int sensor, enum distan
     return sum;
 }
 
-/* Returns the largest distance on the asset; the toy's distances along the surface are straight lines too. */
+/* Returns the largest distance in metres from any sensor to any vertex; on the flat toy plate, distances along the surface
+   equal straight lines. */
 static double largest_m(void)
 {
     double most_m = 0;
@@ -101,7 +103,7 @@ static double largest_m(void)
 }
 
 struct fragment_truth {
-    double value;        /* true value as a position in the range, from 0 to 1 */
+    double value;        /* expected value as a fraction of the colour scale's range, 0 to 1 */
     bool no_data, a_tie; /* a_tie: rounding decides between two results */
 };
 
@@ -139,7 +141,7 @@ static void look_down(struct view *view, enum interpolation interpolation, enum 
 
 struct per_fragment_tally {
     double worst;
-    int most_off, flags_differ, no_data; /* most_off: largest error, in colours of the map */
+    int most_off, flags_differ, no_data; /* most_off: largest error so far, in steps of the map's colours */
 };
 
 static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, double radius_m,

@@ -15,8 +15,10 @@
 /* --- difference between the preview and the refined tier --------------------------------------------------------------------------- */
 
 struct gap {
-    double mean, far_part; /* mean difference of all channels, in levels of 255; share of pixels that differ by more than 32 in a channel */
-    int most;              /* largest difference away from edges, which only the refined tier antialiases */
+    /* mean: mean difference of all channels, in levels of 0 to 255; far_part: share of pixels of which a channel differs by
+       more than 32 */
+    double mean, far_part;
+    int most;              /* largest difference of a channel, without pixels at edges, because only the refined tier antialiases these */
 };
 
 static bool is_edge(const struct frame *frame, int x, int y)
@@ -120,8 +122,8 @@ static struct flash flash_of(struct site *site, struct view *view)
     return flash;
 }
 
-/* Compares both tiers from the plant's own view, near some assets, and with plain materials; every other view has a dark
-   backdrop. Dark outlines remain a difference, because previews have none. */
+/* Compares the tiers in six views: the plant's own and five near assets, the last one with the model's materials; every second one has a dark
+   backdrop. Asserts that they differ little, except for dark outlines, which previews lack. */
 static void assert_no_flash(const char *path, const char *name)
 {
     enum { VIEWS = 6 };
@@ -206,7 +208,8 @@ static void plate_finish(struct textured_plate *plate)
     mem_free(plate->texcoords);
 }
 
-/* Returns a plate of a grey material without textures; every texel is white. */
+/* Returns a grey plate without textures. All its texels are white, so that a test can paint some and then use them as a
+   texture. */
 static struct textured_plate plain_plate(void)
 {
     struct textured_plate plate = { .material = { .base_color = { 0.5f, 0.5f, 0.5f, 1 },
@@ -325,7 +328,8 @@ TEST(test_holes_are_holes_in_both_tiers)
     }
 }
 
-/* The sun is on the right: 1 m below, shadows are shifted 0.75 m to the left. The plate's right half, from 0 to 1, is a hole. */
+/* A plate with a floor 1 m below; its texture makes the right half, x from 0 to 1, a hole. The sun shines from the right, so
+   the plate's shadow on the floor is shifted 0.75 m to the left. */
 TEST(test_holes_let_the_sun_through)
 {
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -338,8 +342,10 @@ TEST(test_holes_let_the_sun_through)
         plate.view.tier = (enum tier)tier;
         plate.view.camera.height_m = 6;
         struct frame *frame = stand_draw(&plate.stand, &plate.view);
-        int lit = frame_pixel(frame, 17, 100)[1], shaded = frame_pixel(frame, 57, 100)[1];       /* pixels at x = -2.5 m and -1.3 m */
-        int through = frame_pixel(frame, 104, 100)[1], beside = frame_pixel(frame, 120, 100)[1]; /* pixels at x = 0.12 m and 0.6 m */
+        /* pixels of the floor left of the plate's shadow, at x = -2.5 m, and in it, at x = -1.3 m */
+        int lit = frame_pixel(frame, 17, 100)[1], shaded = frame_pixel(frame, 57, 100)[1];
+        /* pixels of the floor seen through the hole, at x = 0.12 m and 0.6 m: both are lit */
+        int through = frame_pixel(frame, 104, 100)[1], beside = frame_pixel(frame, 120, 100)[1];
         print_message("# lit %d, shaded %d; through the hole %d, beside its shadow %d\n", lit, shaded, through, beside);
         assert_true(shaded < lit - 30 && abs(through - beside) < 12 && through > shaded + 20);
         frame_unref(&frame);

@@ -12,10 +12,10 @@
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
 
-/* Image size: the default run has a quarter of the pixels and compares as many points. */
+/* Size of the pictures. The default run draws a quarter of the pixels of a long run, but compares as many of them. */
 static int width_px, height_px;
 enum { VIEWS = 14, SAMPLES = 715 }; /* VIEWS: number of views per case; SAMPLES: number of samples per view */
-enum { CLOSE_PX = 32 };             /* number of samples across two pixels, in each direction */
+enum { CLOSE_PX = 32 };             /* samples along each side of the close-up of a pixel, which is two pixels wide */
 static const double TOLERANCE = 1.0 / 255;
 
 static struct rig rig;
@@ -23,8 +23,8 @@ static struct rig rig;
 /* --- comparing ------------------------------------------------------------------------------------------------------------- */
 
 struct reference_tally {
-    /* compared: number of pixels; over: those with an error at their own point; beyond: those with an error against the finest
-       level within a pixel; flags_differ: those with other flags */
+    /* compared: number of compared pixels; over: those whose error at their own point exceeds TOLERANCE; beyond: those whose
+       error compared with the finest level nearby does; flags_differ: those with other flags than the reference */
     size_t compared, over, beyond, flags_differ;
     double worst, worst_beyond;
     int worst_camera;
@@ -59,7 +59,7 @@ static double error_beyond(const struct value_span *span, double value)
     return value < span->low ? span->low - value : value > span->high ? value - span->high : 0;
 }
 
-/* Makes a view of the area around a pixel, up to its neighbours' centres. */
+/* Makes a view of a square of two by two pixels around a pixel's centre, i.e. up to the centres of its neighbours. */
 static void look_close(const struct view *view, int x, int y, struct view *close)
 {
     double right[3], up[3], forward[3], per_px = 2 * tan(view->camera.fov_deg * M_PI / 360) / height_px;
@@ -73,7 +73,8 @@ static void look_close(const struct view *view, int x, int y, struct view *close
     close->camera.fov_deg = 2 * atan(per_px / (1 + u * u + v * v)) * 180 / M_PI;
 }
 
-/* Returns how far a value lies outside the reference's range within a pixel: a level of detail may move the surface that far. */
+/* Returns by how much a value lies outside the range of values that the finest level shows within a pixel of this position. The
+   drawn level of detail may place the surface up to a pixel away. */
 static double error_within_a_pixel(struct site *site, const struct pixels_seen *seen, size_t at, double value)
 {
     struct value_span span = { INFINITY, -INFINITY };
@@ -110,7 +111,8 @@ static void compare(struct site *site, const struct pixels_seen *seen, size_t sa
         double beyond = error_within_a_pixel(site, seen, at, value);
         tally->compared++;
         tally->over += error > TOLERANCE;
-        tally->beyond += beyond > TOLERANCE; /* also counts points near which the finest level has no value */
+        /* a point near which the finest level has no value counts as an error, too (`beyond` is then infinite) */
+        tally->beyond += beyond > TOLERANCE;
         tally->worst_beyond = isinf(beyond) ? tally->worst_beyond : fmax(tally->worst_beyond, beyond);
         if (error > tally->worst) {
             tally->worst = error;
@@ -172,7 +174,7 @@ static void look_at_some_asset(struct site *site, double away, struct view *view
     while (is_inside_any(site->scene, view->camera.eye_m));
 }
 
-struct reference_display { /* how a plant is shown in one case */
+struct reference_display { /* parameters with which one case shows a plant */
     int group;
     int number, each; /* number of this case; the default run tries every each-th case */
     enum interpolation interpolation;
@@ -182,7 +184,7 @@ struct reference_display { /* how a plant is shown in one case */
     uint64_t seed; /* seed of the case's views */
 };
 
-/* Applies the parameters like a client's message. Returns false if they are refused. */
+/* Sets the view's parameters through the same parser as a client's message. Returns false if the plant refuses them. */
 static bool ask_for(const struct site *site, const struct reference_display *way, struct view *view)
 {
     struct params_change change;
@@ -209,9 +211,10 @@ static void compare_views(struct site *site, const struct reference_display *way
         view_default(site->scene, width_px, height_px, &view);
         ask_for(site, way, &view);
         view.tier = way->tier;
-        if (i % 2) /* every other view has an unlimited reach; the others keep the plant file's */
+        if (i % 2) /* in every second view sensors have an unlimited reach; in the others they have the reach of the plant file */
             view.field.reach_m = (double)INFINITY;
-        /* the seed does not depend on the drawn levels, so a case has the same views for all of them */
+        /* seeds the camera by case and view but not by the levels to draw, so that a case has the same cameras for all of them
+           */
         site->random = way->seed + (uint64_t)i;
         synthetic_random(&site->random);
         look_at_some_asset(site, away[i / 2], &view);
@@ -240,12 +243,14 @@ static void say(const struct reference_display *way, const struct reference_tall
                   tally->beyond, 100 * tally->worst_beyond, tally->flags_differ);
 }
 
-/* Share of pixels that may be off by more than 1/255 of the range at their own point, on the finest level and in refined frames
-   that have room for it. No pixel there may be off by two such steps. */
+/* FINEST_OVER: share of pixels that may have an error above 1/255 of the range at their own point, if the finest level is
+   drawn, as in refined frames with room for it. FINEST_WORST: no pixel may have a larger error. */
 static const double FINEST_OVER = 0.0005, FINEST_WORST = 2.0 / 255;
 
-struct bounds {           /* bounds for previews on the levels that are drawn */
-    double drawn, beyond; /* largest shares of pixels that are off: at their own point; compared with the finest level within a pixel */
+struct bounds {           /* limits for previews, which draw coarser levels */
+    /* largest shares of pixels with an error above TOLERANCE; drawn: at their own point; beyond: compared with the finest level
+       within a pixel */
+    double drawn, beyond;
     double worst;
 };
 
@@ -259,7 +264,8 @@ static void compare_group(struct site *site, int group, int row, int each, int r
         const struct reference_display way = {
             .group = group,
             .number = i + i / 4,
-            /* every fourth preview case with drawn levels, where errors are largest; every seventh of the other cases */
+            /* the default run tests every fourth preview case with coarser levels, where errors are largest, and every seventh
+               of the other cases */
             .each = (i & 12) == 8 ? 4 : 7,
             .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
             .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,

@@ -35,10 +35,10 @@ TEST_WITH(test_content_is_that_of_the_frame, reset, NULL)
     frame_unref(&frame);
 }
 
-/* Both halves of a split view are planned before either is drawn. */
+/* In a split view two frames are planned before the first is drawn: the first plan must stay valid. */
 TEST_WITH(test_plan_holds_while_another_is_made, reset, NULL)
 {
-    view.camera.eye_m[1] += 0.3; /* a new camera, so that both frames are drawn completely */
+    view.camera.eye_m[1] += 0.3; /* moves the camera, so that neither frame can reuse what was drawn before */
     struct view other = view;
     struct frame *want = stand_draw(&stand, &view);
     other.camera.eye_m[0] += 1;
@@ -107,7 +107,7 @@ TEST_WITH(test_content_counts_what_can_be_seen, reset, NULL)
     assert_true(content() != before);
 }
 
-/* Many changes, each too small to be visible, must together become visible. */
+/* Many readings in a row, each of which changes too little to change the frame's content, must together change the content. */
 TEST_WITH(test_slow_drift_is_not_lost, reset, NULL)
 {
     uint64_t before = content();
@@ -157,7 +157,7 @@ static void assert_same_picture(const struct frame *a, const struct frame *b)
                     a->markers[i].y_px == b->markers[i].y_px && a->markers[i].occluded == b->markers[i].occluded);
 }
 
-/* Cases of progressive rendering; a snapshot may also request the preview tier. */
+/* Frames that are drawn in steps and must equal the same frame drawn at once. Snapshots may request the preview tier, too. */
 static const struct {
     enum tier tier;
     enum look look;
@@ -202,7 +202,7 @@ TEST_WITH(test_bit_by_bit_is_the_same_picture, reset, NULL)
             struct frame *frame = stand_draw(&stand, &other);
             frame_unref(&frame);
         }
-        /* a GPU may draw the frame in one step */
+        /* in software a frame takes many steps; a GPU may draw it in one */
         assert_true(steps >= (rig.gl->software && (by_gl || view.tier == TIER_REFINED) ? 12 : 1));
         struct frame *bits = renderer_end(stand.renderer, &job);
         assert_true(bits && !job);
@@ -231,7 +231,8 @@ TEST_WITH(test_abandoned_picture_leaves_no_trace, reset, NULL)
     frame_unref(&after);
 }
 
-/* Returns the marker of the tank's first sensor, which is at (3.5, 0.5, 0.6) and faces south-west. */
+/* Returns the marker of tag 5, the tank's first sensor, which is at (3.5, 0.5, 0.6) and faces south-west; NULL if there is
+   none. */
 static const struct frame_marker *tank_marker(struct frame *frame)
 {
     for (size_t i = 0; i < frame->marker_count; i++)
@@ -366,7 +367,7 @@ TEST_WITH(test_many_sizes, reset, NULL)
 
 TEST_WITH(test_camera_within_the_plant, reset, NULL)
 {
-    look(0, 0, 1.2, 1, 0, 1.2); /* the camera is inside the shell */
+    look(0, 0, 1.2, 1, 0, 1.2); /* the camera is inside the body of the exchanger */
     struct frame *frame = stand_draw(&stand, &view);
     assert_true(brightness(frame) > 0);
     frame_unref(&frame);
@@ -386,7 +387,7 @@ static void draw_much(void)
         view.height_px = sizes[i % 3][1];
         view.tier = i % 2 ? TIER_REFINED : TIER_PREVIEW;
         view.look = i % 5 == 4 ? LOOK_MATERIALS : i % 5 == 3 ? LOOK_GLOSSY : LOOK_DEFAULT;
-        renderer_use_gl(stand.renderer, i % 5 == 3); /* some rounds use GL on any machine */
+        renderer_use_gl(stand.renderer, i % 5 == 3); /* every fifth frame is drawn with GL, the others in software */
         view.light_dir[0] = i % 4 == 3 ? 0.6 : 0;
         view.light_dir[1] = 0;
         view.light_dir[2] = i % 4 == 3 ? 0.8 : 1;
@@ -410,7 +411,8 @@ TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
     struct view seen = view;
     stand_look(&stand, 1, &seen);
     seen.tier = TIER_REFINED;
-    renderer_drop_caches(stand.renderer); /* readings of earlier tests were added to cached sums, which leaves rounding errors */
+    /* incremental updates by earlier tests have left rounding errors in the field's sums: begins with empty caches */
+    renderer_drop_caches(stand.renderer);
     field_clear_cache(stand.field);
     struct frame *before = stand_draw(&stand, &seen);
     draw_much();

@@ -21,11 +21,12 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Encoding of a frame, and colour vision of its viewer. */
+/* One way in which a viewer gets a frame: how it is encoded, and the viewer's colour vision. */
 struct delivery_path {
     const char *name;
     int quality;                             /* quality of the JPEG; 0: no JPEG */
-    /* full_chroma: no subsampling; deuteranope: colour-blind viewer; standard: another encoder, with the standard JPEG tables */
+    /* full_chroma: JPEG without chroma subsampling; deuteranope: the viewer lacks green vision; standard: another JPEG encoder,
+       which uses the standard tables */
     bool full_chroma, deuteranope, standard;
 };
 static const struct delivery_path ways[] = {
@@ -60,7 +61,7 @@ static void through_standard_jpeg(struct frame *frame, const struct delivery_pat
     tjDestroy(turbo);
 }
 
-/* Replaces the pixels with those after JPEG compression, as used by a stream. */
+/* Encodes the frame as JPEG, as for a client, and replaces its pixels with the decoded ones. */
 static void through_jpeg(struct frame *frame, const struct delivery_path *way)
 {
     struct encoder *encoder = encoder_create(rig.log, "jpeg", NULL);
@@ -72,8 +73,8 @@ static void through_jpeg(struct frame *frame, const struct delivery_path *way)
     encoder_destroy(&encoder);
 }
 
-/* Returns the error with which a viewer reads values from a shaded frame: the 95th percentile, in percent of the range. truth:
-   the same frame in the flat look, without edges. */
+/* Returns the 95th percentile of the errors, in percent of the range, of the values that a viewer reads from a shaded frame by
+   the nearest colour of the legend. truth: the same frame without shading and edges, whose colours give the true values. */
 static double misread(const struct colormap *map, const struct frame *truth, const struct frame *shaded, bool deuteranope)
 {
     double *errors = mem_array(WIDTH * HEIGHT, sizeof(*errors)), p95;
@@ -91,7 +92,7 @@ static double misread(const struct colormap *map, const struct frame *truth, con
     return p95;
 }
 
-/* Measures each delivery path in p95[]. Returns the worst of them. */
+/* Stores in p95[] the reading error for each way of delivery. Returns the largest of them. */
 static double measure(const struct view *view, double p95[WAYS])
 {
     const struct colormap *map = colormap_at(NULL, (size_t)view->colormap);

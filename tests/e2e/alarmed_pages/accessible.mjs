@@ -47,7 +47,8 @@ async function findings(on, rules = RULES, within = null) {
         await on.evaluate(readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
     const { violations } = await on.evaluate(([runOnly, part]) =>
         globalThis.axe.run(part ? { include: [[part]] } : document, { runOnly, resultTypes: ['violations'], preload: !part }),
-    [rules, within]); // axe-core needs preloaded style sheets only for rules about the whole page
+    // preload: axe-core needs to preload style sheets only for rules about the whole page, so checks of a part skip this
+    [rules, within]);
     return violations.flatMap(({ id, nodes }) => nodes.map((node) => `${id}: ${node.target.join(' ')} ${node.any[0]?.message ?? ''}`));
 }
 
@@ -154,7 +155,8 @@ async function lookAtTools(look) {
     await page.locator('#token[open]').waitFor();
     await look('token');
     await page.keyboard.press('Escape');
-    await page.evaluate(() => document.body.classList.remove('denied')); // removes the class `denied`, as the message `welcome` does
+    // shows the page again by removing the class `denied`, as the page does when the server's message `welcome` arrives
+    await page.evaluate(() => document.body.classList.remove('denied'));
 }
 
 const WALL = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }) };
@@ -245,7 +247,8 @@ test('a dialog keeps the focus inside, closes on Escape, and returns the focus',
     await shoot(page, 'focus-help');
     for (let n = 0; n < 4; n++) {
         const where = await page.evaluate(() => document.activeElement.closest('dialog, body').id || document.activeElement.tagName);
-        // between the last and the first element, the focus is in the browser's own interface
+        // After the dialog's last element, Tab moves the focus to the browser's own interface (activeElement is then BODY), and
+        // then back to the dialog's first element; it never reaches the page behind.
         assert.ok(['help', 'BODY'].includes(where), where);
         await page.keyboard.press('Tab');
     }
@@ -257,9 +260,9 @@ test('panels open and close by keys, and the focus follows', options, async () =
     await page.locator('#viewport').focus();
     await page.keyboard.press('/');
     await page.keyboard.type('TI');
-    await page.keyboard.press('Escape'); // the first Escape clears the search field
+    await page.keyboard.press('Escape'); // the first Escape clears the search field and leaves the focus there
     await becomes(() => page.evaluate(() => [document.activeElement.id, document.activeElement.value]), ['assets-search', '']);
-    await page.keyboard.press('Escape'); // the second Escape returns the keys to the picture
+    await page.keyboard.press('Escape'); // the second Escape moves the focus to the picture
     await becomes(() => page.evaluate(() => document.activeElement.id), 'viewport');
     await page.locator('#alarm-strip').focus();
     await page.keyboard.press('Enter');

@@ -47,7 +47,8 @@ const amiss = (page) => page.evaluate(() => {
             found.push(`${part.id} leaves the picture`);
     const legend = document.getElementById('legend'), strip = box(legend).height <= 28;
     const texts = [...legend.querySelectorAll('.ticks span, .limits span, .keys span')]
-        .filter((text) => !strip || text.checkVisibility()); // on a phone, the legend is a strip that hides some texts until it is tapped
+        // on a phone, the legend is a low strip that hides some of its texts until it is tapped; hidden texts are not checked
+        .filter((text) => !strip || text.checkVisibility());
     const isSaid = shown('#legend').length > 0 && /No data|Keine Daten/.test(legend.querySelector('.keys').textContent);
     if (picture.height > (innerWidth < 720 ? 125 : 200) && !isSaid)
         found.push('no legend, or no key for what has no data');
@@ -91,7 +92,7 @@ for (const name of WALKED) {
             await becomes(() => amiss(page), [], 'flown to');
             await becomes(() => inSight(page, 'TI-1'), 'in sight');
             await shoot(page, `room-${file}-alarm`);
-            await press('#card .trend'); // press() fails if anything covers the button
+            await press('#card .trend'); // opens the trend from the card: press() fails if anything covers the button
             await page.locator('#trend-chart canvas').waitFor();
             await press('#time-toggle');
             await page.locator('#time-slider').waitFor();
@@ -104,7 +105,7 @@ for (const name of WALKED) {
             await press('#engineer-toggle');
             await page.locator('#engineer').waitFor();
             await page.locator('#alarms').waitFor({ state: 'hidden' }); // one of both is open
-            if (listed) { // switching from alarms to the engineer's panel and back must also work
+            if (listed) { // if the alarm list was open: opens it again, which closes the engineer's panel, and then the other way round
                 await press('#alarm-strip');
                 await page.locator('#engineer').waitFor({ state: 'hidden' });
                 await press('#engineer-toggle');
@@ -196,7 +197,8 @@ test('the banner about an old picture covers no legend', options, async () => {
                 const [a, b] = ['banner', 'legend'].map((id) => document.getElementById(id).getBoundingClientRect());
                 return b.width === 0 || a.bottom <= b.top || a.right <= b.left;
             }).catch(() => assert.fail(name));
-            if (name !== 'phone across') // the phone's screen has no room for both texts, so one of them is cut off there
+            // on a phone held sideways there is no room for both texts, so one is cut off and the layout is not checked
+            if (name !== 'phone across')
                 await becomes(() => amiss(page), [], name);
             await shoot(page, `old-${name.replace(' ', '-')}`);
         } finally {
@@ -211,7 +213,8 @@ test('after a resize, the old picture stays undistorted and its marks stay in pl
         await waitForPicture(page);
         await arrive(page);
         await page.waitForFunction(() => globalThis.plantcast.overlay.markers.length > 0);
-        await page.evaluate(() => { globalThis.plantcast.session.resize = () => {}; }); // from here on no new picture arrives
+        // the page no longer tells the server its size, so no picture of the new size arrives
+        await page.evaluate(() => { globalThis.plantcast.session.resize = () => {}; });
         const seen = () => page.evaluate(async () => {
             const { projector } = await import('/core/camera.js');
             const { overlay, session: { picture }, viewport } = globalThis.plantcast, canvas = document.getElementById('picture');
@@ -316,7 +319,8 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
             await becomes(() => collisions(page), [], 'as it opens');
             assert.notEqual(await inkOf(page), await inkOf(page, '--ink-2'));
-            await page.emulateMedia({ contrast: 'more' }); // all texts and lines get the main text's colour
+            // with the browser's preference for more contrast, all texts and lines get the colour of the main text
+            await page.emulateMedia({ contrast: 'more' });
             await page.waitForFunction(() => getComputedStyle(document.documentElement).getPropertyValue('--line') ===
                 getComputedStyle(document.documentElement).getPropertyValue('--ink'));
             assert.equal(await inkOf(page), await inkOf(page, '--ink-2'));

@@ -19,7 +19,7 @@ const SCREEN = { viewport: { width: 960, height: 540 } };
 const QUIET_MS = 1500, MANY = 40;
 const folder = folderOfTests();
 let plant;
-const drawn = new Map(); // pictures that the command has drawn already
+const drawn = new Map(); // pictures that `plantcast snapshot` has drawn already, by its arguments and readings
 
 before(async () => {
     if (why)
@@ -37,7 +37,7 @@ async function withPage(codec, init, f) {
     }
 }
 
-// Draws the same view and readings with the command.
+// Draws the page's current view and readings with `plantcast snapshot`, as the reference. Returns the picture.
 async function snapshot(page) {
     const { camera } = await view(page), { width, height } = await grab(page);
     const values = join(folder, 'values.csv'), out = join(folder, 'snapshot.png');
@@ -83,7 +83,8 @@ async function growth(page, count) {
 test('H.264 decoded by WebCodecs shows the same picture as the snapshot', options, (t) => withPage('h264', null, async (page) => {
     await compare(t, page, 'h264');
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.decoding.codecs), ['auto', 'h264', 'jpeg', 'png']);
-    const [grownMb, picturesMb] = await growth(page, MANY); // Chromium without a GPU keeps the pixels of drawn VideoFrames
+    // The page must not keep decoded pictures: in Chromium without a GPU, each open VideoFrame occupies shared memory.
+    const [grownMb, picturesMb] = await growth(page, MANY);
     t.diagnostic(`${grownMb.toFixed()} MB more shared memory after pictures of ${picturesMb.toFixed()} MB`);
     assert.ok(grownMb < picturesMb / 2);
 }));
@@ -96,7 +97,7 @@ test('a decoder that passes the trial and fails later is replaced by JPEG for go
     const { decode } = VideoDecoder.prototype;
     let count = 0;
     VideoDecoder.prototype.decode = function decodeSome(chunk) {
-        if (++count > 3) // the first two chunks are the decoder's trial
+        if (++count > 3) // lets three chunks pass (the first two are the page's trial of the decoder) and fails at every later one
             throw new DOMException('it broke', 'EncodingError');
         return decode.call(this, chunk);
     };

@@ -119,7 +119,7 @@ test('sections, ghosts and hidden equipment are drawn', options, async () => {
     await page.locator('#shows button', { hasText: 'Hide' }).click();
     await waitForShown([], ['T-101']);
     await page.locator('#shown span', { hasText: /^1 of \d+ hidden$/ }).waitFor();
-    // only markers of alarms remain on T-101
+    // T-101 is hidden: its tags lose their markers, except those with an alarm
     await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag, alarm }) => tag.asset === 'T-101' && !alarm));
     await page.locator('#show-all').click();
     await waitForShown([], []);
@@ -137,8 +137,8 @@ test('sections, ghosts and hidden equipment are drawn', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-// For every sixth tag: whether it is visible at 5 m from its own side and from where the camera arrives, and what share of the
-// picture its equipment then fills.
+// For every sixth tag, records whether its point is visible from 5 m in front of its side and from where the flight ends, and
+// which share of the picture its equipment fills there.
 test('a flight to a tag ends where the tag is visible and its equipment fills 35 % of the picture', options, async (t) => {
     const arrived = await page.evaluate(async () => {
         const { session, cameraController: { approach }, viewport } = globalThis.plantcast, from = session.camera, found = [];

@@ -102,7 +102,8 @@ test('the panel reports coverage gaps', options, async () => {
     await shoot(page, 'engineer-gaps');
 });
 
-// Pictures of a past instant, which differ only by the loop checks.
+// snapshot() fetches the picture of one past instant, so that two of them can differ only by the marks of loop checks. plain:
+// the one without such marks.
 let instant, plain;
 const snapshot = async () => {
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=640&height=400&look=flat&at=${instant}`);
@@ -204,7 +205,8 @@ test('on a tablet a tap places a tag, and a finger drags it', options, async () 
     const tablet = await openPage(`http://127.0.0.1:${plant.port}/`, TABLET), on = tablet.page;
     await ready(on);
     await on.locator('#engineer-toggle').tap();
-    // waits until TI-1 is visible, because the camera would fly to a hidden tag
+    // waits until TI-1's marker is visible: if it were hidden, choosing the tag would start a camera flight, which the test
+    // does not expect
     await on.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag, occluded }) => tag.name === 'TI-1' && !occluded));
     await on.locator('#engineer .tags button', { hasText: 'TI-1' }).tap();
     await look(on, [2.6, -2.2, 1.6]);

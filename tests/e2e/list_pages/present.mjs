@@ -17,7 +17,7 @@ before(async () => {
     if (options.skip)
         return;
     plant = await TinyPlant.create();
-    // on a busy machine, answers may exceed the device's timeout, which would raise an alarm
+    // a timeout of 2 s instead of 0.3 s, because on a busy machine a late answer of the device would raise an alarm
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 2000'));
     appendFileSync(plant.file, `alarms: local
 views:
@@ -61,7 +61,7 @@ test('an alarm shows the value at which it was raised, and the present value', o
     await waitForText(desk.page, '#alarm-newest', '^TI-1 High-high, raised at 95\\.5 °C, now 95\\.5 °C \\(limit 90\\.0 °C\\)$');
     await plant.tell('set TI-1 70.25');
     await waitForText(desk.page, '#alarm-newest', 'TI-1 High.*now 70\\.3 °C');
-    await plant.tell('set TI-1 40'); // the value is normal again, and the alarm is not acknowledged
+    await plant.tell('set TI-1 40'); // TI-1 is back within its limits, but its alarm still waits for acknowledgement
     await waitForText(desk.page, '#alarm-newest', 'raised at .* now 40\\.0 °C \\(limit');
     await waitForText(german.page, '#alarm-newest', 'gekommen bei .*, jetzt 40,0 °C \\(Grenzwert');
     await desk.page.locator('#alarm-strip').click();
@@ -154,11 +154,12 @@ test('note pins are complete, and cover no other pin, no legend and not the righ
     const texts = ['Manhole open', 'Seal drips, the tray is emptied each hour by the outside operator of the shift', 'Hot'];
     await page.evaluate((all) => {
         const { session } = globalThis.plantcast, target = session.model.tag('TI-1').position, [x, y, z] = target;
-        session.setCamera({ ...session.camera, eye: [x + 6, y - 6, z + 4], target }); // the tag is in the middle of each half
+        // looks at TI-1's position, so that the tag stays in the middle when the picture is split into two halves
+        session.setCamera({ ...session.camera, eye: [x + 6, y - 6, z + 4], target });
         all.forEach((text) => session.post({ type: 'note', seq: ++session.toldSeq, text, tag: 'TI-1' }));
     }, texts);
-    // Returns pins that overlap another pin or a legend, extend beyond the left half, or are cut off. On a phone, the list of
-    // notes has the whole text.
+    // Returns the note pins with a fault: overlapping another pin or a legend, extending beyond the left half of a split
+    // picture, or with text cut off. On a phone cut-off lines are allowed, because the list of notes has the whole text.
     const amiss = () => page.evaluate(() => {
         const view = document.getElementById('viewport').getBoundingClientRect(), { split } = globalThis.plantcast.session.shown;
         const right = split ? view.left + view.width / 2 : view.right;

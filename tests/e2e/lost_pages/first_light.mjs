@@ -42,8 +42,8 @@ const assetBox = (id) => page.evaluate(async (asset) => {
     return { left: Math.min(...xs) - 16, right: Math.max(...xs) + 16, top: Math.min(...ys) - 16, bottom: Math.max(...ys) + 16 };
 }, id);
 
-// Readings keep changing, and on a busy machine most pictures are smaller previews, so a picture that has arrived may be
-// replaced before it is grabbed.
+// Waits for a complete picture of this size. Readings keep changing, and on a busy machine most pictures are smaller previews,
+// one of which may replace a complete picture before the test grabs it.
 const waitForWhole = (width, height) => page.waitForFunction(([w, h]) => {
     const canvas = document.getElementById('picture');
     return globalThis.plantcast.session.picture.still && canvas.width === w && canvas.height === h;
@@ -133,7 +133,7 @@ const waitForMeasured = (count) => page.waitForFunction((least) =>
     globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count);
 
 test('the daemon dies: a message says so and the picture stays; when the daemon returns, so does the view', options, async () => {
-    // probes codecs now; otherwise the page would do so at some later picture
+    // makes the page try out the browser's codecs now, so that a later try does not change the codec during the test
     await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs());
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
     await settle(page, QUIET_MS);
@@ -163,7 +163,7 @@ test('the daemon dies: a message says so and the picture stays; when the daemon 
 
 test('the address keeps the view across a reload', options, async () => {
     const asked = await view(page);
-    await page.waitForFunction(async () => { // the address follows the view after a moment
+    await page.waitForFunction(async () => { // waits, because the page updates its address a moment after the view
         const [{ addressOf }, { session, selection }] = [await import('/core/address.js'), globalThis.plantcast];
         return location.hash === addressOf(session, selection.tag);
     });

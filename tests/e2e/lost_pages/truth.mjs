@@ -58,7 +58,8 @@ const letters = (page) => page.evaluate(() => {
     return found;
 });
 
-// Returns the height of a capital letter (0.72 of the font size) in minutes of arc, as the viewer sees it.
+// Returns the height of a capital letter (0.72 of the font size of `px`) in minutes of arc, for a screen of `inches` diagonal
+// seen from `metres` away.
 function letterMinutes(px, { inches, metres }, screen) {
     const millimetres = (0.72 * px * inches * 25.4) / Math.hypot(screen.width, screen.height);
     return (Math.atan2(millimetres, metres * 1000) * 180 * 60) / Math.PI;
@@ -106,10 +107,13 @@ test('a tablet that slept marks its picture as old until the server responds', o
         await settle(page);
         await page.evaluate(() => {
             const { session } = globalThis.plantcast, real = Date.now;
-            session.connection.socket.onmessage = null; // the page receives nothing, as on a dead line
+            // the page receives nothing any more, as if the network were dead; then its clock jumps 7 hours ahead, as after
+            // sleep
+            session.connection.socket.onmessage = null;
             Date.now = () => real() + 7 * 3600e3;
         });
-        await page.waitForFunction(() => { // this notice is visible only until the page has reached the server again
+        // polls each animation frame, because this notice disappears as soon as the page reaches the server again
+        await page.waitForFunction(() => {
             const banner = document.getElementById('banner');
             return /This picture is 7 h old/.test(banner.textContent) && ['silent', 'lost'].includes(banner.dataset.kind) &&
                 document.getElementById('viewport').classList.contains('is-old');
@@ -204,7 +208,9 @@ test('legend and markers belong to the shown picture, however late the requested
     const relay = await Relay.open(plant.port, { bytesPerS: 1e8, delayMs: 0 });
     await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
-        await page.evaluate(() => { // a camera other than home, which the page would fit to the shape of the halves
+        // moves the camera away from its home position: in a split picture the page would fit the home position to the shape of
+        // the halves
+        await page.evaluate(() => {
             const { session } = globalThis.plantcast, { camera } = session;
             session.setCamera({ ...camera, eye: camera.eye.map((m) => 1.1 * m) });
         });
@@ -238,7 +244,7 @@ test('legend and markers belong to the shown picture, however late the requested
 test('a cached page of another version reloads itself, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {
-        await page.goto('about:blank'); // leaves the page, so that it requests no more parts
+        await page.goto('about:blank'); // leaves the page, so that its late requests for modules do not count
         browser.page.on('domcontentloaded', () => asked.push('loaded'));
         let first = true;
         await page.route('**/made/version.js', (route) => {
@@ -300,7 +306,7 @@ test('installed over https, the page opens without its server, says so, and is l
         await waitForHealth(page, 'live');
         const kept = await page.evaluate(async () => (await Promise.all((await caches.keys()).map(async (name) =>
             (await caches.open(name)).keys()))).flat().map(({ url: of }) => new URL(of).pathname));
-        // the worker keeps a file before it answers
+        // the service worker stores a file in its cache before it answers the page, so these files must be there
         assert.deepEqual(['/', '/app/main.js', '/words/en.js'].filter((path) => !kept.includes(path)), []);
         assert.deepEqual(kept.filter((of) => /api|snapshot|stream/.test(of)), [], 'no answer with plant data is cached');
         await secure.daemon.stop('SIGKILL');

@@ -18,7 +18,7 @@ import { promise } from '../support/promise.mjs';
 const options = opcuaOptions(180000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
-const MOST_MB = 48; // maximum memory in MB that a lying server may cost
+const MOST_MB = 48; // largest growth of the daemon's memory, in MB, that a server announcing false sizes may cause
 const good = { quality_name: 'Good' };
 let server, plant;
 
@@ -32,7 +32,8 @@ async function rest() {
         before = taken();
 }
 
-// Lets the daemon connect to whatever listens at the server's port. Returns the daemon's memory in MB above `before`.
+// Starts a daemon whose source is the server's port, whatever listens there, and waits until it has failed to read. Returns the
+// daemon's peak memory in MB minus `before`.
 async function meet(before = 0) {
     await plant.start('security: none', ROWS);
     await plant.said(/no readings \(/);
@@ -88,7 +89,8 @@ test('a reading timestamped an hour ahead is shown, but not with that future tim
     assert.ok(ahead.age_ms >= 0 && ahead.age_ms < 5000, `the reading is ${ahead.age_ms} ms old`);
 });
 
-// The first of its two addresses refuses connections.
+// plc.test has two addresses: 127.0.0.9, where connections are refused, and 127.0.0.1. Needs the right to mount, to replace
+// /etc/hosts.
 const named = { ...options, skip: options.skip || !canMount && 'no right to mount' };
 test('each address of a server\'s host name is tried', named, async () => {
     const hosts = join(server.folder, 'hosts');
@@ -97,7 +99,7 @@ test('each address of a server\'s host name is tried', named, async () => {
     await server.reset({});
     const real = server.port;
     server.port = await freePort();
-    const link = await distort(server.port, real, Infinity); // the link listens on 127.0.0.1 only
+    const link = await distort(server.port, real, Infinity); // listens on 127.0.0.1 only, so that the first address refuses connections
     server.host = 'plc.test';
     await plant.run('security: none', ROWS);
     await plant.until('TI-1', good);
@@ -123,7 +125,8 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
     test(`readings from a server whose clock is an hour ${word} ours are used, its clock is not`, clocks, async () => {
         const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
         for (const name of ['yesterday', 'client2'])
-            makeCertificate(server.folder, name, { dates: [day(-1), day(1)] }); // valid by the clocks of both daemon and server
+            // valid from yesterday to tomorrow: by the daemon's clock, and by the server's, which is an hour off
+            makeCertificate(server.folder, name, { dates: [day(-1), day(1)] });
         server.trust('yesterday');
         await server.restart({ ahead_s: off_s, certificate: 'yesterday' });
         const stale = ROWS[0].replace('TI-1', 'OLD').replace('s=TI-1', 's=TI-2').replace(/0\.5,0,0,,/, '0.5,0,0,60,');
@@ -144,12 +147,15 @@ test('a server whose clock is before its certificate is read and reported; a cer
     for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])
         makeCertificate(server.folder, name, { dates: [day(from), day(to)] });
     server.trust('tomorrow', 'today');
-    await server.restart({ ahead_s: 90000, certificate: 'tomorrow' }); // the certificate is valid by the server's clock
+    // the server's clock is 25 hours ahead: its certificate is valid for itself, but not yet for the daemon
+    await server.restart({ ahead_s: 90000, certificate: 'tomorrow' });
     await plant.start(server.security('', 'us'), ROWS);
     await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
     assert.equal((await server.tell({})).sessions, 0);
     await plant.daemon.stop();
-    await server.restart({ ahead_s: -3600, certificate: 'today' }); // by the daemon's clock, the certificate became valid half an hour ago
+    // the server's clock is an hour behind: its certificate, valid for half an hour by the daemon's clock, is not valid yet by
+    // its own
+    await server.restart({ ahead_s: -3600, certificate: 'today' });
     await plant.run(server.security('', 'us'), ROWS);
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });

@@ -16,7 +16,8 @@ async function make() {
     return { server, plant: await PublishedPlant.create(server) };
 }
 
-// Sets up one group of tests: calls take(server, plant) before they run. Each test has its own daemon.
+// Sets up a group of tests that share one OPC UA server: calls take(server, plant) before the first test. Each test starts its
+// own daemon.
 export function shareOpcua(options, take) {
     let plant;
     before(async () => {

@@ -9,7 +9,7 @@ import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from 
 import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-// LOST: bearing of the sensor whose direction goes Bad; readings stay uncertain while the device is away
+// SENSORS: bearings of the four sensors around the tank, in degrees; LOST: bearing of the sensor whose direction becomes Bad.
 const SENSORS = [0, 90, 180, 270], LOST = 270;
 let plant, browser;
 
@@ -82,8 +82,8 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Returns the drawn picture's arrows as sent to the page: [x, y, dx, dy, value, uncertain, half], and the picture's size.
-// whole: waits for the full size, because smaller previews of a busy machine have fewer arrows.
+// Returns the arrows that the page got with its picture, rows of [x, y, dx, dy, value, uncertain, half], and the picture's
+// size. whole: false for the smaller previews of a busy machine, which have fewer arrows.
 const arrows = () => browser.page.evaluate(() => {
     const { session } = globalThis.plantcast, { picture, size } = session;
     return { rows: session.markersOf(picture.seq)?.arrows ?? [], width: picture.fullWidth, height: picture.fullHeight,
@@ -101,7 +101,7 @@ async function until(what, good) {
 }
 
 test('arrows follow the wind around the tank, near sensors and away from them', options, async () => {
-    // Up to two arrows may be unknown: at the top of the tank, the four sensors' directions cancel out.
+    // Up to two arrows may have no direction: on the tank's top, the directions of the four sensors cancel out.
     const known = ({ rows }) => rows.length > 15 && rows.filter(isUnknown).length < 3 && rows.every((row) => row[5] === 0);
     const { rows, width, height } = await until('directions known', known);
     let front = 0;
@@ -139,7 +139,9 @@ test('streaks follow the wind around the tank, move, and point the way that is s
         for (const [i, [x, y, toX, toY]] of points.slice(1).entries()) {
             const [px, py, fromX, fromY] = points[i], dx = (fromX + toX) / 2, dy = (fromY + toY) / 2, long = Math.hypot(x - px, y - py);
             if (long < 4 || Math.hypot(dx, dy) < 0.3)
-                continue; // skip an arrow that points towards the eye
+                // skips steps that are short or whose direction points towards the viewer, as their direction in the picture is
+                // inexact
+                continue;
             const along = ((x - px) * dx + (y - py) * dy) / long / Math.hypot(dx, dy);
             assert.ok(along > 0.8, `the streak follows its direction: ${along} at ${px}, ${py}`);
             if (Math.abs(px - width / 2) < height / 8 && Math.abs(py - height / 2) < height / 8) {
@@ -160,7 +162,8 @@ test('streaks follow the wind around the tank, move, and point the way that is s
         assert.ok(Date.now() < end, 'the streaks\' dashes do not move');
     for (const points of strokes.values())
         assert.ok(points.length > 1, 'a streak has more than one point');
-    await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas')); // the legend has no length scale for strokes
+    // with strokes, unlike arrows, the legend has no scale that relates length to speed
+    await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas'));
     await shoot(browser.page, 'strokes');
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=960&height=540&arrows=strokes`);
     const png = Buffer.from(await answer.arrayBuffer());
@@ -202,7 +205,7 @@ test('where a sensor\'s direction is lost, arrows are unknown, and only there', 
 test('arrows based on uncertain readings are dashed, and the legend says so', options, async () => {
     const key = browser.page.locator('.legend .arrow-key');
     assert.doesNotMatch(await key.textContent(), /Uncertain/);
-    await plant.tell('pause'); // the device stops answering: the last usable values are shown
+    await plant.tell('pause'); // the device stops answering: the daemon keeps showing the last values for a while, as Uncertain
     await until('uncertain', ({ rows }) => rows.some((row) => row[5]));
     await browser.page.waitForFunction(() => /Uncertain/.test(document.querySelector('.legend .arrow-key')?.textContent));
     await settle(browser.page);
@@ -249,7 +252,7 @@ test('on a phone no Display choice is cut off; legends have units and no impossi
             assert.equal(found.below, show === 'value' ? 1 : 0, what);
             assert.equal(found.why.length > 20, show !== 'value', what);
             keys ||= found.keys;
-            // without a value there is no uncertainty, so the legend has one key fewer
+            // only values can be uncertain: for other displays, the legend lacks the key `Uncertain`
             assert.equal(found.keys, show === 'value' ? keys : keys - 1, what);
         }
         await shoot(page, `display-phone-${language}`);

@@ -13,7 +13,7 @@ const options = { skip: why, timeout: 200000 };
 const MOST = 3; // maximum number of clicks per task
 let plant, browser, page, clicks = 0;
 
-// Records nine hours: a new trend shows the last eight hours only if that much history exists.
+// Imports nine hours of history, because a new trend shows eight hours, but less if the history is shorter.
 function remember({ folder, file }) {
     const now = Math.floor(Date.now() / 1000), path = join(folder, 'series.csv'), lines = ['Tag,Time,Value,Quality'];
     for (let s = 9 * 3600; s > 60; s -= 60)

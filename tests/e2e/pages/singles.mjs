@@ -50,7 +50,8 @@ test('for a single sensor, paper style and distances are refused until the plant
         await ask({ group: 'temperature', interpolation: 'paper' });
         await shown('temperature', 'paper');
 
-        // Once refined, the view is shown; without refinement, viewers return to their former view.
+        // With `singles: cut`, which refines the triangles around single sensors, the view is allowed. When this is removed
+        // from the plant file again, viewers return to the view that they had before.
         await reload(whole.replace('unit: bar,', 'unit: bar, singles: cut,'));
         assert.equal((await picture('interpolation=paper'))[0], 200);
         assert.equal((await picture('show=distance&sensor=PI-1'))[0], 200);

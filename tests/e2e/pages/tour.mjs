@@ -92,7 +92,7 @@ test('the alarm\'s trend opens, and the instant before the alarm', options, asyn
     const slider = page.locator('#time-slider');
     await slider.focus();
     await page.locator('#time-span').selectOption('900');
-    await slider.fill('846'); // 846 s after the start of the slider's span of 900 s
+    await slider.fill('846'); // moves the slider to 846 s after its left end; the slider spans 900 s
     await waitForHealth(page, 'past');
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
     await page.locator('#banner', { hasText: /History/ }).waitFor();

@@ -20,7 +20,7 @@ const answers = (port) => new Promise((done) => {
 });
 
 export class Broker {
-    // more: further lines of the broker's configuration.
+    // Starts a broker; more: lines to append to its configuration file.
     static async start(more = []) {
         const broker = new Broker();
         broker.folder = mkdtempSync(join(tmpdir(), 'plantcast-broker-'));
@@ -56,7 +56,7 @@ export class Broker {
     // Returns the source's line for the plant file; keys: further keys.
     source(keys) { return `{ id: broker, type: mqtt, host: 127.0.0.1, port: ${this.port}, ${keys} }`; }
 
-    // Makes the broker stop answering without closing connections.
+    // Stops the broker's process: it answers nothing, but its connections stay open. thaw() lets it run on.
     freeze() { this.child.kill('SIGSTOP'); }
     thaw() { this.child.kill('SIGCONT'); }
 

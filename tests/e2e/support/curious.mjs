@@ -37,13 +37,14 @@ export class Curious {
     some(list, most) { return Array.from({ length: Math.floor(this.random() * (most + 1)) }, () => this.any(list)); }
     get ids() { return this.welcome.assets.map((asset) => asset.id); }
 
-    // Waits until the refined picture of the last request is there; during playback of the past, any picture.
+    // Waits for the refined picture of the last request. While the past is played back, or after REFINED_MS, any picture of
+    // that request will do.
     async still() {
         const { seq, playing } = this;
         const said = performance.now(), any = () => playing || performance.now() - said > REFINED_MS;
         const is = (f) => (any() || (f.flags & 2) !== 0) && Math.max(f.camera_seq, f.params_seq) >= seq;
         const wrong = (t) => t.type === 'error';
-        // true: no picture has come for QUIET_MS, so no refined one is due
+        // true: for QUIET_MS no picture has come, so the server owes none and the wait ends
         const quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS;
         await this.client.until(`a picture of ${seq}`, (c) => c.closed !== null || c.texts.some(wrong) || c.frames.some(is) || quiet(c),
             PATIENCE_MS);

@@ -7,7 +7,7 @@ import { join, resolve } from 'node:path';
 
 const FOLDER = join(resolve(process.env.PLANTCAST_OUT ?? 'build/release'), 'tests/faults');
 const LIBRARY = 'libEGL.so.1', BYTES = 64;
-// Offsets and widths of the numbers in struct faults.
+// Members of struct faults in tests/faults/gl_faults.c: [offset, size] in bytes in the shared file.
 const FIELDS = {
     losses: [0, 4], loss_calls: [4, 4], refusals: [8, 4], hardware: [12, 4], room_bytes: [16, 8], lost: [24, 4], contexts: [28, 4],
     used_bytes: [32, 8], most_bytes: [40, 8], objects: [48, 4], refused: [52, 4], made: [56, 4],
@@ -18,7 +18,7 @@ function realLibrary() {
     return said.match(new RegExp(`^\\s*${LIBRARY.replaceAll('.', '\\.')} .*=> (.*)$`, 'm'))?.[1];
 }
 
-// Returns why this is not possible on this machine, or null.
+// Returns why GPU faults cannot be simulated on this machine, or null if they can.
 export function faultsMissing() {
     const ours = join(FOLDER, LIBRARY);
     return !existsSync(ours) ? `not built: ${ours}` : realLibrary() ? null : `no ${LIBRARY}`;

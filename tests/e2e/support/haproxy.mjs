@@ -13,10 +13,12 @@ const shipped = (name) => readFileSync(new URL(`../../../deploy/proxy/${name}`, 
 export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
 
 export class Haproxy {
-    // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons. ca and coreCa: files with
-    // certificates of renderers and cores; null: no TLS. port: port of the balancer; default: a free one
+    // Starts HAProxy. renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons. ca, coreCa:
+    // certificate authorities' files that verify renderers and cores; null: connections to them without TLS. port: port of
+    // HAProxy itself; null: a free one.
     static async start(renderers, core, standby = null, { host = '127.0.0.1', ca = null, coreCa = ca, port: own = null } = {}) {
-        const authorities = [ca, ca, coreCa]; // certificate authorities in the order in which the shipped file uses them
+        // the shipped configuration has three `ca-file` entries, in this order: two for renderers, one for cores
+        const authorities = [ca, ca, coreCa];
         const tls = (authority) => (authority ? ` ssl verify required ca-file ${authority}` : '');
         let text = shipped('haproxy.cfg').replaceAll(/ ssl verify required ca-file \S+/g, () => tls(authorities.shift()))
             .replace('server core 10.0.0.10:8443', `server core ${host}:${core.port}`);

@@ -9,13 +9,14 @@ const encode = (value) => Buffer.from(typeof value === 'string' ? value : JSON.s
 export class IdentityProvider {
     constructor() {
         this.sub = 's1';
-        this.claims = { preferred_username: 'kim', groups: ['operators'] }; // claims of the next user who logs in
-        this.change = () => {}; // change(claims, header) modifies the next ID tokens
-        this.sign = null;       // sign(text) makes a different signature; null: the right one
+        this.claims = { preferred_username: 'kim', groups: ['operators'] }; // claims of the ID tokens issued from now on
+        // a test may set change(claims, header), which is called to modify each ID token's content before it is signed
+        this.change = () => {};
+        this.sign = null;       // sign(text): makes the signature of ID tokens instead of the right one; null: signs rightly
         this.refreshes = true;  // whether refresh tokens are issued and accepted
         this.status = 200;      // HTTP status of refresh requests
         this.delay_ms = 0;      // delay of the token endpoint
-        this.codesWait = null;  // a promise: codes are answered that long after it is fulfilled
+        this.codesWait = null;  // a promise; until it is fulfilled, authorization codes get no answer; null: they are answered at once
         this.keysStatus = 200;
         this.fault = null;      // [status, JSON] that the token endpoint always answers; null: normal answers
         this.live = new Map();  // valid refresh tokens and their users
@@ -24,7 +25,7 @@ export class IdentityProvider {
         this.rotate();
     }
 
-    // Signs with a new key from now on; keep: earlier keys stay published.
+    // Replaces the signing key. keep: the earlier public keys stay published with the new one; otherwise only the new one is.
     rotate(keep = false) {
         const { privateKey, publicKey } = generateKeyPairSync('rsa', { modulusLength: 2048 });
         this.kid = randomUUID();
@@ -91,7 +92,7 @@ export class IdentityProvider {
         return path === '/revoke' ? [200, {}] : [404, {}];
     }
 
-    // port: default: one that stays reserved while the provider is away
+    // Starts the provider. port: null: one that stays reserved for this provider while it is down.
     async listen(port = null) {
         const own = port ?? await freePort();
         this.server = createServer((request, response) => {
@@ -108,7 +109,9 @@ export class IdentityProvider {
                 }
                 const [status, json] = this.answer(request.url, new URLSearchParams(body), request.headers.authorization);
                 const say = () => response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
-                response.once('close', () => { // the client closed before the answer arrived, so it does not have the new token
+                // if the client closes before the answer arrives, it does not have the new refresh token: makes that token
+                // invalid
+                response.once('close', () => {
                     if (!response.writableFinished)
                         this.live.delete(json.refresh_token);
                 });

@@ -34,7 +34,7 @@ const line = (low, high) => [point('low', 0, 0, low), point('high', 0, 0, high),
 const composite = (low, high) => [...line(low, high), ['segment', 'IFCCOMPOSITECURVESEGMENT(.CONTINUOUS.,.T.,#{line})'],
     ['curve', 'IFCCOMPOSITECURVE((#{segment}),.F.)']];
 
-// [name, statements, volume in mm3, representation type]
+// [name, IFC statements, volume in mm3 that remains after cutting, type of the shape representation]
 export const OPENINGS = [
     ['through', [...box, ...hole], BOX - 2500 * 50],
     ['as deep as the element', [...box, ...opening('hole', square(0, 50))], BOX - 2500 * 50],
@@ -75,7 +75,7 @@ export const OPENINGS = [
         ['moved', 'IFCLOCALPLACEMENT(#{place},#{offAt})'], ...opening('hole', square(-10, 70), { place: 'moved' })], BOX - 2500 * 50],
 ];
 
-// [name, statements, why]: openings that cannot be cut
+// [name, IFC statements, part of the reason reported]: elements with an opening that the importer cannot cut
 export const UNCUT = [
     ['a surface', [...box, ...opening('sheet', [point('a', -300, 0, 0), point('b', 300, 0, 0), ['edge', 'IFCPOLYLINE((#{a},#{b}))'],
         ['open', 'IFCARBITRARYOPENPROFILEDEF(.CURVE.,$,#{edge})'], ['sheet', 'IFCEXTRUDEDAREASOLID(#{open},#{frame},#{z},50.)']])],

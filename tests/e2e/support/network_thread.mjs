@@ -5,7 +5,8 @@ import { connect, createServer } from 'node:net';
 import { isMainThread, parentPort, Worker } from 'node:worker_threads';
 import { CuttableLink } from './postgres_server.mjs';
 
-const now = () => performance.timeOrigin + performance.now(); // the same time base in all threads
+// current time in ms on a time base that is the same in all threads; performance.now() alone differs by thread
+const now = () => performance.timeOrigin + performance.now();
 
 // Relays requests to the device, and records the first and last request of each connection.
 async function openTap(pollers, port, devicePort) {
@@ -55,7 +56,7 @@ export class Network {
         });
     }
 
-    // Opens a link to a port of this machine: { port, cut(), freeze(), mend() }.
+    // Opens a link to a port of this machine. Returns { port: where to connect, cut(), freeze(), mend() }.
     async link(port, at = {}) {
         const { n, port: own } = await this.ask('link', port, at);
         return { port: own, cut: () => this.ask('set', n, 'cut'), freeze: () => this.ask('set', n, 'freeze'),
@@ -63,7 +64,8 @@ export class Network {
     }
     tap(port, devicePort) { return this.ask('tap', port, devicePort); }
 
-    // Returns for how many milliseconds two pollers overlapped, for each such pair; expected: [].
+    // Returns, for each pair of connections to the device that were in use at the same time, the overlap in ms. Only one core
+    // may poll, so a test expects [].
     async overlaps() {
         const pollers = await this.ask('pollers'), found = [];
         for (let i = 1; i < pollers.length; i++)
@@ -72,7 +74,8 @@ export class Network {
                     found.push(pollers[k].last - pollers[i].first);
         return found;
     }
-    // Returns the longest pause in polling that ended since then, in milliseconds.
+    // Returns the longest pause in ms between one connection's last request to the device and the next connection's first one,
+    // counting pauses that end at `since` or later.
     async longestPause(since) {
         const turns = await this.ask('pollers');
         return Math.max(0, ...turns.slice(1).map(({ first }, i) => (first >= since ? first - turns[i].last : 0)));

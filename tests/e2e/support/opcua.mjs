@@ -75,7 +75,8 @@ export class OpcuaServer {
             spawnSync('openssl', ['x509', '-in', `${name}.crt`, '-out', `trusted/${name}.pem`], { cwd: this.folder });
     }
 
-    // Resets the server to its state after starting with these settings.
+    // Brings the server back to the state after a start with these settings; restarts it only if the settings differ from the
+    // present ones.
     async reset(settings = this.settings ?? {}) {
         if (this.runs && isDeepStrictEqual(settings, this.settings))
             await this.tell({ reset: true });

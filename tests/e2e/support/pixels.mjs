@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compares pictures.
 
-// Returns the largest channel difference of each pixel, one byte per pixel.
+// Compares two pictures of equal size. Returns, for each pixel, the largest difference of any of the three colour channels: 0
+// to 255.
 export function difference(a, b) {
     if (a.width !== b.width || a.height !== b.height)
         throw new Error(`${a.width}x${a.height} is not ${b.width}x${b.height}`);
@@ -13,7 +14,7 @@ export function difference(a, b) {
     return { width: a.width, height: a.height, at: out };
 }
 
-// Returns the mean over the part of a square around a position that lies inside the picture.
+// Takes the result of difference(). Returns its mean over a square around (x, y), leaving out what lies outside the picture.
 export function meanAround({ width, height, at }, x, y, radius) {
     let sum = 0, count = 0;
     for (let j = Math.max(0, y - radius); j <= Math.min(height - 1, y + radius); j++) {
@@ -25,7 +26,7 @@ export function meanAround({ width, height, at }, x, y, radius) {
     return count > 0 ? sum / count : 0;
 }
 
-// Counts pixels outside a box that differ by more than `least`.
+// Takes the result of difference(). Counts the pixels outside the box whose difference exceeds `least`.
 export function countOutside({ width, height, at }, least, box) {
     let count = 0;
     for (let y = 0; y < height; y++) {

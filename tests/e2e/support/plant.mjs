@@ -54,7 +54,7 @@ function start(program, args, ready) {
     return up.then(() => ({ pid: child.pid, end, said: () => said, running, fault }));
 }
 
-// Sends one line to the simulator; returns one line.
+// Sends one command line to the simulator's control port. Resolves with its answer, one line.
 function ask(port, line) {
     return new Promise((done, fail) => {
         const socket = connect(port, '127.0.0.1', () => socket.write(`${line}\n`));
@@ -74,7 +74,8 @@ function ask(port, line) {
     });
 }
 
-// Writes a plant file with its own port; everything else is the demo's.
+// Makes a copy of the demo plant in which the source has this port; `more` is appended to the plant file. Returns the plant
+// file's path.
 function copyPlant(folder, modbusPort, more) {
     for (const name of readdirSync(DEMO)) {
         if (name !== 'plant.yaml' && !name.endsWith('.history')) // recorded history is not copied
@@ -91,8 +92,8 @@ function copyPlant(folder, modbusPort, more) {
     return join(folder, 'plant.yaml');
 }
 
-// more: further lines of the plant file. arrange(plant): called when the simulator runs and the daemon does not yet. flags:
-// further arguments of the daemon.
+// Starts the demo plant. more: lines to append to the plant file. arrange(plant): called after the simulator has started and
+// before the daemon does. flags: further arguments of the daemon.
 export async function startPlant(more = '', arrange = () => {}, flags = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-e2e-'));
     const [modbusPort, controlPort, httpPort] = [await freePort(), await freePort(), await freePort()];

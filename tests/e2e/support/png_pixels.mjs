@@ -47,7 +47,8 @@ export class Canvas {
             rgb.copy(this.rgb, ((frame.y + y) * this.width + frame.x) * 3, y * width * 3, (y + 1) * width * 3);
     }
 
-    // Compares this picture with the part of `whole` at (x, y). Returns how many pixels differ.
+    // Returns how many of this picture's pixels differ from the picture `whole`; this picture's top left corner lies at (x, y)
+    // in it.
     differsFrom(whole, x, y) {
         let count = 0;
         for (let row = 0; row < this.height; row++) {

@@ -89,7 +89,7 @@ export class PostgresServer {
             '-U', user, '-d', database, '-c', sql], { encoding: 'utf8', env: { ...process.env, TZ: 'UTC', PGTZ: 'UTC' } });
     }
 
-    // Locks the query's rows until the returned function is called.
+    // Locks the rows that the query returns. Resolves with a function that releases them.
     async lock(query) {
         const held = `/* held */ BEGIN; ${query} FOR UPDATE; SELECT pg_sleep(600)`;
         const child = spawn(join(FOLDER, 'psql'), ['-XAtq', '-h', this.folder, '-p', String(this.port), '-U', 'owner', '-d', this.database,
@@ -128,7 +128,7 @@ export class PostgresServer {
     }
     get login() { return `plantcast\n${PASSWORD}\n`; }
 
-    // Makes a tablespace on a disk of that many megabytes; null: this user may not mount a disk.
+    // Makes a tablespace on a new file system of `megabytes` MB. Returns null if this user may not mount one.
     smallDisk(megabytes) {
         const path = join(this.folder, 'disk');
         mkdirSync(path);
@@ -154,8 +154,8 @@ export class PostgresServer {
 // Relays bytes to a port of this machine until it is cut: then all connections end, and new ones are refused until it is
 // mended.
 export class CuttableLink {
-    // at: { host, port, from }: where it listens, and from which address it connects. freeze() passes nothing on and closes
-    // nothing, like an unplugged cable.
+    // at: { host, port: where the link listens; from: local address of its connections to the target }. freeze() stops passing
+    // bytes on but closes no connection, as if a cable were unplugged.
     static async open(port, at = {}) {
         const link = new CuttableLink();
         link.sockets = new Set();

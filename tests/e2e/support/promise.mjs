@@ -3,12 +3,13 @@
 // Elsewhere they are only printed, because other load delays the product just as much.
 import assert from 'node:assert/strict';
 
-// Why `make test` skips a case that takes half a minute or more; false in `make test-long`.
+// Value for the option `skip` of cases that take half a minute or more: the reason in `make test`, false (runs) in `make
+// test-long`.
 export const long = process.env.PLANTCAST_LONG === '1' ? false : 'make test-long runs it';
 
 const isHeld = process.env.PLANTCAST_TIMES === '1';
 
-// Prints how long `what` took. Fails if that is mostMs or more and limits are enforced.
+// Reports how long `what` took. Fails if that is mostMs or more, but only where limits are enforced.
 export function promise(t, what, ms, mostMs) {
     const text = `${what}: ${Math.round(ms)} ms, promised ${mostMs} ms`;
     t.diagnostic(text);

@@ -13,8 +13,8 @@ function texts(body, at, count) {
     return { found, at };
 }
 
-// Returns { before, groups, after }: chunks are [id, body]; groups are { name, rest, items }, whose items are groups and
-// chunks.
+// Splits an RVM file. Returns { before: chunks before the first group, groups, after: chunks after the last one }. A chunk is
+// [id, body]; a group is { name, rest, items }, and its items are groups and chunks.
 export function readRvm(bytes) {
     const root = { items: [] }, stack = [root], after = [];
     for (let at = 0; at < bytes.length;) {

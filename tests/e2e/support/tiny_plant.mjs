@@ -187,8 +187,8 @@ export class TinyPlant {
                     copyWhole(join(this.prepared, name), join(shared, `box-${name}`));
     }
 
-    // Computing the ambient openness takes half of a daemon's start and always gives the same for a prepared plant, so all
-    // programs of one run of tests/run share it.
+    // Returns the folders of this plant's computed ambient openness: its own, and one that all programs of a run of tests/run
+    // share. Computing it takes half of a daemon's start and always gives the same result for one prepared plant.
     openness() {
         const manifest = join(this.prepared, 'manifest.json');
         if (!process.env.PLANTCAST_SHARED || !existsSync(manifest))
@@ -244,8 +244,8 @@ export class TinyPlant {
         });
     }
 
-    // Starts the daemon. Without --port it uses a port that stays reserved while the daemon is away: another program could take
-    // over a port chosen by the system.
+    // Starts the daemon. Without --port it gets a port that stays reserved while the daemon is down, because another program
+    // could take a port that the system chose.
     async startDaemon(...args) {
         const at = args.includes('--port') ? [] : ['--port', String(await freePort())];
         this.daemon = new Program('plantcastd', [this.file, ...at, ...args], this.as, this.before, this.bin);

@@ -13,7 +13,9 @@ import { promise } from './promise.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
 
 export const TAKE_OVER_MS = 5000;
-export const STANDBY_HOST = '127.0.0.9'; // source address of the standby's connections to the leader
+// address from which the standby connects to the leader; it differs from 127.0.0.1 so that the leader's log and limits can tell
+// them apart
+export const STANDBY_HOST = '127.0.0.9';
 
 // Returns why these tests cannot run on this machine; false: they can.
 export function missingTwoCores() {
@@ -29,7 +31,8 @@ export const terms = (core) => core.program.said.match(/polls devices and owns t
 export const kill = (core, signal) => () => core.program.child.kill(signal);
 
 export class TwoCores {
-    // server: PostgresServer with a database; more: YAML appended to the plant file; access: the cores' access options.
+    // Makes two cores. server: a PostgresServer with a database; more: lines to append to the plant file; access: options that
+    // say who may access the cores.
     static async create(server, more = '', access = ['--trust-local']) {
         const two = new TwoCores();
         Object.assign(two, { server, access });
@@ -95,8 +98,9 @@ ${more}`);
             toDatabase: await this.network.link(this.server.port, { host, port: this.databasePort }) };
     }
 
-    // Starts a core, which follows or leads. as: its node name. Members of the core: `before`: command prefix that starts it;
-    // `tokenFile`: tokens that it accepts; `standbyFile`: its token for the other core.
+    // Starts a core; it becomes leader or standby. as: its --node name. Optional members of the core: `before`: command that
+    // starts the program; `tokenFile`: tokens that the core accepts; `standbyFile`: token with which it connects to the other
+    // core.
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
         const { plant, standbyFile, tokenFile } = this.nodes;
@@ -152,7 +156,7 @@ ${more}`);
         }, seconds);
     }
     other(core) { return Object.values(this.cores).find((one) => one !== core); }
-    // Waits until the other core follows, and its promises count.
+    // Waits until the other core follows this one, so that its promises not to take over count, and has TI-1's reading.
     followed(core) {
         return this.waitsFor('a standby that is named', async () => await core.node.metric('plantcast_core_standby') === 1 &&
             (await this.other(core).node.tags())['TI-1'].quality_name === 'Good');

@@ -40,7 +40,7 @@ before(async () => {
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
     assert.equal(imported.code, 0, imported.err);
     await plant.startSim();
-    // sets normal values, so that the only alarm is the one that a test raises
+    // sets values within the limits, so that only the tests raise alarms
     await plant.set({ 'TI-1': 50, 'TI-2': 40, 'PI-1': 5 });
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
@@ -148,7 +148,7 @@ const drawn = ([from, to]) => page.waitForFunction((span) => { // Waits until th
 test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, and each can be undone', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3 && globalThis.plantcast.trends.chart);
     await drawn(await rangeOf());
-    await settle(page); // waits until the axes of all three tags have their final widths
+    await settle(page); // waits until the value axes of all three tags have their final widths, because they move the plot
     const box = await page.locator('#trend-chart .u-over').boundingBox(), y = box.y + box.height / 2;
     const [from, to] = await rangeOf(), at = (x) => from + ((to - from) * (x - box.x)) / box.width;
     const [a, b] = [0.3, 0.7].map((part) => Math.round(box.x + part * box.width));
@@ -161,7 +161,7 @@ test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, a
     assert.equal((await shown()).past, false, 'a drag does not count as a click');
     await drawn(zoomed);
     assert.match(await page.locator('#trend-range').inputValue(), /^\d{4}-\d\d-\d\d \d\d:\d\d.* to /);
-    await settle(page); // the labels of the new range may change the widths of the axes
+    await settle(page); // waits again, because the labels of the new range may change the widths of the axes
     const plot = await page.locator('#trend-chart .u-over').boundingBox();
     await page.mouse.move(plot.x + plot.width / 4, y);
     await page.mouse.wheel(0, -200);
@@ -231,7 +231,8 @@ test('a typed time range is shown, with its statistics, and the crosshair is sha
 test('keys move the crosshair, zoom and pan, and the camera stays', options, async () => {
     const eye = () => page.evaluate(() => globalThis.plantcast.session.camera.eye);
     await page.locator('#time-toggle').click();
-    await arrive(page); // the picture has become smaller, for which the camera moves
+    // the open time bar has made the picture smaller: waits until the camera has adapted, to compare its position afterwards
+    await arrive(page);
     const before = await eye();
     await page.locator('#trend-chart').focus();
     const [from, to] = await rangeOf();
@@ -264,7 +265,7 @@ test('tags are added by typing, and by dragging a marker or a row of the list', 
     assert.deepEqual(await names(), ['TI-1', 'PI-1'], 'the tag is found by its description');
     await page.evaluate(() => {
         globalThis.plantcast.session.setParams({ group: 'temperature' });
-        globalThis.plantcast.selectTag(null); // closes the tag's card, which may cover the marker
+        globalThis.plantcast.selectTag(null); // deselects the tag, because its card may cover the marker that the test drags
     });
     await arrive(page);
     const [from, to] = await page.evaluate(() => {
@@ -294,7 +295,7 @@ test('a chart draws no series until the answer for its tags has arrived', option
     const path = /api\/v1\/history/, drawn = (name) => page.waitForFunction(
         (label) => globalThis.plantcast.trends.chart.series[1]?.label === label, name);
     await page.evaluate(() => { const { trends, session } = globalThis.plantcast; trends.only(session.model.tag('TI-1')); });
-    await drawn('TI-1'); // so that no earlier answer holds the other tag's values
+    await drawn('TI-1'); // waits until TI-1's answer is drawn, so that no earlier answer can contain PI-1's values
     let answer;
     const answered = new Promise((done) => { answer = done; });
     await page.route(path, async (route) => { await answered; await route.continue(); });
@@ -367,18 +368,22 @@ test('a recorded gap is shown as a gap in the picture, too', options, async () =
 test('playback plays, pauses, and returns to live', options, async () => {
     await travel(page, (BEGIN_S + 100) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
-    // at this speed playback reaches the present after 48 s; on a busy machine before another picture arrives
+    // 60 times: playback crosses the 48 minutes of history in 48 s, so on a busy machine it may reach the present before
+    // another picture arrives
     await page.locator('#time-speed').selectOption('60');
     await page.locator('#time-play').click();
     await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs > us, (BEGIN_S + 160) * 1e6);
     assert.match(await page.locator('#banner .detail').textContent(), /playing 60×/);
     assert.equal(await page.locator('#time-play').getAttribute('aria-label'), 'Pause');
     await page.locator('#time-play').click();
-    await page.waitForFunction(() => { // the picture of the instant at which playback was paused arrives a little later
+    // waits for the picture of the instant at which playback was paused; the picture arrives after the instant
+    await page.waitForFunction(() => {
         const { time, picture } = globalThis.plantcast.session;
         return time.speed === 0 && Math.abs(picture.dataTimeUs - time.atUs) < 1e6;
     });
-    await page.waitForFunction(() => { // the instant stays for 800 ms (48 s at that speed) even after the server's answer
+    // After the pause the instant must not move: waits until it has been the same for 800 ms, in which playback would have
+    // moved it by 48 s.
+    await page.waitForFunction(() => {
         const { atUs } = globalThis.plantcast.session.time, now = performance.now();
         if (!(Math.abs(globalThis.paused?.atUs - atUs) < 1e6))
             globalThis.paused = { atUs, now };
@@ -440,7 +445,8 @@ test('marks and buttons lead to an alarm\'s instant, from alarm to alarm, and to
         const { rows } = await (await fetch('/api/v1/alarms/journal')).json();
         return rows.filter(({ event }) => event === 'raise').map(({ time_us: us }) => us).reverse();
     });
-    const old = (us) => globalThis.plantcast.session.clockUs() - us > 4e6; // newer instants count as the present, so the test waits
+    // waits until the alarm is 4 s old, because choosing a newer instant returns the page to the present
+    const old = (us) => globalThis.plantcast.session.clockUs() - us > 4e6;
     await page.waitForFunction(old, raises.at(-1));
     await page.locator('#time-track .alarm').last().click();
     await page.waitForFunction((all) => all.includes(globalThis.plantcast.session.time.atUs), raises);
@@ -472,7 +478,9 @@ test('marks and buttons lead to an alarm\'s instant, from alarm to alarm, and to
     await page.locator('#time-span').selectOption('2592000');
     await page.locator('#time-slider').focus();
     await page.keyboard.press('ArrowRight');
-    await instantOf(us + 60e6); // one press moves by a minute, although one of the slider's 2000 steps would be 21 minutes
+    // one key press moves the instant by a minute, whatever the span; a step of the slider itself (1/2000 of 30 days) would be
+    // 21 minutes
+    await instantOf(us + 60e6);
     await page.locator('#time-span').selectOption('3600');
     await page.locator('#time-live').click();
     await waitForHealth(page, 'live');
