@@ -172,7 +172,8 @@ static int forget_openness(void **state)
     return 0;
 }
 
-/* Many sessions request lights, each for another sun (40 in a long run), while one light stays in use. Memory stays within the limit of three lights. */
+/* Many sessions request lights, each for another sun (40 in a long run), while one light stays in use. Memory stays within the
+   limit of three lights. */
 TEST_WITH(test_many_lights_fit_in_a_bound, keep_openness, forget_openness)
 {
     struct gpu_scene gpu_scene;

@@ -122,8 +122,8 @@ static struct flash flash_of(struct site *site, struct view *view)
     return flash;
 }
 
-/* Compares the tiers in six views: the plant's own and five near assets, the last one with the model's materials; every second one has a dark
-   backdrop. Asserts that they differ little, except for dark outlines, which previews lack. */
+/* Compares the tiers in six views: the plant's own and five near assets, the last one with the model's materials; every second
+   one has a dark backdrop. Asserts that they differ little, except for dark outlines, which previews lack. */
 static void assert_no_flash(const char *path, const char *name)
 {
     enum { VIEWS = 6 };

@@ -133,8 +133,9 @@ static void look_close(struct view *view)
     look_from(0.5, view);
 }
 
-/* Shading is not mistaken for a value even with the whole plant in view, or from twice as far, where its parts are a few pixels
-   wide. At that size the standard JPEG tables, made for photographs, lose more chroma than allowed, with and without shading. */
+/* A viewer reads no wrong values from shading even if the whole plant is in view, or twice as far away, where its parts are a
+   few pixels wide. At that size JPEG encoders with the standard tables, made for photographs, lose too much colour, shaded or
+   not; they are compared with the flat look only. */
 TEST_WITH(test_far_away_it_is_not_either, set_up, stand_tear_down)
 {
     struct view view;
@@ -146,11 +147,13 @@ TEST_WITH(test_far_away_it_is_not_either, set_up, stand_tear_down)
         view.look = LOOK_FLAT;
         measure(&view, flat);
         for (int i = 0; i < WAYS; i++)
-            assert_true(shaded[i] <= (i < OURS ? 3 : flat[i] + 0.8)); /* one step of the map is 0.39 percent of the range */
+            /* ways that Plantcast itself uses: at most 3 % error (one step of the map is 0.39 %); others: at most 0.8 % more
+               than without shading */
+            assert_true(shaded[i] <= (i < OURS ? 3 : flat[i] + 0.8));
     }
 }
 
-/* Maps declared readable under shading are read correctly; the others do not declare it. */
+/* Colour maps that claim to be readable under shading must be read correctly; maps that are not must not claim it. */
 TEST_WITH(test_shading_is_not_read_as_value, set_up, stand_tear_down)
 {
     struct view view;
@@ -174,7 +177,7 @@ TEST_WITH(test_glossy_would_be_misread, set_up, stand_tear_down)
     look_close(&view);
     view.look = LOOK_GLOSSY;
     measure(&view, p95);
-    assert_true(p95[0] > 3); /* a map that is misread would exceed the limits of the test above */
+    assert_true(p95[0] > 3); /* the glossy look is misread by more than the 3 % allowed above, so the test can detect a misread map */
 }
 
 /* Lightness differs little between the tiers, so that the change from preview to refined does not flash. */
@@ -201,7 +204,8 @@ TEST_WITH(test_tiers_agree, set_up, stand_tear_down)
     frame_unref(&moving);
 }
 
-/* While all readings are within their limits, every pixel that differs from the view of values, field or context, is grey. */
+/* The operator's view is grey while all readings are within their limits: every pixel that differs from the view of values,
+   whether of a field or of a model without sensors, must be grey. */
 TEST_WITH(test_operator_sees_greys, set_up, stand_tear_down)
 {
     struct view values, limits;

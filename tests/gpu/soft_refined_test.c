@@ -9,7 +9,8 @@
 static struct rig rig;
 static struct stand stand;
 
-/* Isolines, bands and logarithmic scales. Edges of lines differ, because GL computes slopes differently. */
+/* Software frames with isolines, colour bands and logarithmic scales equal those of GL, except at the edges of lines: GL
+   computes slopes differently. */
 TEST(test_lines_and_scales)
 {
     for (int i = 0; i < 8; i++) {
@@ -80,7 +81,8 @@ TEST(test_nothing_in_sight)
     frame_unref(&frame);
 }
 
-/* A pixel's centre may lie outside the sliver that the pixel shows; its shadow must not be looked up on an extension of the sliver. */
+/* A sliver is a very thin triangle. The centre of a pixel that shows one may lie outside it; the shadow there must be that of
+   the sliver itself, not of a point on its extended plane. */
 TEST(test_shadows_on_slivers)
 {
     for (int light = 0; light < sweep(3, 1); light++) {
@@ -104,7 +106,7 @@ static int darkest(const struct frame *frame, int y)
     return level;
 }
 
-/* A leaning pole is alternately 3 and 4 pixels wide, and its lines must not show that. */
+/* A leaning pole is alternately 3 and 4 pixels wide. Its dark outlines must not vary with that, which would look like beads. */
 TEST(test_thin_poles_have_no_beads)
 {
     enum { FIRST = 80, LAST = 220 };
@@ -226,7 +228,8 @@ TEST(test_lines_again)
     view.color_scale.line_count = 0;
     assert_same_anew(&view);
     soft_lines_every(&view, 20);
-    assert_false(is_quick(&view)); /* not quick, because the last frame had no isolines */
+    /* the last frame had no isolines, so it cannot just be recoloured to show some */
+    assert_false(is_quick(&view));
     toy_fill(stand.snapshot, 0);
 }
 

@@ -12,7 +12,7 @@
 #include "tests/support/rig_case.h"
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
-static const double LEAST_M = 2; /* minimum distance in metres between the eye and the nearest visible point */
+static const double LEAST_M = 2; /* minimum distance in metres of the camera's eye from every asset's bounding box */
 
 /* --- cameras ---------------------------------------------------------------------------------------------------------------- */
 
@@ -50,7 +50,8 @@ static bool has_value(const float number[4])
     return number[1] >= 0 && number[1] < 0.5f && number[2] < 0.5f;
 }
 
-/* Returns whether depth bends here, as at an edge. In the image, depth is linear on a flat surface and nearly linear on a curved one. */
+/* Returns whether depth, followed across three pixels, bends by more than 0.2 %, as at an edge. In the image, depth is linear
+   on a flat surface and nearly linear on a curved one. */
 static bool bends(const float (*numbers)[4], int at, int step)
 {
     double before = (double)numbers[at - step][3], here = (double)numbers[at][3], after = (double)numbers[at + step][3];
@@ -69,10 +70,10 @@ static bool is_within(const float (*numbers)[4], int at)
 }
 
 struct soft_values_tally {
-    /* within: pixels within one surface; off, unreadable: those whose colour is not their value's, and those whose colour is
-       not in the map */
+    /* within: pixels that show one surface with their neighbours; off: those of them whose colour is not their value's;
+       unreadable: those whose colour is not in the map */
     int within, off, unreadable;
-    int rims, rims_off;          /* rims: other pixels with a value; rims_off: those with another colour */
+    int rims, rims_off;          /* rims: all other pixels that have a value; rims_off: those of them whose colour is not their value's */
     int most;
 };
 

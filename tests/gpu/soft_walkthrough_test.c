@@ -23,7 +23,7 @@ static int differing(const struct frame *a, const struct frame *b)
     return count;
 }
 
-/* Returns the number of pixels that differ from the picture that GL draws. */
+/* Draws the view in software and with GL. Returns the number of pixels that differ. */
 static int compare(struct site *site, const struct view *view)
 {
     renderer_use_gl(site->renderer, true);

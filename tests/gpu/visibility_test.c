@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility: hidden, isolated, ghosted and clipped assets, their colours, markers and content hashes, and orthographic
-   cameras. Runs first as a session without a GPU does, where some views are left to GL and must match the others, and then with
-   GL only. */
+/* Visibility: hidden, isolated, ghosted and clipped assets; their colours, markers and content hashes; and orthographic
+   cameras. All tests run twice: drawn in software as for a session without a GPU (which leaves some views to GL, and these must
+   match), then drawn by GL only. */
 #include "tests/support/test.h"
 
 #include "render/pick/pick.h"
@@ -21,7 +21,8 @@ static void set_up(struct stand *own, struct toy *toy)
     renderer_use_gl(own->renderer, by_gl);
 }
 
-/* Sets all sensors of the exchanger to 30 degrees and of the tank to 80, so that each asset has one colour. */
+/* Sets the exchanger's sensors to 30 degrees and the tank's to 80, so that each of the two assets has one colour; also resets
+   the view. */
 static int reset(void **state)
 {
     (void)state;
@@ -33,7 +34,7 @@ static int reset(void **state)
     return 0;
 }
 
-/* Counts the pixels with exactly the colour of this value. */
+/* Counts the pixels with exactly the colour that the legend gives this value, 0 to 100. */
 static int count_value(const struct frame *frame, double value)
 {
     const struct colormap *map = colormap_at(NULL, (size_t)view.colormap);
@@ -133,8 +134,8 @@ TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
     frame_unref(&none);
 }
 
-/* The tank stands in front of the exchanger's end, or is hidden: the part seen through the ghost keeps its colours, except for
-   lines and dots. */
+/* The tank stands in front of the exchanger's end. Seen through the ghosted tank, that end must have the same colours as with a
+   hidden tank, except where the ghost's lines and dots are. */
 TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { 11, 2.5, 2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
@@ -251,8 +252,9 @@ static struct toy *nested(bool hollow, bool open)
     return toy;
 }
 
-/* Measures where neutral pixels in the middle row begin and end, in metres to the right of the centre. box: also clips the
-   back, so that rays leave the visible part inside the body. */
+/* Draws a section and measures, in the middle row of pixels, where the grey of the cut surface begins (first_m) and ends
+   (last_m), in metres to the right of the centre. box: a second plane also cuts off the back, so that rays leave the visible
+   part inside the body. */
 static void cut_through(struct stand *from, enum tier tier, bool core_cut, bool box, double *first_m, double *last_m, struct pick *pick)
 {
     enum { SIDE = 200 };
@@ -276,7 +278,8 @@ static void cut_through(struct stand *from, enum tier tier, bool core_cut, bool 
     frame_unref(&frame);
 }
 
-/* Solid: the cap hides the inside. Hollow: only the walls have caps. Open: the inside is visible, as without caps. */
+/* Three bodies, cut open. Solid: a grey cap covers the inside. Hollow: only its walls get caps. Open (a triangle is missing):
+   no cap, so the inside is visible. */
 TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
 {
     double first_m, last_m;
@@ -298,7 +301,7 @@ TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
             assert_int_equal(pick.inside, way == 0);
             assert_float_equal(pick.position_m[1], way == 0 ? -0.701 : -0.5, 1e-6);
             cut_through(&own, tier, true, box, &first_m, &last_m, &pick);
-            assert_true(first_m == 0 && pick.inside); /* the core is a closed body of its own, so it gets a cap */
+            assert_true(first_m == 0 && pick.inside); /* the asset CORE inside is a closed body of its own, so it gets a cap, too */
         }
         stand_finish(&own);
     }
@@ -368,7 +371,8 @@ TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
     }
 }
 
-/* Hidden or clipped assets cast no shadow: the slab under the exchanger becomes lit. */
+/* Hidden or clipped assets cast no shadow: when the exchanger is hidden or cut off, the slab under it becomes brighter by at
+   least 8 levels. */
 TEST_WITH(test_what_is_not_shown_throws_no_shadow, reset, NULL)
 {
     view.look = LOOK_DEFAULT;
@@ -390,7 +394,7 @@ TEST_WITH(test_what_is_not_shown_throws_no_shadow, reset, NULL)
     assert_true(abs(shaded[1] - shaded[2]) < 12);
 }
 
-/* Sets up a ball in a closed room. */
+/* Sets up a plant of a ball inside a closed room of six walls; `of`: a view of it. */
 static void stand_room(struct stand *room, struct view *of)
 {
     struct toy *toy = toy_create();
@@ -405,7 +409,8 @@ static void stand_room(struct stand *room, struct view *of)
     of->look = LOOK_MATERIALS;
 }
 
-/* With hidden walls the ball is brighter than inside the room; when shown again, the walls look as before. */
+/* A ball in a closed room is dark. With hidden walls it must be bright; when the walls are shown again, the picture must be the
+   same as before. */
 TEST_WITH(test_what_is_hidden_leaves_no_dark, reset, NULL)
 {
     struct stand room;

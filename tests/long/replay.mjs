@@ -11,7 +11,8 @@ import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv');
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : existsSync(SERIES) ? false : `${SERIES} is not there`;
-// FAR_S: largest deviation, in seconds of wall clock, of a read from its nominal time
+// SPEED: recorded seconds per second; WALL_S: duration in s; WITHIN: deviation allowed for the history, in degrees; FAR_S:
+// largest difference, in seconds of wall clock, between the time at which a register was read and its nominal time.
 const SPEED = 60, WALL_S = 60, WITHIN = 0.2, FAR_S = 0.35;
 const BACK_S = 4; // seconds until a device that answers again is polled again
 const CODES = { Bad_CommunicationError: 0x80050000, Uncertain_NoCommunicationLastUsableValue: 0x408f0000, Bad_NoCommunication: 0x80310000 };
@@ -59,7 +60,8 @@ const history = async (tag, from, to) => {
     return series.points.map(([us, value, quality]) => ({ t: us / 1e6, value, quality }));
 };
 
-// Returns the value at time t on the line between two points, or null.
+// Returns the value at time t: interpolated between the points around t if they have the same quality, otherwise that of the
+// point before; null if that has no good value.
 function at(points, t) {
     const i = points.findLastIndex((point) => point.t <= t), a = points[i], b = points[i + 1];
     if (!a || a.value === null || a.quality !== 0)

@@ -10,13 +10,13 @@
 extern "C" {
 #endif
 
-struct oracle_mesh { /* a manifold mesh; triangles: 3 indices each */
+struct oracle_mesh { /* a mesh, for distances a manifold one; triangles: 3 vertex indices for each triangle */
     const float (*positions)[3];
     const uint32_t *triangles;
     size_t vertex_count, triangle_count;
 };
 
-/* Returns the vertex at position p, within 1e-5, or -1. */
+/* Returns the index of the vertex whose coordinates equal p within 1e-5, or -1 if there is none. */
 long oracle_vertex_at(const struct oracle_mesh *mesh, const float p[3]);
 
 /* Computes distances from the point with these barycentric weights on a triangle to every vertex (Xin & Wang 2009). Returns

@@ -16,7 +16,7 @@
 
 #define FLANGE_AROUND 24
 #define FLANGE_ROWS 8
-#define SPACING_M 8.0 /* metres between assets on a square grid */
+#define SPACING_M 8.0 /* distance in metres between neighbouring assets, which stand on a square grid */
 
 static const char usage[] = "usage: facility --output DIR [--assets N] [--triangles N] [--sensors EVERY] [--seed N]\n"
                             "  --assets N       default 2000\n"
@@ -44,7 +44,7 @@ struct facility {
     long flange; /* index of the mesh that all flanges share */
 };
 
-struct pipe_mesh { /* a tube with rows x around vertices, closed in the second direction */
+struct pipe_mesh { /* a tube: rings of vertices along an axis; the last vertex of each ring is joined with the first */
     float (*places)[3], (*normals)[3];
     uint32_t *indices;
     size_t vertices, corners;
@@ -239,7 +239,7 @@ static void add_asset(struct facility *f, long asset)
         text_add(&children, "%s%ld", c ? "," : "", root + 1 + c);
     add_node(f, "{\"name\":\"A-%05ld\",\"translation\":[%.9g,%.9g,%.9g],\"children\":[%s]}", asset, at[0], at[1], at[2], children.at);
     add_node(f, "{\"name\":\"A-%05ld body\",\"mesh\":%ld}", asset, add_mesh(f, &body));
-    for (int c = 0; c < flanges; c++) /* flanges are set onto the tank's wall, or around the pipe */
+    for (int c = 0; c < flanges; c++) /* puts the asset's flanges onto the tank's wall or around the pipe */
         add_node(
             f,
             "{\"name\":\"A-%05ld flange %d\",\"mesh\":%ld,\"translation\":[%.6g,%.6g,%.6g],\"rotation\":[%s],\"scale\":[%.6g,%.6g,%.6g]}",

@@ -351,7 +351,8 @@ void cad_closed_pipe(struct cad *cad, struct cad_random *random, double radius, 
     }
 }
 
-/* Adds one ring of vertices of the figure eight; s goes from its left end (0) through the middle to its right end (0.5) and back. */
+/* Adds a ring of vertices around the curve of a figure eight at s: 0 is the eight's left end, 0.5 its right end, in between
+   lies the crossing, and 1 is the left end again. */
 static uint32_t add_eight_ring(struct cad *cad, double s, double radius, int around)
 {
     uint32_t first = (uint32_t)cad->vertex_count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the plant's two files, then prepares and loads them. */
+/* Writes the plant file and the model of a plant with many equal assets, then prepares and loads the plant. */
 #include "tests/support/crowd.h"
 
 #include <errno.h>
@@ -30,7 +30,8 @@ struct places { /* positions of the sensors, in the asset's frame */
 
 /* --- the plant's files -------------------------------------------------------------------------------------------------------- */
 
-/* Returns the number of columns whose ground area is closest to ASPECT with few empty places. */
+/* Returns into how many columns to arrange the assets, so that their ground has about the proportions ASPECT and few places
+   stay empty. */
 static int columns_of(int instances, const struct places *places)
 {
     double wanted = sqrt(instances * ASPECT * places->size_m[1] / places->size_m[0]), least = INFINITY;

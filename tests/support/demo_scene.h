@@ -19,7 +19,8 @@ struct demo_scene {
     struct renderer *renderer;
 };
 
-/* Returns false if the demo is not prepared or there is no renderer. Call demo_scene_close() in both cases. */
+/* Opens the demo plant. Returns false if it is not prepared (make demo) or no renderer can be made. Call demo_scene_close() in
+   both cases. */
 static inline bool demo_scene_open(struct demo_scene *demo)
 {
     struct diag diag = { 0 };

@@ -6,14 +6,16 @@
 
 struct depth_read {
     struct wire_depth wire;
-    uint16_t *near, *far; /* codes of each cell's depths; equal: the cell is not divided; 0: background */
-    uint8_t **masks;      /* by cell: one byte per bit of its mask, row by row; NULL: the cell is not divided */
+    uint16_t *near, *far; /* by cell: codes of its near and its far depth; equal: the whole cell has one depth; 0: background */
+    /* by cell: its mask, one byte per pixel, row by row, tells which pixels have which of the two depths; NULL: the cell has
+       one depth */
+    uint8_t **masks;
 };
 
-/* Returns false if the payload is not as described. Call depth_read_finish() in both cases. */
+/* Decodes a depth grid. Returns false if its payload violates PROTOCOL.md. Call depth_read_finish() in both cases. */
 bool depth_read_init(struct depth_read *read, const struct depth_grid *grid);
 void depth_read_finish(struct depth_read *read);
-/* Returns 1/z (perspective) or z (orthographic) of a code above 0. */
+/* Converts a depth code above 0 to 1/z in perspective views, or to z in orthographic ones. */
 double depth_read_value(const struct depth_read *read, int code);
 
 #endif

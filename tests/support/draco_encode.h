@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draco's own encoder, which makes models for the importer's tests. */
+/* Compresses meshes with Draco's own encoder, to make models for the importer's tests. */
 #ifndef TESTS_DRACO_ENCODE_H
 #define TESTS_DRACO_ENCODE_H
 #include <stdbool.h>

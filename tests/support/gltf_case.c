@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A test's folder for models, and the model that was read last. */
+/* Fixture for glTF tests: a folder in which a test writes models, and the model that it read last. */
 #include "tests/support/gltf_case.h"
 
 #include <stdio.h>

@@ -30,7 +30,8 @@ int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *mo
 void maker_require(struct model_maker *maker, const char *extension);
 json_t *maker_get(struct model_maker *maker, const char *list, int number);
 
-/* Return the file, which the caller frees with mem_free: a GLB, or JSON with its buffer in a data URI. */
+/* maker_glb() returns the model as a GLB file; maker_gltf() returns it as JSON whose buffer is a data URI. The caller frees
+   both with mem_free(). */
 char *maker_glb(struct model_maker *maker, size_t *size);
 /* Returns a GLB file with one node that has this mesh; free with mem_free. */
 char *maker_glb_of(const struct cad *cad, const char *node, size_t *size);

@@ -5,7 +5,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct wavy_sheet { /* a grid of across x up squares over 2 m x 1 m, wavy along x; every array has vertex_count or index_count items */
+/* a wavy sheet of 2 m x 1 m: a grid of across x up squares, with waves along x; each array has vertex_count or index_count
+   items */
+struct wavy_sheet {
     uint32_t across, up, vertex_count, index_count;
     float (*positions)[3], (*normals)[3], (*texcoords)[2];
     uint8_t (*colors)[4];
@@ -21,11 +23,11 @@ struct seed {
     const char *name;   /* file name of the model */
     uint32_t triangles; /* number of triangles in all nodes together */
     double tolerance_m; /* tolerance in metres when positions are compared */
-    char *bytes;        /* content of the file; freed with mem_free() */
+    char *bytes;        /* the model file; the caller frees it with mem_free() */
     size_t size;
 };
 
-/* Makes seed number `number` from a sheet of at most 65535 vertices. */
+/* Writes the sheet as a glTF file in encoding number `number` of all; the sheet may have at most 65,535 vertices. */
 void seed_make(struct seed *seed, int number, const struct wavy_sheet *sheet);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plans for single use: draw a view, begin drawing it, or query it once. Call only in the thread that owns the GL context. */
+/* For tests that use a frame plan once: plan a view, then draw it, begin drawing it, or ask for its content. Call only in the
+   thread that owns the GL context. */
 #ifndef TESTS_SUPPORT_PLANNED_H
 #define TESTS_SUPPORT_PLANNED_H
 #include "render/plan/frame_planner.h"

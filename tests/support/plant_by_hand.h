@@ -4,7 +4,7 @@
 #define TESTS_PLANT_BY_HAND_H
 #include "plant/plant.h"
 
-/* Returns an empty plant with room for max_tags tags and 16 sources. */
+/* Returns a plant without tags and sources, with memory for max_tags tags and 16 sources. */
 struct plant *plant_by_hand_create(size_t max_tags);
 /* Adds a Modbus source at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 2 s. */
 struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, int port);

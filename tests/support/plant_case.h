@@ -18,7 +18,7 @@ void plant_case_forget(struct plant_case *c);
 void plant_case_assert_loaded(struct plant_case *c, int warnings);
 
 struct expected_finding {
-    const char *file; /* end of the path of the file to which the finding refers */
+    const char *file; /* path of the file in which the finding is reported; the end of the path suffices */
     int line, column;
     const char *words; /* words that the text of the finding contains */
 };

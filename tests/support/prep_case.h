@@ -16,8 +16,8 @@ struct prep_case {
 int prep_case_set_up(void **state);
 int prep_case_tear_down(void **state);
 
-/* prep_case_plant() writes plant.yaml. prep_case_tags() writes tags.csv with the usual header: tag, address, type, source,
-   group, asset, node, x, y, z. */
+/* prep_case_plant() writes plant.yaml. prep_case_tags() writes tags.csv: a header with the columns tag, address, type, source,
+   group, asset, node, x, y, z, then these rows. */
 void prep_case_plant(struct prep_case *c, const char *yaml);
 void prep_case_tags(struct prep_case *c, const char *rows);
 
@@ -28,7 +28,8 @@ void prep_case_expect(struct prep_case *c, const char *arguments, int status);
 char *prep_case_program(void); /* returns the program's path; skips the test if it is not built */
 
 void prep_case_read(struct prep_case *c, const char *name, struct text *to);
-/* Returns the path of the only prepared file with that suffix; *key receives the key in its name. */
+/* Finds the prepared file whose name ends in `ending`; fails if there is none or several. Returns its path; *key receives the
+   cache key that its name contains. */
 char *prep_case_file(const struct prep_case *c, const char *ending, uint64_t *key);
 void prep_case_says(const struct text *text, const char *words);
 json_t *prep_case_json(const struct text *text); /* parses JSON; the result belongs to the running test */

@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* values in the no-data channel: MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING: no asset */
+/* special values in the second channel (no data) of renderer_measure(): the sample shows an asset without a field; it shows no
+   asset */
 enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 };
 
 struct renderer; /* render/renderer.h */
@@ -17,11 +18,11 @@ struct view;
 void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles);
 /* Returns how many assets occlusion culling removed from the last frame drawn by GL; waits for that frame. */
 size_t renderer_occluded_count(const struct renderer *renderer);
-/* Draws each asset with GL calls of its own (one_by_one true) instead of batching equal ones. */
+/* one_by_one true: draws each asset with GL calls of its own; false: draws equal assets together (batching), as usual. */
 void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
-/* Fills `out` with the field's values at one sample per pixel, rows from the top. Channels: position in the range (unclamped,
-   always linear), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near,
-   0 far). finest: uses only the finest levels of detail. On failure, logs the reason and returns false. */
+/* Draws the field's values instead of colours: one sample per pixel, rows from the top. Channels: position in the range
+   (unclamped, always linear); no data, 0 to 1, or one of the two values above; uncertain, 0 to 1; depth, 1 near to 0 far.
+   finest: draws only the finest levels of detail. On failure, logs the reason and returns false. */
 bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4]);
 
 #endif

@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Feeds every file of the folder unchanged and in `rounds` mutations, which are the same in each run. Returns the number of
-   files; -1: the folder does not exist. */
+/* Calls feed() with each file of the folder, then with `rounds` mutations of that file, which are the same in each run. Returns
+   the number of files, or -1 if the folder does not exist. */
 int replay_folder(const char *folder, int rounds, int (*feed)(const uint8_t *bytes, size_t count));
 
 #endif

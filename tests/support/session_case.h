@@ -14,7 +14,8 @@ struct session_case {
     struct session *session;
     int64_t now_ns;
     uint64_t number;               /* number of the last picture */
-    char resume[RESUME_CHARS + 1]; /* resume secret of the last welcome that the test read */
+    /* resume secret of the last `welcome` message that the test read; a client needs the secret to resume its session */
+    char resume[RESUME_CHARS + 1];
 };
 
 /* Set-up and tear-down for cmocka; the state is a struct session_case. */

@@ -11,7 +11,7 @@ struct test_shape { /* zero-initialise */
     float (*positions)[3], (*normals)[3];
     uint32_t *indices;
     struct asset_primitive *primitives;
-    /* Materials and textures, owned by the caller; NULL: those of toy.h, without textures. */
+    /* Materials, textures and texture coordinates, which the caller owns. NULL: the materials of toy.h, without textures. */
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;
@@ -24,9 +24,10 @@ struct test_shape { /* zero-initialise */
 /* Adds a grid of n x n squares in a plane through `corner`, along u and v; its normal is u x v. */
 void shape_plate(struct test_shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n);
 void shape_box(struct test_shape *shape, uint32_t material, const double low[3], const double high[3]);
-/* Adds a cylinder or cone from a to b with radii ra and rb there. round: 0 for flat caps, otherwise round ones. */
+/* Adds a cylinder or cone around the line from a to b, with radius ra at a and rb at b. round 0: flat caps at the ends;
+   otherwise round caps. */
 void shape_cylinder(struct test_shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round);
-/* Adds a sphere of 2 n x n squares. */
+/* Adds a sphere whose surface is a grid of 2 n squares around and n from pole to pole. */
 void shape_sphere(struct test_shape *shape, uint32_t material, const double middle[3], double radius, int n);
 void shape_finish(struct test_shape *shape);
 

@@ -17,11 +17,11 @@ struct site {
 };
 
 bool site_is_there(const char *model); /* returns whether ../shared/data/models has the model */
-/* Loads the plant. name: of the folder into which it is prepared, once for all programs that run at the same time; NULL:
-   already prepared. Returns false on failure. */
+/* Loads a plant. name: folder into which the plant is first prepared, once for all programs that run at the same time; NULL:
+   the plant is already prepared. Returns false on failure. */
 bool site_init(struct site *site, struct rig *rig, const char *path, const char *name);
 void site_finish(struct site *site);
-/* Sets the camera: from a random side of a random asset with a field, at `away` times the asset's size. */
+/* Places the camera on a random side of a random asset that has a field, at a distance of `away` times the asset's size. */
 void site_look_at_some(struct site *site, double away, struct view *view);
 
 #endif

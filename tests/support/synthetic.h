@@ -6,10 +6,10 @@
 #include "value/snapshot.h"
 
 struct synthetic_params {
-    size_t vertices, sensors; /* number on each asset; sensor i is exactly at vertex i */
-    size_t assets;            /* number of instances of the file; 0: one */
-    size_t island;            /* number of vertices, at the end, that no sensor reaches along the surface */
-    double min, max;          /* range of the only group; 0, 0: 0..100 */
+    size_t vertices, sensors; /* number of vertices and of sensors on each asset; sensor i sits exactly at vertex i */
+    size_t assets;            /* number of assets, all instances of one asset file; 0: one */
+    size_t island;            /* number of vertices, the last ones, that no path along the surface joins with a sensor */
+    double min, max;          /* range of values of the only group; both 0: 0 to 100 */
     uint64_t seed;
 };
 
@@ -22,8 +22,8 @@ struct synthetic {
     void *bytes;
 };
 
-/* Creates the plant. Positions are random in a box of 10 x 6 x 4 m. A distance along the surface is the sum of the distances
-   along the three axes. Tag number: asset * sensors + sensor. Never returns NULL. */
+/* Creates the plant. Vertices are random points in a box of 10 x 6 x 4 m. As distance along the surface it uses the sum of the
+   distances along the three axes. Sensor s of asset a has the tag number a * sensors + s. Never returns NULL. */
 struct synthetic *synthetic_create(const struct synthetic_params *params);
 #define synthetic_create(...) synthetic_create(&(struct synthetic_params){ __VA_ARGS__ })
 void synthetic_destroy(struct synthetic **synthetic);

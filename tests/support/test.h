@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h> /* needs setjmp.h, stdarg.h, stddef.h and stdint.h before it */
+#include <cmocka.h> /* cmocka.h needs setjmp.h, stdarg.h, stddef.h and stdint.h included before it */
 
 #include "base/mem.h"
 #include "tests/support/owned.h"
@@ -73,7 +73,8 @@
 /* Called by the macros above, before main. */
 void test_add(const struct CMUnitTest *test, int line);
 void test_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
-/* Runs a test's tear-down, which may be NULL, and releases what the test owns. Returns the result of tear_down, or 0. */
+/* Calls the tear-down (NULL: none) at the end of a test and releases what the test owns. Returns the tear-down's result, or 0.
+   */
 int test_end(CMFixtureFunction tear_down, void **state);
 
 /* Runs the tests of this program and prints TAP. Returns the number of failures. name: of the group, or NULL for the program's

@@ -142,7 +142,8 @@ static struct asset *make_file(const char *id, const struct test_shape *shape, c
     }
     file->path = mem_strdup(id);
     file->closed = mem_array(file->view.header->level_count, sizeof(*file->closed));
-    /* few triangles keep tests quick; claiming that all levels are resolved keeps frames free of the mark for inexact fields */
+    /* few triangles keep tests quick, but make the field inexact; claiming that all levels are fine enough avoids the mark for
+       inexact fields */
     file->resolved_levels = UINT64_MAX;
     file->refs = 1;
     mem_free(distances);

@@ -4,7 +4,7 @@
 #define TESTS_WHOLE_FIELD_H
 #include "field/field.h"
 
-/* Calls field_scalars_of() for all vertices of the asset. */
+/* Returns the field at all vertices of the asset, as field_scalars_of() computes it. */
 static inline const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params,
                                                   const struct snapshot *snapshot)
 {

@@ -34,8 +34,8 @@ static bool is_source_tried(int row, int source)
     return sweep_takes(row, source, SOURCES);
 }
 
-/* Returns the number of grid cells per direction: `whole` with PLANTCAST_LONG=1, otherwise half of it, which makes the solver
-   five times faster. */
+/* Returns the number of grid cells in each direction of a test shape: `whole` in a long run (PLANTCAST_LONG=1), otherwise half
+   of it, which makes the exact solver five times faster. */
 static int cells(int whole)
 {
     return sweep(whole, whole / 2);

@@ -48,7 +48,8 @@ TEST_WITH(an_address_is_one_however_it_is_written, set_up, NULL)
     struct address_usage *all[] = { four, mapped, six, near_it, far_from_it, local, local6, none };
     for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
         address_limits_unref(limits, &all[i]);
-    four = address_limits_ref(limits, "203.0.113.7"); /* an address without references was forgotten */
+    /* after its last reference an address is forgotten: a new reference finds no sessions */
+    four = address_limits_ref(limits, "203.0.113.7");
     assert_int_equal(four->sessions, 0);
     address_limits_unref(limits, &four);
     address_limits_destroy(&limits);
@@ -87,8 +88,8 @@ TEST_WITH(messages_of_an_address_are_counted_together, set_up, NULL)
 
 /* --- room ------------------------------------------------------------------------------------------------------------------------ */
 
-/* Simulates one second: each of `moving` sessions gets `fps` frames that take cost_ms each to draw, and one data frame waits
-   data_wait_ms. */
+/* Simulates one second of the render thread: each of `moving` sessions gets `fps` frames that take cost_ms each to draw.
+   data_wait_ms: how long one more frame, for changed readings, had to wait; 0: there is none. */
 static void a_second(struct admission *admission, struct address_share *share, int moving, int fps, int cost_ms, int data_wait_ms)
 {
     static uint64_t content;
@@ -104,7 +105,7 @@ static void a_second(struct admission *admission, struct address_share *share, i
             encoded.wait_ns = data_wait_ms * NS_PER_MS;
         }
         admission_on_frame(admission, share, &encoded);
-        /* a second session gets the same encoded frame, which must count as drawn only once */
+        /* the frame also goes to a second session: its drawing time must count only once */
         admission_on_frame(admission, share, &encoded);
         packet_unref(&encoded.packet);
         frame_unref(&frame);
@@ -119,7 +120,8 @@ static void seconds(struct admission *admission, struct address_share *share, in
         a_second(admission, share, moving, fps, cost_ms, data_wait_ms);
 }
 
-/* Asks to admit one more session from an address that has `moving` moving sessions. Returns the reason for refusal, or REFUSAL_NONE. */
+/* Asks whether one more session may join from an address that already has `moving` sessions with moving cameras. Returns the
+   reason for refusal, or REFUSAL_NONE. */
 static enum refusal_code refuses(const struct admission *admission, struct address_share *share, int64_t pixels, int moving)
 {
     share->moving = moving;
@@ -132,7 +134,7 @@ TEST_WITH(who_would_slow_the_others_down_too_far_is_refused, set_up, NULL)
     struct address_share share = { 0 };
     admission_join(&admission, &share);
     assert_int_equal(0, refuses(&admission, &share, 1000, 0));
-    /* 4 sessions at 6 frames/s each: a fifth session would leave 4.8 for each, fewer than least-fps allows */
+    /* 4 sessions at 6 frames/s use all of the render thread: with a fifth, each would get 4.8, fewer than least-fps allows */
     seconds(&admission, &share, 4, 6, 40, 0);
     assert_int_equal(admission_busy_percent(&admission), 96);
     assert_true(refuses(&admission, &share, 1000, 4));
@@ -154,7 +156,8 @@ TEST_WITH(a_busy_second_is_no_reason, set_up, NULL)
     assert_true(refuses(&admission, &share, 1000, 2));
 }
 
-/* Simulates one second: each address draws `of_each` frames per moving session, and each frame takes cost_ms. */
+/* Simulates one second of the render thread: for each address, draws `of_each` frames per moving session; each frame takes
+   cost_ms. */
 static void a_second_of(struct admission *admission, struct address_share *shares, int count, int of_each, int cost_ms)
 {
     static uint64_t content = 1 << 20;
@@ -178,7 +181,8 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     struct address_share shares[2] = { { .moving = 30 }, { .moving = 0 } };
     admission_join(&admission, &shares[0]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
-        a_second_of(&admission, shares, 1, 1, 30); /* one address has 30 sessions with one frame per second each */
+        /* one address has 30 sessions that each get one frame per second, which keeps the render thread busy */
+        a_second_of(&admission, shares, 1, 1, 30);
     assert_true(admission_refuses(&admission, &shares[0], 1000));
     assert_int_equal(0, admission_refuses(&admission, &shares[1], 1000));
     admission_join(&admission, &shares[1]);
@@ -186,12 +190,15 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 2, 1, 30);
     assert_int_equal(0, admission_refuses(&admission, &shares[1],
-                                          1000)); /* two addresses share the render thread's 31 frames per second */
+                                          /* admitted: with two addresses, each one's share is half of the render thread's 31
+                                             frames per second */
+                                          1000));
     shares[1].moving = 3;
-    /* refused: with four moving sessions, each would get fewer frames per second than the limit least-fps allows */
+    /* refused: the second address's share, divided by its three sessions and the new one, is less than least-fps */
     assert_true(admission_refuses(&admission, &shares[1], 1000));
     struct address_share third = { 0 };
-    assert_int_equal(0, admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses: 10 for each */
+    /* admitted: with a third address, each address's share is still 10 frames per second */
+    assert_int_equal(0, admission_refuses(&admission, &third, 1000));
     quotas_parse(&quotas, "least-fps=11");
     assert_true(admission_refuses(&admission, &third, 1000));
 }

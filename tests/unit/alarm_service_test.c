@@ -131,7 +131,7 @@ CASE(a_thousand_at_once_are_all_written)
     assert_int_equal(all.count, 2 * TAGS + 1);
     assert_int_equal(page.count, 500);
     assert_int_equal(read_rows(s, NULL, 100000, page.smallest_id).count, 2 * TAGS + 1 - 500);
-    /* reads the tag's two newest rows; one.last is the second one read, the older row */
+    /* reads two rows of this tag, newest first; one.last is the text of the row read last, the older one */
     struct alarm_rows one = read_rows(s, "T-0007", 2, INT64_MAX);
     assert_string_equal(one.last, "T-0007 H shelve shelved 3 nan kim filter is being changed");
     struct alarm_rows then = { 0 };
@@ -151,7 +151,8 @@ static int alarms_of(struct alarm_service_setup *s, struct history_reader *reade
     return count;
 }
 
-/* An alarm was active when recording ended: its duration after that is unknown. */
+/* An alarm was active when recording ended: for the time after that, while nothing was recorded, queries must not report it as
+   active. */
 CASE(while_nothing_was_recorded_no_alarm_is_known)
 {
     int error;
@@ -278,8 +279,8 @@ static void mirror(void *arg, const struct journal_entry *row)
     alarm_service_mirror_row(arg, row);
 }
 
-/* The clock was an hour ahead when the journal's second row was written, the last one that the standby has. Later rows
-   therefore have earlier times, and must still be sent. */
+/* The journal's second row, the last one that the standby has, was written while the clock was an hour ahead. Later rows have
+   earlier times, but must be sent all the same, each once. */
 CASE(a_returning_standby_gets_each_row_that_it_lacks_once)
 {
     int64_t now_ns = clock_utc_ns() / 1000 * 1000;

@@ -15,8 +15,8 @@ struct stage { /* fixture. Limits: TT: LL 0, L 10, H 80, HH 90; PT: H 5 with a d
     struct plant *plant;
     struct alarms *alarms;
     struct snapshot *snapshot;
-    char log[4000]; /* lines about all alarm events so far */
-    int told[8];    /* by tag: the most severe alarm with which on_tag() was last called */
+    char log[4000]; /* one line of text for each alarm event since the last check */
+    int told[8];    /* by tag: kind of the most severe alarm in the last call of on_tag() */
 };
 
 static void on_change(void *arg, const struct alarm_change *change)
@@ -149,7 +149,8 @@ TEST(delays_are_monotonic_and_exact)
     s.snapshot->taken_mono_ns = 11 * S;
     alarms_tick(s.alarms, s.snapshot);
     assert_told(&s, "");
-    tick(&s, 30); /* the next tick comes late: the alarm carries the time at which its 2 s delay ended, not the time of the tick */
+    /* the next tick comes 18 s late: the alarm's time is the end of its delay of 2 s (second 12), not the time of the tick */
+    tick(&s, 30);
     assert_told(&s, "12 PT.H raise: normal > unacknowledged\n");
     end(&s);
 }
@@ -163,7 +164,8 @@ TEST(what_is_bad_is_held_and_says_so)
     s.log[0] = 0;
     hear(&s, 2, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     assert_told(&s, "2 TT.BAD raise: normal > unacknowledged\n");
-    /* the device still answers for another tag, so the failed sensor's tag gets its own alarm and keeps its limit alarm */
+    /* The device still delivers another tag's reading, so the fault is the sensor's: the tag gets a BAD alarm of its own, and
+       its limit alarm is held in its last state. */
     hear(&s, 2, 2, 0, QUALITY_GOOD);
     assert_string_equal(word(&s, 0, ALARM_H), "acknowledged");
     assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
@@ -171,7 +173,8 @@ TEST(what_is_bad_is_held_and_says_so)
     assert_false(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
     assert_told(&s, "3 TT.H clear: acknowledged > normal\n3 TT.HH clear: unacknowledged > returned\n"
                     "3 TT.BAD clear: unacknowledged > returned\n");
-    s.snapshot->readings[0].quality = QUALITY_BAD_COMMUNICATION_ERROR; /* the reading went stale without an event */
+    /* the reading goes stale: the store changes its quality, but the alarms get no event for that */
+    s.snapshot->readings[0].quality = QUALITY_BAD_COMMUNICATION_ERROR;
     tick(&s, 9);
     assert_told(&s, "9 TT.BAD raise: returned > unacknowledged\n");
     /* A tag that never had a reading has no alarm at first. It gets one when its stale time has passed. */
@@ -218,7 +221,8 @@ TEST(design_suppresses)
     tick(&s, 5);
     assert_string_equal(word(&s, 1, ALARM_H), "suppressed");
     assert_int_equal(s.told[1], ALARM_NONE);
-    hear(&s, 6, 2, 1, QUALITY_BAD_SENSOR_FAILURE); /* an unknown suppressing bit keeps its last state */
+    /* SD, the bit that suppresses PT's alarms, becomes Bad: its last good state still counts */
+    hear(&s, 6, 2, 1, QUALITY_BAD_SENSOR_FAILURE);
     assert_string_equal(word(&s, 1, ALARM_H), "suppressed");
     hear(&s, 7, 2, 0, QUALITY_GOOD);
     assert_string_equal(word(&s, 1, ALARM_H), "active");
@@ -253,8 +257,9 @@ TEST(a_mirror_shows_what_the_other_system_says)
 {
     struct stage s;
     begin(&s, ALARMS_MIRROR);
-    assert_int_equal(count_of(&s), 4);            /* alarms: of one limit, of two bits that may turn bad, and of their device */
-    hear(&s, 1, 0, 95, QUALITY_GOOD);            /* in this mode the DCS watches the limit, so we raise no alarm */
+    /* count: TT's limit H, whose state the DCS reports; one for each of two bits that may turn bad; and the device's link */
+    assert_int_equal(count_of(&s), 4);
+    hear(&s, 1, 0, 95, QUALITY_GOOD);            /* TT exceeds its limit, but in mirror mode only the DCS's bits raise alarms */
     assert_told(&s, "");
     hear(&s, 2, 3, 1, QUALITY_GOOD);
     hear(&s, 3, 4, 1, QUALITY_GOOD);
@@ -286,7 +291,7 @@ TEST(what_was_kept_is_taken_up)
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
     hear(&next, 6, 0, 95, QUALITY_GOOD);
     assert_told(&next, "");                /* the alarm is still active and is not raised again */
-    next.snapshot->taken_mono_ns = 27 * S; /* 22 s of the shelved time were left */
+    next.snapshot->taken_mono_ns = 27 * S; /* at this time the 22 s have passed that were left of the shelving when it was restored */
     next.snapshot->taken_utc_ns = UTC + 62 * S;
     alarms_tick(next.alarms, next.snapshot);
     assert_told(&next, "62 TT.H unshelve: shelved > unacknowledged\n");
@@ -296,7 +301,8 @@ TEST(what_was_kept_is_taken_up)
         alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
                        alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), at(5));
     assert_string_equal(word(&next, 0, ALARM_HH), "active");
-    assert_string_equal(word(&next, 0, ALARM_H), "active"); /* in display mode alarms cannot be unshelved, so shelving is dropped */
+    /* display mode knows no shelving, so a restored shelved alarm becomes active again */
+    assert_string_equal(word(&next, 0, ALARM_H), "active");
     end(&next);
     end(&s);
 }
@@ -356,7 +362,7 @@ TEST(counts_are_what_there_is)
     assert_int_equal(counts.statuses[ALARM_UNACKNOWLEDGED], 1);
     assert_int_equal(counts.statuses[ALARM_RETURNED], 1);
     assert_int_equal(counts.statuses[ALARM_NORMAL], count_of(&s) - 2);
-    assert_int_equal(counts.active, 1); /* returned alarms are not counted as active */
+    assert_int_equal(counts.active, 1); /* counts alarms whose cause persists: one; the returned one is not counted */
     assert_int_equal(counts.chattering, 1);
     assert_int_equal(counts.priorities[0] + counts.priorities[1] + counts.priorities[2] + counts.priorities[3], 2);
     assert_int_equal(counts.priorities[alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_L))->priority - 1], 2); /* H and L */
@@ -375,7 +381,7 @@ TEST(what_is_there_stands_before_what_has_gone)
     hear(&s, 1, 0, -5, QUALITY_GOOD);
     assert_int_equal(s.told[0], ALARM_LL);
     act(&s, 2, 0, ALARM_L, ALARM_ACKNOWLEDGE, 0);
-    hear(&s, 3, 0, 5, QUALITY_GOOD); /* LL has returned to normal unacknowledged; L is active and acknowledged */
+    hear(&s, 3, 0, 5, QUALITY_GOOD); /* LL's cause has gone, but nobody has acknowledged LL; L is still active and was acknowledged */
     assert_string_equal(word(&s, 0, ALARM_LL), "returned");
     assert_int_equal(s.told[0], ALARM_L);
     hear(&s, 4, 0, 50, QUALITY_GOOD);
@@ -386,8 +392,8 @@ TEST(what_is_there_stands_before_what_has_gone)
     end(&s);
 }
 
-/* Random event sequences: each reported transition starts from the state in which the previous one ended, and the alarm
-   reported as highest is always the most severe one. */
+/* Feeds random sequences of events. Each reported transition must start in the state in which the alarm's previous one ended,
+   and the alarm reported as a tag's most severe one must be just that. */
 TEST(no_sequence_tells_a_contradiction)
 {
     static const uint32_t bad[12] = {
@@ -452,7 +458,7 @@ TEST(a_lost_device_is_one_alarm)
     hear_all(&s, 1, 50, QUALITY_GOOD);
     hear(&s, 1, 1, 1, QUALITY_GOOD);
     s.log[0] = 0;
-    hear(&s, 1, 2, 0, QUALITY_GOOD); /* SD is 0, so PT's alarms are not suppressed by design */
+    hear(&s, 1, 2, 0, QUALITY_GOOD); /* SD is 0, so it does not suppress PT's alarms */
     s.log[0] = 0;
     hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
     hear(&s, 10, 1, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -465,7 +471,8 @@ TEST(a_lost_device_is_one_alarm)
     assert_told(&s, "15 a.LINK raise: normal > unacknowledged\n15 TT.BAD raise: normal > suppressed\n"
                     "17 PT.BAD raise: normal > suppressed\n");
     assert_int_equal(active_count(&s), 1);
-    assert_int_equal(s.told[0], ALARM_NONE); /* the tag's marker already shows the bad quality, so no alarm is reported */
+    /* the marker of a tag covered by its device's alarm shows the bad quality, so no alarm is reported for the tag itself */
+    assert_int_equal(s.told[0], ALARM_NONE);
     assert_int_equal(act_on_link(&s, 19, "a", ALARM_ACKNOWLEDGE), REFUSAL_NONE);
     assert_int_equal(alarms_find_named(s.alarms, "b", ALARM_LINK), -1);
     hear(&s, 20, 0, 50, QUALITY_GOOD);
@@ -473,13 +480,16 @@ TEST(a_lost_device_is_one_alarm)
                     "20 TT.BAD clear: suppressed > normal\n");
     tick(&s, 24);
     assert_told(&s, "");
-    tick(&s, 25); /* PT gets its own alarm: its device answers, but PT got no reading within its stale time */
+    /* the device answers again, so its alarm no longer covers PT's; PT has had no reading within its stale time and gets an
+       alarm of its own */
+    tick(&s, 25);
     assert_told(&s, "25 PT.BAD call: suppressed > unacknowledged\n");
     assert_int_equal(s.told[1], ALARM_BAD);
     end(&s);
 }
 
-/* Tags go stale one after another: the first tag's alarm is merged into the device's alarm unless somebody has already acknowledged it. */
+/* A device's tags go stale one after another. The first tag's own alarm is merged into the device's alarm that follows, unless
+   somebody has acknowledged the tag's alarm before. */
 TEST(those_that_went_before_are_carried_too)
 {
     for (int seen = 0; seen < 2; seen++) {
@@ -499,7 +509,8 @@ TEST(those_that_went_before_are_carried_too)
     }
 }
 
-/* A gateway that still answers for a stopped controller raises one alarm. A sensor that fails while all others are read raises its own. */
+/* If a gateway answers, but the controller behind it has stopped (all readings Bad), one alarm for the device suffices. If one
+   sensor fails while the others are read, it has an alarm of its own, which stays. */
 TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
 {
     struct stage s;
@@ -509,7 +520,7 @@ TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
     hear(&s, 3, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     s.log[0] = 0;
     set_all(&s, QUALITY_BAD_DEVICE_FAILURE);
-    /* when the device fails, this reading stays Bad for its earlier reason, a failed sensor */
+    /* this sensor had failed before its controller stopped: its quality still says so */
     s.snapshot->readings[0].quality = QUALITY_BAD_SENSOR_FAILURE;
     tick(&s, 4);
     tick(&s, 9);

@@ -14,7 +14,8 @@
 static const int64_t AT_US = INT64_C(1795000000000000);
 static const struct audit_entry ENTRY = { .event = "alarm", .result = "done", .who = "Kim \"A\"", .what = "acknowledge TT-101 HH" };
 
-/* Appends `count` lines as one run of a daemon would. Returns the finding about the existing file, or NULL; free with mem_free. */
+/* Opens the file, appends `count` lines and closes it, like one run of a daemon; most_bytes: size at which a new file begins.
+   Returns what opening found wrong with the existing file, or NULL; free with mem_free. */
 static char *write_lines(const char *path, int count, size_t most_bytes)
 {
     struct audit_file file;
@@ -90,7 +91,8 @@ TEST(test_any_changed_byte)
     mem_free(bytes);
 }
 
-/* starts[] receives the offset at which each line begins; the last entry is the end of the file. */
+/* Finds where lines begin in a file of `count` bytes: starts[] receives the offset of each line, then `count`. Returns the
+   number of lines. */
 static size_t starts_of(const char *bytes, size_t count, size_t starts[])
 {
     size_t found = 0;
@@ -113,7 +115,8 @@ TEST(test_lines_removed_and_moved)
     memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
     put(path, copy, count - (starts[3] - starts[2]));
     expect_fault(path, NULL, ":3: lines before this line were removed or inserted");
-    /* a file without its first line is valid, because earlier lines may be in another file; the report only mentions them */
+    /* removes the first line: the rest is still valid, because earlier lines may be in another file; the report states the
+       first line's number */
     struct audit_chain known, none;
     struct audit_report report;
     audit_chain_init(&none);
@@ -124,7 +127,8 @@ TEST(test_lines_removed_and_moved)
     /* removes the last two lines */
     put(path, bytes, starts[3]);
     expect_fault(path, NULL, "the last 2 lines were removed");
-    /* the head file was removed too: only somebody who kept a line elsewhere can detect this */
+    /* also removes the head file, which states the last line's number: the missing lines cannot be detected then, except by
+       somebody who kept a later line */
     known = report.end;
     unlink(head_path);
     expect_fault(path, NULL, "cannot be detected");
@@ -180,7 +184,7 @@ TEST(test_rotation)
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *full = test_printf("%s.000000000004", path), *later;
     struct text lines = { 0 };
     struct audit_file file;
-    /* lines of about 280 bytes in files of at most 1,000 bytes, so that the trail continues in new files */
+    /* writes ten lines of about 280 bytes with at most 1,000 bytes per file, so that the trail continues in further files */
     assert_null(write_lines(path, 10, 1000));
     assert_int_equal(access(full, F_OK), 0);
     expect_good(path, 3, 10);
@@ -240,8 +244,7 @@ TEST(test_full_disk)
     text_finish(&lines);
 }
 
-/* One row cannot be written and the next can, as on a disk that is full for a moment: the caller waiting for the second row
-   must still get the error. */
+/* A full disk refuses one row, and takes the next one a moment later. A caller that waits for both must still get the error. */
 TEST(test_an_error_outlasts_the_next_success)
 {
     struct settling settling = { .queued = 0 };

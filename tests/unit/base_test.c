@@ -66,7 +66,7 @@ TEST(files_are_read_whole_and_replaced_at_once)
     assert_memory_equal(text,
                         "12\0"
                         "456",
-                        7); /* the buffer has one zero byte after the file's content */
+                        7); /* compares 7 bytes: the 6 of the file, and the zero byte that text_read_file() appends */
     mem_free(text);
     assert_null(text_read_file(path, 5, &bytes));
     assert_int_equal(errno, EFBIG);
@@ -124,7 +124,8 @@ TEST(findings_come_in_the_order_of_the_text)
     assert_int_equal(diag.count, 0);
 }
 
-/* 64 equal warnings about 64 tags are printed as one line. A warning that occurs only three times, and every error, is printed in full. */
+/* 64 warnings with the same text except for the tag are printed as one line. Three such warnings are too few for that: each is
+   printed. Errors are always printed in full. */
 TEST(many_warnings_alike_are_one)
 {
     struct diag diag = { 0 };
@@ -148,7 +149,7 @@ TEST(many_warnings_alike_are_one)
     diag_finish(&diag);
 }
 
-/* A list with 2,000 duplicate rows must not print 2,000 lines. */
+/* 2,000 errors with the same text except for the tag: only the first ones are printed. */
 TEST(of_many_errors_alike_the_first_are_printed)
 {
     struct diag diag = { 0 }, copy = { 0 };

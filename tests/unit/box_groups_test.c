@@ -15,7 +15,8 @@ static double cpu_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Fills random boxes, in a plane across axis `flat` or in space; sizes up to `size`, some boxes long or thin. */
+/* Makes random boxes with sides up to `size`; every tenth side is up to five times longer. flat: axis along which all boxes
+   have the thickness 0, in one plane; 3: none. */
 static void fill(struct part_box *boxes, size_t count, int flat, double size, uint64_t seed)
 {
     struct cad_random random = { .state = seed };
@@ -69,7 +70,8 @@ TEST(groups_are_those_of_all_pairs)
     }
 }
 
-/* Testing each pair would take 3.5 thousand million comparisons. */
+/* 83,750 boxes must be grouped quickly, whichever axis their plane is perpendicular to: comparing each pair would take 3,500
+   million comparisons. */
 TEST(a_plate_across_any_axis_takes_no_longer)
 {
     enum { COUNT = 83750 };

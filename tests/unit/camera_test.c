@@ -61,8 +61,8 @@ static void project(const double view[16], const double projection[16], const do
 
 TEST(a_point_lands_where_geometry_says)
 {
-    /* The camera looks north from (0, -10, 0): right is east, up is up. At 90 degrees, the image edge is as far from the axis as the
-       point is from the eye. */
+    /* The camera looks north from (0, -10, 0), so right is east and up is z. With an angle of 90 degrees, half the image's
+       height equals the distance from the eye. */
     const struct camera c = { .eye_m = { 0, -10, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .fov_deg = 90 };
     const double min[3] = { -5, -5, -5 }, max[3] = { 5, 5, 5 }, p[3] = { 4, -2, 2 };
     double view[16], projection[16], ndc[3], w;
@@ -74,7 +74,7 @@ TEST(a_point_lands_where_geometry_says)
     assert_true(ndc[2] > -1 && ndc[2] < 1);
 }
 
-/* In an orthographic projection sizes do not shrink with distance, and points behind the eye are visible too. */
+/* In an orthographic projection, sizes do not depend on the distance, and points behind the eye are projected, too. */
 TEST(an_orthographic_picture_keeps_sizes)
 {
     const struct camera c = { .eye_m = { 0, -10, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .height_m = 8 };
@@ -112,7 +112,7 @@ TEST(near_and_far_hold_the_box)
         for (int i = 0; i < 3; i++) {
             min[i] = random_in(-50, 0);
             max[i] = min[i] + random_in(0, 100);
-            c.eye_m[i] = random_in(-100, 100); /* the eye is often inside the box */
+            c.eye_m[i] = random_in(-100, 100); /* random eye positions, often inside the box, where some corners lie behind the eye */
         }
         camera_matrices(&c, 1.6, min, max, view, projection);
         double far_over_near = (projection[10] - 1) / (projection[10] + 1);
@@ -142,7 +142,8 @@ TEST(a_box_behind_or_without_depth_gives_numbers)
     assert_true(ndc[2] > -1 && ndc[2] < 1);
 }
 
-/* Asserts that the projected box touches the margin on both ends of one axis and that no corner lies outside. */
+/* Fits a camera to the box. Asserts that, in at least one direction, the projected box reaches the margin on both sides, and
+   that no corner lies outside of it. */
 static void assert_fits(enum axis up, const double min[3], const double max[3], double aspect)
 {
     struct camera c;

@@ -14,7 +14,7 @@
 #include "preprocess/child/child.h"
 #include "preprocess/child/work_folder.h"
 
-/* Sanitizers need more memory than the limits that some cases test. */
+/* Set with sanitizers, which need more memory than the limits of some tests: these tests are left out. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define SANITIZED
 #endif
@@ -177,7 +177,8 @@ TEST(test_a_signal_ends_it)
     }
 }
 
-/* The accesses that each ABI knows, from linux/landlock.h of Linux 6.12. */
+/* The access rights that each ABI of Landlock can restrict, as in linux/landlock.h of Linux 6.12, and the warning about those
+   that it cannot. */
 TEST(test_each_abi_of_landlock_restricts_what_it_knows)
 {
     static const struct {
@@ -216,8 +217,8 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
 
 /* --- older kernels: what a confined process can do with each Landlock ABI ----------------------------------------------------- */
 
-/* secret, away: a file and a folder that the confined process must not touch; in: a file that it may read; own: a folder that it may
-   write */
+/* Paths of: secret: a file that the confined process must not touch; in: a file that it may read; own: a folder in which it may
+   write; away: a folder that it must not touch. */
 static char secret[128], in[128], own[128], away[128];
 
 static char *in_folder(const char *folder, const char *name)
@@ -297,8 +298,8 @@ static void lay_out(const char *folder)
     assert_true((mkdir(own, 0700) == 0 || errno == EEXIST) && (mkdir(away, 0700) == 0 || errno == EEXIST));
 }
 
-/* With each version (ABI) of Landlock: a confined process that only reads can do nothing forbidden. A confined command can do
-   only what that version cannot prevent, and the log names it. */
+/* Simulates each ABI of Landlock up to this kernel's. A confined reader can do nothing forbidden with any of them. A confined
+   command can do some forbidden things with older ones, and the log names each of these. */
 TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
 {
     char lacks[CONFINE_LACKS_BYTES], *folder = temp_folder();
@@ -337,7 +338,8 @@ static const char *delegated_cgroup(void)
     return NULL;
 }
 
-/* Runs the checks in a process of the delegated cgroup. Returns the number of the check that failed, or 0. */
+/* Moves this process into the delegated cgroup and tests child cgroups there. Returns the number of the step that failed, or 0.
+   */
 static int use_cgroup(const char *service)
 {
     char name[128], *path;
@@ -347,7 +349,7 @@ static int use_cgroup(const char *service)
     if (!(procs = fopen(name, "w")) || fprintf(procs, "0") != 1 || fclose(procs) != 0)
         return 1;
     if (!cgroup_create("reader", room, 8, &path) || path)
-        return 2; /* a cgroup for child processes is refused until the daemon has moved itself into a cgroup of its own */
+        return 2; /* while the process itself is in the delegated cgroup, no cgroup for children is made there (path stays NULL) */
     if (!cgroup_divide() || !cgroup_divide() || !cgroup_create("reader", (size_t)64 << 20, 8, &path) || !path)
         return 3;
     if (cgroup_add(path, 1 << 30) || errno != ESRCH)

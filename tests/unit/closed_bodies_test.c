@@ -11,7 +11,7 @@
 enum { BOX = 192 }; /* triangles of shape_box */
 static const double low[3] = { -1, -1, -1 }, high[3] = { 1, 1, 1 };
 
-/* Consumes the shape. Returns how many of its triangles belong to closed bodies. */
+/* Makes an asset of the shape, which it then owns. Returns how many triangles belong to closed bodies. */
 static uint32_t closed_triangles(struct test_shape *shape)
 {
     struct toy *toy = toy_create();
@@ -19,7 +19,7 @@ static uint32_t closed_triangles(struct test_shape *shape)
     const struct closed_bodies *closed = asset_closed(toy->scene.assets[asset].file, 0);
     uint32_t indices = 0, end = 0;
     for (size_t i = 0; i < closed->run_count; i++) {
-        /* adjacent runs of the closed bodies' indices are merged into one run */
+        /* runs are ranges of indices; two that adjoin must have been merged into one */
         assert_true(closed->runs[i].index_count > 0 && (i == 0 || closed->runs[i].first_index > end));
         end = closed->runs[i].first_index + closed->runs[i].index_count;
         indices += closed->runs[i].index_count;
@@ -32,7 +32,8 @@ static uint32_t closed_triangles(struct test_shape *shape)
 TEST(test_a_box_is_closed)
 {
     struct test_shape shape = { 0 };
-    shape_box(&shape, TOY_STEEL, low, high); /* each side of a box has its own vertices */
+    /* each side of the box has its own vertices, so they must be welded before the box counts as closed */
+    shape_box(&shape, TOY_STEEL, low, high);
     assert_int_equal(closed_triangles(&shape), BOX);
 }
 
@@ -48,7 +49,7 @@ TEST(test_what_has_a_hole_is_not)
     }
 }
 
-/* Rounding leaves small gaps at seams; the body still counts as closed. */
+/* Gaps of some micrometres between sides, as rounding leaves them, still count as closed; gaps of some millimetres do not. */
 TEST(test_seams_may_gape_by_rounding)
 {
     for (int wide = 0; wide < 2; wide++) {
@@ -77,7 +78,8 @@ TEST(test_bodies_are_judged_one_by_one)
     shape_box(&shape, TOY_STEEL, low, high);
     shape_plate(&shape, TOY_BLUE, (double[3]){ 3, 3, 3 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, 2);
     shape_box(&shape, TOY_CONCRETE, (double[3]){ 5, 5, 5 }, (double[3]){ 6, 6, 6 });
-    shape_box(&shape, TOY_CONCRETE, (double[3]){ 1, -1, -1 }, (double[3]){ 2, 1, 1 }); /* touches the first box along a whole side */
+    /* this box touches the first one along a whole side, which must not make either count as open */
+    shape_box(&shape, TOY_CONCRETE, (double[3]){ 1, -1, -1 }, (double[3]){ 2, 1, 1 });
     assert_int_equal(closed_triangles(&shape), 3 * BOX);
 }
 

@@ -29,7 +29,8 @@ static void make_torus(struct geometry *g)
         }
 }
 
-/* Makes clusters of one level; g's positions change in the process. */
+/* Makes the clusters of g's finest level. The positions given to clusters_begin() are overwritten while it works: it must not
+   read them any more by then. */
 static void make_clusters(struct geometry *g, struct workers *workers, struct clusters *clusters)
 {
     const struct level level = {

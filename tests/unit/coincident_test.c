@@ -39,7 +39,8 @@ TEST(those_with_sensors_are_seen)
     toy_destroy(&toy);
 }
 
-/* Assets side by side in one plane, intersecting, or close in front of each other do not coincide: only depth decides. */
+/* Assets that intersect or lie 2 mm in front of each other have no coincident faces, so depth alone decides which one is
+   visible. */
 TEST(others_do_not_coincide)
 {
     static const double low[3][3] = { { 1, 0, 0 }, { 0.5, 0.5, 0.5 }, { 0.2, 0.2, 0.2 } };
@@ -55,7 +56,8 @@ TEST(others_do_not_coincide)
     }
 }
 
-/* Rays from many directions onto the shared face hit the asset in front, whatever the order of the assets. */
+/* Rays from many directions hit a face that two assets share: the hit asset must be the one that pictures show, whichever asset
+   comes first in the plant. */
 TEST(rays_hit_what_is_seen)
 {
     for (int parallel = 0; parallel < 2; parallel++)

@@ -51,7 +51,7 @@ static void *compress_one(const void *bytes, size_t count, size_t *compressed_by
     return compress_all(&(struct atomic_file_part){ bytes, count }, 1, compressed_bytes);
 }
 
-/* Reads pieces of 1, 2, 4, ... bytes, so that pieces begin and end within chunks and cover whole ones. */
+/* Decompresses in pieces of 1, 2, 4, ... bytes, so that some pieces begin and end within a chunk and others span several. */
 static void read_in_pieces(const void *compressed, size_t bytes, char *to, size_t count)
 {
     struct decompressor *d = decompressor_create(compressed, bytes);
@@ -110,7 +110,7 @@ TEST(each_kind_of_array_becomes_small)
     }
     fill(words, COUNT);
     const void *const arrays[] = { words, floats, text };
-    static const double most[] = { 0.2, 0.5, 0.01 }; /* allowed shares of the array's size */
+    static const double most[] = { 0.2, 0.5, 0.01 }; /* largest allowed compressed size of each array, as a share of its original size */
     for (size_t i = 0; i < 3; i++) {
         size_t bytes;
         void *compressed = compress_one(arrays[i], 4 * COUNT, &bytes);
@@ -125,7 +125,8 @@ TEST(each_kind_of_array_becomes_small)
 
 /* --- damage ----------------------------------------------------------------------------------------------------------------------- */
 
-/* Whatever is damaged, the result is NULL or has the right size; sanitizers check that nothing is read or written out of bounds. */
+/* Flips bits at many places: decompressing must fail (NULL) or give as many bytes as before. Sanitizers detect accesses out of
+   bounds. */
 TEST(damaged_bytes_are_refused_or_harmless)
 {
     uint32_t *words = mem_array(COUNT, sizeof(*words));
@@ -153,7 +154,7 @@ TEST(damaged_bytes_are_refused_or_harmless)
     mem_free(words);
 }
 
-/* A stated size that the chunks do not have is refused before any allocation. */
+/* A header with a size that does not match the number of chunks is refused before any memory is allocated for it. */
 TEST(false_sizes_are_refused)
 {
     static const uint64_t sizes[] = { 0, 1, 999, 1001, 1 << 18, (1 << 18) + 1000, (uint64_t)1 << 40, UINT64_MAX, UINT64_MAX - 7 };
@@ -168,7 +169,7 @@ TEST(false_sizes_are_refused)
     }
     const uint64_t right = sizeof(content);
     memcpy(compressed, &right, sizeof(right));
-    for (uint32_t frame = 0; frame < 3; frame++) { /* sizes of the only frame: 0, beyond the end, and huge */
+    for (uint32_t frame = 0; frame < 3; frame++) { /* false sizes of the only compressed frame: 0, beyond the end, and huge */
         const uint32_t size = frame == 0 ? 0 : frame == 1 ? (uint32_t)bytes : UINT32_MAX;
         memcpy(compressed + sizeof(right), &size, sizeof(size));
         assert_null(decompress(compressed, bytes, &count));
@@ -243,7 +244,7 @@ CASE(a_file_comes_back_and_is_smaller)
     mem_free(words);
 }
 
-/* Files of the previous version and missing files are not errors: the caller makes them again. */
+/* A missing cache file, or one of the previous version, is no error and not logged: the caller makes the file again. */
 CASE(a_file_of_the_previous_version_is_passed_over)
 {
     struct cache_file file;
@@ -275,7 +276,7 @@ CASE(a_damaged_or_cut_file_is_refused_with_a_reason)
     }
 }
 
-/* The checksum of these files is right, but their compressed contents are not. */
+/* Cache files with valid checksums whose compressed contents are wrong: false sizes, cut off, and damaged. */
 CASE(contents_that_lie_are_refused_with_a_reason)
 {
     size_t bytes;
@@ -289,7 +290,9 @@ CASE(contents_that_lie_are_refused_with_a_reason)
         if (i == 0)
             memset(lie + 3, 0x7f, 4); /* claims hundreds of petabytes */
         else if (i == 2)
-            lie[25] |= 6; /* makes the type of the first block of the first frame invalid: 8 bytes size, 8 of the chunk, 9 of the frame */
+            /* i == 2: sets the type of the compressed frame's first block to an invalid one. Its byte comes after the size (8
+               bytes), the chunk's header (8) and the frame's header (9). */
+            lie[25] |= 6;
         assert_int_equal(cache_file_write_parts(f->path, MAGIC, 5, &(struct atomic_file_part){ lie, i == 1 ? bytes / 2 : bytes }, 1), 0);
         assert_false(opens(f, &file, i == 2 ? "compressed bytes are damaged" : "do not have the sizes that they state"));
         mem_free(lie);

@@ -22,7 +22,7 @@ static struct snapshot *make_snapshot(void)
     return snapshot;
 }
 
-/* Path of readings from a core's snapshot to a renderer's store. */
+/* The way of readings from a core's snapshot through messages to a renderer. */
 struct readings_path {
     struct snapshot *snapshot;
     struct core_sent sent;
@@ -66,7 +66,8 @@ TEST(only_changes_are_sent)
     assert_true(way.readings.utc_ns == 5000 * S && got[0].value == 0.1 + 0.2 && got[0].received_mono_ns == 99 * S);
     assert_true(got[0].received_utc_ns == 4999 * S && got[1].quality == QUALITY_BAD_SENSOR_FAILURE && got[1].value == -7);
     assert_true(got[0].has_value && got[1].has_value && !got[2].has_value && got[2].quality == QUALITY_BAD_WAITING);
-    way.snapshot->readings[0].received_utc_ns += S; /* the same value was read again */
+    /* tag 0 was read again with the same value; tag 2 has changed: only these two may be sent */
+    way.snapshot->readings[0].received_utc_ns += S;
     way.snapshot->readings[2].changes++;
     write_message(&way);
     assert_null(read_message(&way, 101 * S));
@@ -101,7 +102,8 @@ TEST(nonsense_is_refused)
     way_finish(&way);
 }
 
-/* Asserts that a reading delayed in transit arrives older by late_ns. */
+/* Sends all readings at core_ns by the core's clock; they arrive at now_ns by the renderer's. Asserts that the renderer finds
+   them delayed by late_ns, give or take clock drift. */
 #define DRIFT_NS (S / 500) /* nanoseconds that two clocks may drift apart between two messages */
 
 static void assert_late(struct readings_path *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
@@ -123,15 +125,15 @@ TEST(late_readings_are_older)
         int64_t late_ns = i == 1 ? 5 * S : 0;
         assert_late(&way, (50 + i) * S, (1000 + i) * S + late_ns, late_ns);
     }
-    for (int i = 0; i < 100; i++) { /* for 40 hours, our clock runs fast by 50 ppm */
+    for (int i = 0; i < 100; i++) { /* in 40 hours the renderer's clock gains 50 ppm: the drift must not look like a delay */
         int64_t passed_ns = (3 + 1440 * (int64_t)i) * S;
         assert_late(&way, 50 * S + passed_ns, 1000 * S + passed_ns + passed_ns / 20000, 0);
     }
     way_finish(&way);
 }
 
-/* The renderer's store equals the core's store, however old either is. A lost link makes all readings Bad, including those
-   resent unchanged afterwards. */
+/* A renderer's store shows the same readings as the core's, whichever of the two was started first. When the link is lost, all
+   readings become Bad, also those that are then sent again unchanged. */
 TEST(a_store_shows_what_the_other_shows)
 {
     struct plant *plant = plant_by_hand_create(2);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces that may cross other faces: the list must contain every crossing found by sampling, and few other faces. */
+/* The search for faces that may cross others: it must report every face for which sampling finds a crossing, and few other
+   faces. */
 #include "surface/repair/crossing_faces.h"
 
 #include "tests/support/test.h"
@@ -92,7 +93,8 @@ TEST(a_pipe_that_winds_into_itself_has_some)
     mem_free(model);
 }
 
-/* Returns whether an edge crosses a triangle of another part, as crossing_faces_find() must report it (repair.h defines it). */
+/* Returns whether the edge of a triangle of part `own` crosses the triangle `tri`, by the rule of repair.h that
+   crossing_faces_find() must follow. */
 static bool piece_crosses(const struct crossing_model *model, const uint32_t edge[2], uint32_t own, uint32_t tri)
 {
     const struct trimesh *mesh = &model->mesh;
@@ -113,7 +115,7 @@ static bool piece_crosses(const struct crossing_model *model, const uint32_t edg
     return true;
 }
 
-/* Many triangles on few points: they meet at corners and along sides, overlap, and cross. */
+/* Makes many random triangles on a few points, so that triangles share corners and sides, overlap and cross. */
 static void make_tangle(struct crossing_model *model, uint32_t points, double flatness)
 {
     *model = (struct crossing_model){ .vertex_count = points, .triangle_count = (size_t)between(4, MOST_FACES) };
@@ -125,7 +127,7 @@ static void make_tangle(struct crossing_model *model, uint32_t points, double fl
     model_join(model, 1e-3);
 }
 
-/* Counts the crossings between edges of one sampled triangle (`piece`) and sampled triangles of other faces. */
+/* Counts how often the edges of the sampled triangle `piece` cross other sampled triangles. */
 static size_t count_crossings(const struct crossing_model *model, size_t piece)
 {
     const struct trimesh *mesh = &model->mesh;

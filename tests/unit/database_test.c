@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SQLite files in our own formats: versions, damage, errors. */
+/* Opening SQLite files of formats that Plantcast defines: current and other versions, damaged files, and errors. */
 #include "tests/support/test.h"
 
 #include <errno.h>

@@ -9,10 +9,12 @@
 #define ADDED 300
 #define WITHIN_M 1e-7
 #define MOST_TRIS (4 * ADDED + 8)
-/* maximum number of added points that may remain: many triangles are so thin from the start that no neighbour can absorb them */
+/* points that decimation may leave behind: it must remove at least half of the added ones, not all, because many triangles are
+   so thin that no neighbour can absorb them */
 #define MOST_LEFT (ADDED / 2)
 
-/* Two triangles that share the diagonal from (0, 0, 0) to (1, 1, 0): the corner (1, 0, 0) on its right, (0, 1, lift_m) on its left. */
+/* A plate of two triangles that share the diagonal from (0, 0, 0) to (1, 1, 0). Their third corners are (1, 0, 0) and (0, 1,
+   lift_m), which bends the plate if lift_m is not 0. */
 struct flat_plate {
     struct trimesh mesh;
     uint32_t part[MOST_TRIS], plane[2];
@@ -100,7 +102,7 @@ static void thin(struct flat_plate *plate)
                   plate->plane, 2, plate->target);
 }
 
-/* Returns the summed area of the triangles on one side of the plate's diagonal, and asserts that all face along `normal`. */
+/* Returns the total area of the triangles on one side of the plate's diagonal. Asserts that each faces along `normal`. */
 static double area_of(const struct flat_plate *plate, int side, const double normal[3])
 {
     double sum = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deferred requests come back in order, none is lost, and every second turn goes to other requests. */
+/* The queue of requests deferred by the render thread: it returns them in their order, loses none, and lets other requests have
+   every second turn. */
 #include "tests/support/test.h"
 
 #include "service/deferred_requests.h"

@@ -59,7 +59,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns how many of a cell's sorted depths lie behind the border at which depth_cells.c divides it; 0: not divided. */
+/* From a cell's depths, sorted from the farthest, returns how many belong to the farther of the two surfaces into which
+   depth_cells.c divides it. For an undivided cell: the number of background depths. */
 static int count_behind(const struct depth_lens *lens, const float *all, int count)
 {
     int background = 0, behind = 0;
@@ -74,7 +75,7 @@ static int count_behind(const struct depth_lens *lens, const float *all, int cou
     return divided ? behind : background;
 }
 
-/* Computes a cell's expected content by the rule of depth_cells.c, from the cell's sorted depths. */
+/* Computes from the picture's depths what the cell must contain by the rules of depth_cells.c. */
 static void expect_cell(const struct depth_picture *picture, const struct depth_lens *lens, int column, int row, struct depth_cell *out)
 {
     float all[64];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drift of sensors: the fit compared with plain least squares, and tested on real series (../shared/data/sensors) stretched
-   over a week, unchanged and with a drift added to one sensor. The alarm limit lies a tenth of the group's range beyond all
-   readings. */
+/* Detection of sensors that drift. The fit is compared with plain least squares. Real series (../shared/data/sensors),
+   stretched over a week, are tested as recorded and with a drift added to one sensor; the alarm limit lies a tenth of the
+   group's range beyond all readings. */
 #include "tests/support/test.h"
 
 #include "base/log/log.h"
@@ -87,7 +87,7 @@ TEST(test_fit_is_least_squares)
         for (int h = 0; h < DRIFT_HOURS; h++) {
             at += random_in(-1, 1);
             predicted[h] = at;
-            /* the nearest neighbour contains changes that no other sensor shows; the tested sensor shows half of them */
+            /* the nearest sensor shows random changes that no other sensor shows, and the tested sensor shows half of these */
             nearest[h] = at + random_in(-3, 3);
             values[h] = gain * at + (nearest[h] - at) / 2 + change * h / DRIFT_HOURS + random_in(-noise, noise);
             if (h % 9 == round % 9)
@@ -106,13 +106,15 @@ TEST(test_fit_is_least_squares)
 
 /* --- jumps: a sensor is moved or replaced ---------------------------------------------------------------------------------------- */
 
-struct jump { /* a jump by `after` times the noise from hour `begins` on, and by `left` times the noise from hour `ends` on */
+/* a sensor's readings are higher by `after` (in multiples of its noise) between the hours `begins` and `ends`, and by `left`
+   after that */
+struct jump {
     double after, left;
     int begins, ends;
 };
 
-/* Random sensors with a jump, half of which also drift by six times their noise, up or down. jump_of draws the jump. Asserts at
-   least `least_found` detected drifts and at most `most_accused` false ones. */
+/* Tests 200 random sensors with the jumps that jump_of draws; every second one also drifts by six times its noise. Asserts that
+   at least `least_found` of these drifts are detected, and at most `most_accused` of the others. */
 static void fit_after_jumps(const char *what, void (*jump_of)(int round, struct jump *jump), int least_found, int most_accused)
 {
     double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
@@ -144,7 +146,7 @@ static void one_jump(int round, struct jump *jump)
     jump->begins = 30 + rand() % 108;
 }
 
-/* Draws two jumps, as a trial of a day or two causes them: the second one undoes all or most of the first. */
+/* Draws a jump that is undone, wholly or mostly, a day or two later, as when somebody tries something out. */
 static void jump_and_back(int round, struct jump *jump)
 {
     *jump = (struct jump){ .after = random_in(8, 20) };
@@ -154,7 +156,8 @@ static void jump_and_back(int round, struct jump *jump)
     jump->ends = jump->begins + 24 + rand() % 36;
 }
 
-/* A sensor whose offset from the others jumps from one hour to the next does not drift, and the jump hides no real drift. */
+/* A sensor that jumps once to another offset, as after being moved, must not count as drifting, and a real drift must be found
+   despite the jump. */
 TEST(test_jumps_are_no_drift)
 {
     srand(2);
@@ -188,12 +191,13 @@ TEST(test_what_cannot_be_told_is_unknown)
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
     assert_non_null(strstr(drift_unknown_cause(&drift, 3), "changes in plant operation"));
-    for (int h = 0; h < DRIFT_HOURS; h++) /* all sensors are stuck: no drift, although the fit could detect one */
+    for (int h = 0; h < DRIFT_HOURS; h++) /* all readings are constant, as from stuck sensors: the verdict is "no drift", not "unknown" */
         values[h] = predicted[h] = 50;
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_NONE);
     assert_string_equal(drift_unknown_cause(&drift, 3), "");
-    drift.verdict = DRIFT_UNKNOWN; /* the verdict that drift_find() gives a sensor if all others drift */
+    /* drift_find() sets this verdict for a sensor if fewer than three others of its group do not drift */
+    drift.verdict = DRIFT_UNKNOWN;
     assert_non_null(strstr(drift_unknown_cause(&drift, 3), "that do not drift"));
 }
 
@@ -202,8 +206,10 @@ TEST(test_what_cannot_be_told_is_unknown)
 struct recorded_series {
     const char *file, *columns[SENSORS];
     int count; /* number of columns */
-    double noise, beyond; /* noise of a reading; distance of the alarm limit beyond all readings (a tenth of the range) */
-    double from, to;      /* part of the file that is stretched over a week; 0: its beginning, 1: its end */
+    /* noise: deviation of a reading's noise; beyond: distance from the extreme readings to the alarm limit, a tenth of the
+       group's range */
+    double noise, beyond;
+    double from, to;      /* from, to: part of the recording that is stretched over a week; 0: its beginning, 1: its end */
     double hours[DRIFT_HOURS][SENSORS];
 };
 
@@ -304,7 +310,8 @@ static void leave(struct row_of_sensors *row)
     plant_destroy(&row->plant);
 }
 
-/* Adds to one sensor a linear drift that reaches `change` after the first `hours` of the week, and fits those hours. */
+/* Adds a linear drift to one sensor, which would reach `change` at the end of the week, and looks for drifts in the first
+   `hours` hours. out[]: result for each sensor. */
 static void find(const struct row_of_sensors *row, const struct recorded_series *s, int hours, int sensor, double change, struct drift *out)
 {
     double values[DRIFT_HOURS * SENSORS], noise[SENSORS];
@@ -316,8 +323,8 @@ static void find(const struct row_of_sensors *row, const struct recorded_series 
     drift_find(row->neighbours, values, hours, noise, out, NULL);
 }
 
-/* Looks for drift each hour from half a week on, in readings without drift. Returns how many sensors were ever wrongly found to
- * drift; times receives how often. */
+/* Looks for drifts after each hour from half a week on, in readings without added drift. Returns how many sensors were found to
+   drift, wrongly, at any time; *times receives how often that happened. */
 static int accused(const struct row_of_sensors *row, const struct recorded_series *s, int *times)
 {
     bool ever[SENSORS] = { false };
@@ -339,7 +346,8 @@ static int accused(const struct row_of_sensors *row, const struct recorded_serie
 #define RIG "hydraulic/hydraulic_ts_1hz.csv", { "TS1", "TS2", "TS3", "TS4" }, 4, 0.2, 4
 #define PROCESS { "XMEAS09", "XMEAS11", "XMEAS18", "XMEAS21", "XMEAS22" }, 5, 0.5, 10, 0, 1, { { 0 } }
 static struct recorded_series all_series[] = {
-    { RIG, 0, 1, { { 0 } } }, /* the test rig's cooler is switched from 3 to 20 to 100 % at one and at two thirds of the recording */
+    /* whole recording: the rig's cooler is switched from 3 to 20 % after a third of it, and to 100 % after two thirds */
+    { RIG, 0, 1, { { 0 } } },
     { "tep/tep_d00_normal.csv", PROCESS },
     { "tep/tep_d04_reactor_cooling_step.csv", PROCESS },
     { "tep/tep_d06_a_feed_loss.csv", PROCESS }, /* a feed is lost */
@@ -348,8 +356,9 @@ static struct recorded_series all_series[] = {
     { RIG, 1464 / 2205., 1, { { 0 } } },
     { RIG, 0, 1464 / 2205., { { 0 } } },
     { RIG, 732 / 2205., 1, { { 0 } } },
-    { RIG, 0, 0.5, { { 0 } } }, /* this half of the recording was used to tune the weights of neighbours and of fast hours in the fit */
-    { RIG, 0.5, 1, { { 0 } } }, /* held out: not used for tuning */
+    /* the half of the recording with which the fit's weights (of neighbours, of hours with fast changes) were tuned */
+    { RIG, 0, 0.5, { { 0 } } },
+    { RIG, 0.5, 1, { { 0 } } }, /* the other half, not used for tuning */
 };
 
 TEST_WITH(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_down)
@@ -369,7 +378,8 @@ TEST_WITH(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_d
     }
 }
 
-/* Held-out data, not used to tune the rule: temperatures of 25 simulated mixers (half an hour, about every 6 s), stretched over a week. */
+/* Data that the rule was not tuned with: half an hour of temperatures of 25 simulated mixers (a value every 6 s), stretched
+   over a week. */
 TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 {
     enum { MIXERS = 25 };
@@ -426,7 +436,7 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 struct drift_detection {
     int hours;      /* hour of the week in which the added drift was found; 0: not found */
     double drifted; /* amount drifted by that hour */
-    double limit;   /* smallest distance so far between the reading and its alarm limit */
+    double limit;   /* smallest distance so far between the drifting reading and its alarm limit; negative: beyond the limit */
 };
 
 static struct drift_detection search(const struct row_of_sensors *row, const struct recorded_series *s, int sensor, double change)
@@ -461,14 +471,14 @@ static bool accuses_another(const struct row_of_sensors *row, const struct recor
     return another;
 }
 
-/* Drifts of several sizes, in units of sigma (the sensor's scatter without drift), must be found before the reading reaches its
-   alarm limit. */
+/* Adds drifts of 3, 4 and 8 sigma per week, where sigma is the sensor's scatter without drift. Most must be found, and each
+   before the reading reaches its alarm limit. */
 TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down)
 {
     enum { SIZES = 3 };
     static const double sizes[SIZES] = { 3, 4, 8 }; /* drifts, in sigmas per week */
-    /* minimum number of drifts to find, by series and size; the test rig's own changes hide some. {0}: series with a process
-       fault, not tested */
+    /* minimum number of drifts to find, by series and size; the test rig's own changes hide some. { 0 }: not tested, because
+       the recorded process has a fault */
     static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
     int others = 0; /* number of sensors wrongly found to drift, instead of the drifting one or in addition to it */
@@ -491,7 +501,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
                     others += accuses_another(&row, s, i, sign * sizes[size] * none[i].scatter);
                     if (at.hours == 0)
                         continue;
-                    assert_true(at.limit > 0); /* when the drift was found, the reading was still within its alarm limit */
+                    assert_true(at.limit > 0); /* a drift was found while the reading was still within its alarm limit */
                     most_sigmas = fmax(most_sigmas, fabs(at.drifted) / none[i].scatter);
                     least_limit = fmin(least_limit, at.limit);
                 }

@@ -13,7 +13,7 @@ async function start(site, node) {
     return isCore(node) ? site.two.start(node.name) : site.startRenderer(node);
 }
 
-// Ends a process, or waits until it ends, and starts it again after that time.
+// Sends the signal to a node (null: somebody else ends it), waits until it has ended, and starts it again after away_ms.
 async function endAndStart(site, node, signal, away_ms = RESTART_MS) {
     node.isAway = true;
     node.program.stopped = true;
@@ -52,8 +52,8 @@ function busiest({ operators, renderers }) {
 }
 const anyHow = (random) => (random() < 0.5 ? 'cut' : 'freeze');
 
-// act({ site, leader, standby, random }) causes the fault. alerts: names of alerts that must fire, and stop firing once the plant has
-// recovered.
+// All faults. act({ site, leader, standby, random }) causes one. alerts: names of the Prometheus alerts that must fire, and
+// stop once the plant has recovered.
 export const FAULTS = [
     { name: 'leader killed', alerts: ['PlantcastDown'], act: ({ site, leader }) => endAndStart(site, leader, 'SIGKILL') },
     { name: 'standby killed', alerts: ['PlantcastDown'], act: ({ site, standby }) => endAndStart(site, standby, 'SIGKILL') },
@@ -72,7 +72,8 @@ export const FAULTS = [
         act: ({ leader, random }) => cut([leader.toDatabase], anyHow(random)) },
     { name: 'standby cut off database', alerts: ['PlantcastLeaseDatabaseDown'],
         act: ({ standby, random }) => cut([standby.toDatabase], anyHow(random)) },
-    // the old leader recorded alarms that the next leader missed because of the cut, and so finds and records again itself
+    // isRepeated: alarms may be recorded twice. Those recorded by the old leader during the cut never reach the next leader,
+    // which therefore detects and records them again.
     { name: 'leader cut off both', alerts: [], isRepeated: true, act: async ({ site, leader, standby, random }) => {
         const links = [leader.toDatabase, standby.toOther];
         await Promise.all([endAndStart(site, leader, null, CUT_MS), cut(links, anyHow(random))]);
@@ -103,8 +104,8 @@ export const FAULTS = [
     } },
 ];
 
-// Fills the disk for FULL_MS, counted from the first write that fails: until then SQLite writes into space that its log already
-// has.
+// Fills the core's disk for FULL_MS after the first failed write. Before that, SQLite still writes into space that its
+// write-ahead log already occupies.
 async function fullDisk(site, core) {
     site.fillDisk(core);
     const notGood = /^plantcast_(history|alarm_journal)_good(\{.*\})? 0$/m;
@@ -128,7 +129,8 @@ async function certificates({ site }) {
         await until('the new certificate', async () => await site.serial(renderer) !== before, 30);
     }
 }
-// Reloads one core after the other, as deploy/pages/STANDBY.md says, and the renderers, which use the same plant file.
+// Changes the plant file and reloads the cores one after the other, then the renderers, in the order of
+// deploy/pages/STANDBY.md.
 async function reload({ site, leader, standby }) {
     const text = readFileSync(site.two.file, 'utf8'), [was, is] = /description: warm/.test(text) ? ['warm', 'cold'] : ['cold', 'warm'];
     writeFileSync(site.two.file, text.replace(`description: ${was}`, `description: ${is}`));
@@ -162,7 +164,8 @@ async function drained(site, renderer) {
     await until('the balancer', async () => /^UP/.test((await site.proxy.servers())[renderer.name].status), 30);
 }
 
-// Restarts nodes that ended unexpectedly, as a service manager does, until the site ends. ends: receives their names.
+// Until the site ends: restarts each node that ends unexpectedly 2 s later, as a service manager does. ends: receives each
+// one's name and last lines of output.
 export function supervise(site, ends) {
     const revive = async (node) => {
         node.isAway = true;
