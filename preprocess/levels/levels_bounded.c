@@ -2,9 +2,9 @@
 /* Simplifies a part (connected component) by edge collapses, each of which merges a mesh point into a neighbour. The collapse
  * that moves the surface least comes first. Each triangle keeps a list of the original vertices ("places") nearest to it
  * (Ciampalini et al., Multiresolution decimation based on global error, The Visual Computer 1997). The error of a collapse is
- * the distance between these places and the new triangles, and between the new triangles and the original surface. It is
- * computed only when the collapse reaches the top of the heap. Until then, a lower bound determines the collapse's position in
- * the heap. */
+ * the largest of these distances: from each place of the affected triangles to the nearest new triangle, and from sample points
+ * of the new triangles to the original surface. It is computed only when the collapse reaches the top of the heap. Until then, a
+ * lower bound determines the collapse's position in the heap. */
 #include "preprocess/levels/levels_bounded.h"
 
 #include <string.h>

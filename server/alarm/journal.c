@@ -115,8 +115,9 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits until there are journal rows to write, and for at least GATHER_NS, so that one transaction writes all rows of that
-   period. Returns earlier if journal_end() was called, and tells so in *urgent. Returns false once the thread must end. */
+/* Waits until at least one journal row is queued, but at least GATHER_NS, so that one transaction writes all rows of that period.
+   Then takes the queued rows. journal->urgent or the order to stop ends the wait at once. *urgent: a caller waits for these rows
+   to be stored. Returns false if the thread must end. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;

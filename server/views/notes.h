@@ -19,7 +19,8 @@ struct note {
     /* place of the note: at most one of a tag, the id of an asset, and a position; all NULL: the whole plant */
     const char *tag, *asset;
     const double *position_m;
-    /* id of an earlier note of the same user that this note replaces: the earlier note ends, and the new note gets its place; NULL: none */
+    /* id of an active note of the same user that this note replaces: that note ends, and the new note is attached to the same
+       tag, asset or position (the members above are ignored); NULL: this note replaces none */
     const char *replaces;
     int64_t until_us; /* time at which the note ends, UTC in microseconds; 0: it has no end */
 };

@@ -46,7 +46,8 @@ struct other {
     struct other_picture about;
     char *png; /* picture of the other plant as PNG; NULL: none */
     size_t bytes;
-    /* time of the request that returned the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
+    /* times at which the request that returned the present picture began: asked_ns by the monotonic clock, asked_us by the clock
+       of the plant shown here. asked_us is also the picture's id for pages; 0: there is no picture */
     int64_t asked_ns, asked_us;
     /* time, by the clock of the plant shown here, of the request that returned the last good picture. Before there is one: time
        at which displays began to want the picture */

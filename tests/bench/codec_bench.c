@@ -33,7 +33,8 @@ static bool values_init(struct codec_bench *bench)
     return bench->values != NULL;
 }
 
-/* Simulates readings of the displayed group's first TAGS tags, or with `all` of all tags; the others keep their values. */
+/* Gives new simulated readings to the displayed group's first TAGS tags, or to all tags of the plant if `all`; the other tags
+   keep their values. */
 static void read_tags(struct codec_bench *bench, int group, bool all)
 {
     int left = TAGS;
@@ -68,7 +69,7 @@ struct measured {
     int packets;
 };
 
-/* Decodes the parts of a packet, one after the other. */
+/* Decodes the picture parts of a packet one after the other and adds the processor time to m. */
 static void decode(struct measured *m, const struct packet *packet, const struct frame *frame)
 {
     double began_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures how soon the page reacts to the hand: sends real pointer events to Chromium, which shows the demo plant over a slow
-// link. Prints one JSON object per row. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0:
-// no limit). Without arguments, measures each link of LINKS in turn and prints a table of the goals.
+// Measures how soon the page reacts to the user's hand: sends real pointer events to Chromium, which shows the demo plant over
+// a simulated slow link. Prints one JSON object per measured quantity. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS
+// (0), BYTES_PER_S of the link (0: no limit). Without arguments, measures each link of LINKS in turn and prints a table that
+// compares the results with their goals.
 import { createRequire } from 'node:module';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
@@ -9,11 +10,12 @@ import { cpuMs, family } from '../e2e/support/processes.mjs';
 import { Relay, relayMissing } from '../e2e/support/relay.mjs';
 
 const { chromium } = createRequire(new URL('../e2e/package.json', import.meta.url))('playwright-core');
-// Links and their goals: largest time to the first changed pixel (p95, ms), and smallest number of updates per second.
+// Links and their goals: size, codec, round trip in ms, bytes per second (0: no limit); largest time from a pointer event to
+// the first changed pixel (95th percentile, ms), and smallest number of picture updates per second while dragging.
 const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 34, 55], ['1280x720', 'jpeg', 200, 0, 34, 55],
     ['1280x720', 'jpeg', 300, 0, 34, 55], ['1280x720', 'jpeg', 0, 125000, 34, 55], ['1920x1080', 'jpeg', 0, 0, 34, 30],
     ['1920x1080', 'jpeg', 200, 0, 34, 30]];
-const BROWSER_MS = 25; // goal: largest processor time of the browser per update
+const BROWSER_MS = 25; // goal: largest processor time (ms) that the browser may use per picture update
 let width, height, name, results; // data of the link being measured: size of the picture in pixels, name in the printed rows, results
 const SECONDS = Number(process.env.SECONDS) || 5, TRIES = Number(process.env.TRIES) || 20, HZ = 60, CALM_MS = 400;
 const ARGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
@@ -66,7 +68,7 @@ async function rest(page) {
     }
 }
 
-// Moves the pressed pointer in a circle, without waiting for the page.
+// Moves the mouse, with its button pressed, in a circle for that many seconds, without waiting for the page.
 async function circle(page, pointer, seconds) {
     const began = performance.now(), count = seconds * HZ;
     for (let n = 1; n <= count; n++) {
@@ -91,7 +93,7 @@ async function measure(page, browserPid, daemonPid) {
     await page.mouse.move(width / 2, height / 2);
     await clear(page, true);
     await pointer('mousePressed', width / 2, height / 2);
-    await circle(page, pointer, 2); // makes the page load everything that it needs at the first drag
+    await circle(page, pointer, 2); // unmeasured drag, so that the page has loaded everything that it loads lazily at the first drag
     const firsts = [];
     for (let n = 0; n < TRIES; n++) {
         await rest(page);
@@ -145,7 +147,7 @@ async function run(size, codec = 'auto', roundTripMs = 0, bytesPerS = 0) {
         const page = await browser.newPage({ viewport: { width: width + 300, height: height + 200 } });
         await page.goto(`http://127.0.0.1:${Number(roundTripMs) + Number(bytesPerS) === 0 ? port : relay.port}/?codec=${codec}`);
         await page.waitForFunction(() => globalThis.plantcast?.session.picture);
-        // The picture gets exactly the size that is measured.
+        // sets the picture's size in CSS pixels to the measured size; the window is larger than the picture
         await page.evaluate(([w, h]) => Object.assign(document.getElementById('viewport').style,
             { position: 'fixed', inset: '0 auto auto 0', width: `${w}px`, height: `${h}px`, zIndex: 9 }), [width, height]);
         await plant.freeze((await (await fetch(`${plant.url}api/v1/tags`)).json()).tags.map((tag) => tag.name));

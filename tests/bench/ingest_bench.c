@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ten Modbus devices with 2,000 tags each, all read once per second; one is dead and one is slow. Prints one JSON line per row. */
+/* Measures how old the oldest readings get while the daemon polls ten Modbus devices with 2,000 tags each, all read once per
+   second. One device does not answer, and one answers slowly. Prints one JSON line per measured quantity. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -25,12 +25,13 @@
 #define PLANT_MODEL "../shared/data/models/plm_plant_5parts.glb"
 #define FOLDER "build/bench"
 enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
-enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* frames with MANY_SENSORS should take as long as frames with FEW_SENSORS */
+/* the work of a frame with MANY_SENSORS may be at most 1.05 times that of a frame with FEW_SENSORS */
+enum { FEW_SENSORS = 5, MANY_SENSORS = 512 };
 enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* for the throughput measurement: frames submitted to the GPU ahead, and frames per run */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
-/* interval between changes of readings; maximum duration of a row */
+/* interval between changes of all readings; maximum time spent on the measurements of one printed row */
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S;
-/* milliseconds; slower brute-force frames are drawn only once */
+/* milliseconds; if a brute-force frame is expected to take longer, only one is drawn for its row */
 static const double LONGEST_BRUTE_MS = 20e3;
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
@@ -55,10 +56,14 @@ struct paper_bench {
     struct renderer *renderer;
     double hull_m[HULL_POINTS][3];
     struct camera cameras[CAMERAS];
-    double coverage; /* over all cameras: smallest share of a picture's pixels that show a field */
-    double brute_ms; /* time of the previous brute-force row; brute_sensors is its number of sensors, 0: no such row */
+    /* smallest share, over all cameras, of a picture's pixels that show a field (the interpolated readings on an asset's
+       surface) */
+    double coverage;
+    /* time and number of sensors of the previous brute-force row, from which the time of the next one is estimated;
+       brute_sensors 0: no such row */
+    double brute_ms;
     int brute_sensors;
-    double few_ms; /* milliseconds with the fewest sensors of a series; 0: not measured */
+    double few_ms; /* processor time in ms of a frame with FEW_SENSORS, the reference of compare_sensors(); 0: not measured */
 };
 
 struct timing_series { /* measured times of one row */
@@ -89,7 +94,8 @@ static void find_hull(struct paper_bench *bench)
     }
 }
 
-/* Computes the extents in the image plane as tangents. Instances are translated copies without rotation. */
+/* Computes how far all instances extend in the picture of a camera at eye_m, as tangents of the angles from its axis. Instances
+   are translated copies without rotation, so the hull points plus the offsets suffice. */
 static void find_extremes(const struct paper_bench *bench, const double eye_m[3], double axes[3][3], double low[2], double high[2])
 {
     low[0] = low[1] = INFINITY;
@@ -107,7 +113,8 @@ static void find_extremes(const struct paper_bench *bench, const double eye_m[3]
         }
 }
 
-/* Places the camera in the given direction, as close as possible with everything still in view. */
+/* Places the camera in the given direction (azimuth, elevation) from the instances, as close as possible with all of them still
+   in the picture. */
 static void fit(const struct paper_bench *bench, double azimuth, double elevation, struct camera *camera)
 {
     const struct scene *scene = bench->crowd.scene;
@@ -147,7 +154,8 @@ static struct frame *draw(struct paper_bench *bench, const struct view *view)
     return frame;
 }
 
-/* Returns the share of pixels that show a field, which are those that change with the colour map. Ground and shadows do not count. */
+/* Returns the share of the picture's pixels that show a field: draws the picture with two colour maps and counts the pixels
+   that differ. Ground and shadows do not differ and so do not count. */
 static double coverage_from(struct paper_bench *bench, const struct camera *camera)
 {
     struct view view;
@@ -177,8 +185,8 @@ static void try_side(struct paper_bench *bench, double azimuth, double elevation
         *best = (struct view_side){ azimuth, elevation, coverage };
 }
 
-/* Chooses the direction that fills the image best, and cameras on a swing around it. No camera repeats, because the renderer
-   would reuse the frame of a still camera. */
+/* Chooses the direction from which the instances fill the picture best, and cameras on a swing around it. No two cameras are
+   equal, because the renderer would reuse the frame of a still camera. */
 static void choose_cameras(struct paper_bench *bench)
 {
     struct view_side best = { 0 };
@@ -293,7 +301,8 @@ static void run_series(struct paper_bench *bench, struct timing_series *series)
     series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
 }
 
-/* Draws one frame, however long it takes, after a small frame that uploads all data to the GPU. */
+/* Draws and measures a single frame, however long it takes. Before that, draws a small frame so that all data is uploaded to
+   the GPU. */
 static void run_one(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
@@ -305,7 +314,7 @@ static void run_one(struct paper_bench *bench, struct timing_series *series)
     series->seconds = series->time_ms[0] / 1e3;
 }
 
-/* Measures throughput: frames are submitted to the GPU before previous ones are finished. */
+/* Measures throughput: submits IN_FLIGHT frames to the GPU before the oldest of them is finished. */
 static void run_flow(struct paper_bench *bench, struct timing_series *series)
 {
     struct view view;
@@ -358,7 +367,8 @@ static void print_row(const struct paper_bench *bench, const char *name, struct 
     fflush(stdout);
 }
 
-/* Checks that a frame's cost does not grow with the number of sensors. */
+/* Prints the ratio of a frame's work with MANY_SENSORS to that with FEW_SENSORS; the goal is at most 1.05, since the work
+   should not grow with the number of sensors. */
 static void compare_sensors(struct paper_bench *bench, const struct paper_model *model, int sensors, const struct timing_series *series)
 {
     double here_ms = series->work_ms[series->frames / 2];
@@ -375,7 +385,8 @@ static void print_missing(const char *name, const char *why)
     fflush(stdout);
 }
 
-/* Measures the brute-force method, whose time grows with the number of sensors. */
+/* Measures the brute-force method, whose time grows with the number of sensors. Draws a single frame if the previous row
+   predicts more than LONGEST_BRUTE_MS. */
 static void measure_brute(struct paper_bench *bench, const char *name, int sensors, struct timing_series *series)
 {
     bool slow = bench->brute_sensors > 0 && bench->brute_ms * sensors / bench->brute_sensors > LONGEST_BRUTE_MS;
@@ -420,9 +431,11 @@ static void measure(struct paper_bench *bench, const struct paper_model *model, 
     mem_free(series);
 }
 
-struct goal { /* goals for one printed row; 0: no goal */
+struct goal { /* goals for the row with `count` instances or sensors; 0: no goal */
     int count;
-    double cpu_ms[2], gpu_ms; /* goals in milliseconds: on two cores, for each model; on a GPU, ten times as fast as in the paper */
+    /* goals in milliseconds per frame: cpu_ms on two cores for each of the first two models; gpu_ms a tenth of the paper's
+       times */
+    double cpu_ms[2], gpu_ms;
 };
 static const struct goal instance_goals[] = {
     { 1, { 7, 7 }, 100.0 / 420 }, { 5, { 0 }, 0 }, { 25, { 0 }, 0 }, { 100, { 14, 22 }, 100.0 / 140 }, { 400, { 25, 45 }, 0 }
@@ -432,7 +445,7 @@ static const struct goal sensor_goals[] = { { .count = 5 },    { .count = 10 }, 
                                             { .count = 1024 }, { .count = 4096 } };
 enum { INSTANCE_GOALS = sizeof(instance_goals) / sizeof(instance_goals[0]), SENSOR_GOALS = sizeof(sensor_goals) / sizeof(sensor_goals[0]) };
 
-/* instances, sensors: run only this row; -1: all rows, 0: none. */
+/* Measures the rows of one model. instances, sensors: measure only the row with that number; -1: all rows; 0: none. */
 static void measure_model(struct paper_bench *bench, const struct paper_model *model, bool gpu, int instances, int sensors)
 {
     for (int i = 0; i < INSTANCE_GOALS; i++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of the demo plant's frames at 1920x1080, in time and in processor work on all cores; prints one JSON line per row. */
+/* Measures frames of the demo plant at 1920x1080: elapsed time and processor time on all cores. Prints one JSON line per kind
+   of frame. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@
 
 enum { MOVING_ROUNDS = 40, STILL_ROUNDS = 8, MOST_ROUNDS = 40 };
 
-/* Prints a row. goal: largest value allowed; 0: none. */
+/* Prints the median and the 95th percentile of the values (ms). goal: largest median allowed; 0: no goal. */
 static void print_row(const char *name, double *values, int count, double goal)
 {
     qsort(values, (size_t)count, sizeof(*values), by_size);
@@ -31,7 +32,7 @@ static void print_why(const char *why)
     printf("{\"name\": \"render_moving_1080p_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s\"}\n", why);
 }
 
-/* Sets readings that vary within each group's range. */
+/* Sets every tag of a group to a different value within the group's range, with quality Good. */
 static void fill(struct snapshot *snapshot, const struct plant *plant)
 {
     snapshot->taken_mono_ns = clock_mono_ns();
@@ -72,13 +73,14 @@ static void put_on(const struct demo_scene *bench, enum dress dress, struct view
     for (int i = 0; dress == GHOSTS && i < GHOST_COUNT; i++)
         asset_set_add(&view->visibility.ghosts, i * (int)bench->scene->asset_count / GHOST_COUNT);
     view->look = dress == GLOSSY ? LOOK_GLOSSY : view->look;
-    if (dress == CUT) { /* cuts at half height, through bodies that get section caps */
+    if (dress == CUT) { /* clips everything above half the plant's height, so that cut bodies get section caps (the filled cut faces) */
         double middle_m = 0.5 * (bench->scene->bounds_min_m[2] + bench->scene->bounds_max_m[2]);
         view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 0, -1, middle_m } } };
     }
 }
 
-/* Measures the plant's own view while the camera moves slightly for each frame: frames of a still camera would only be recoloured. */
+/* Measures drawing the plant's initial view. The camera moves slightly before each frame, because a frame of a still camera
+   would only be recoloured. */
 static void measure(struct demo_scene *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
 {
     struct view view;
@@ -114,7 +116,7 @@ static void measure_all(struct demo_scene *bench, enum tier tier, int rounds)
     }
 }
 
-/* Measures a frame with a still camera after one reading changed. */
+/* Measures a frame in which the camera stands still and one reading has changed: only colours are computed again. */
 static void measure_recolour(struct demo_scene *bench)
 {
     struct view view;
@@ -125,7 +127,7 @@ static void measure_recolour(struct demo_scene *bench)
     while (tag + 1 < bench->plant->tag_count && bench->plant->tags[tag].group != view.field.group)
         tag++;
     const struct plant_group *group = &bench->plant->groups[view.field.group];
-    for (int i = -3; i < MOVING_ROUNDS; i++) { /* from the third frame on, only the recolouring is measured */
+    for (int i = -3; i < MOVING_ROUNDS; i++) { /* the first frames (i < 0) fill caches and are not measured; the others only recolour */
         bench->snapshot->readings[tag].value = group->min + (0.3 + 0.01 * (i + 3)) * (group->max - group->min);
         double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
         struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
@@ -141,7 +143,8 @@ static void measure_recolour(struct demo_scene *bench)
     print_row("recolour_cpu_ms", work_ms, MOVING_ROUNDS, 0);
 }
 
-/* Draws a refined frame in steps of 10 ms. Measures the total time and the longest step, during which other clients wait. */
+/* Draws a refined frame in steps of at most 10 ms, between which the renderer may serve other clients. Measures the total work
+   and the longest step, which is the longest time that other clients wait. */
 static void measure_steps(struct demo_scene *bench)
 {
     struct view view;
@@ -175,7 +178,8 @@ static void measure_steps(struct demo_scene *bench)
     print_row("render_still_1080p_stepped_cpu_ms", work_ms, STILL_ROUNDS, 0);
 }
 
-/* Measures recolouring with a still camera after one or all readings changed, without the time of the field itself. */
+/* Measures recolouring with a still camera after one reading, or all of them, changed. The time to interpolate the field
+   between the sensors (split_view_plan()) is not included. */
 static void measure_again(struct demo_scene *bench, enum dress dress, bool all, double goal, const char *time_name, const char *work_name)
 {
     struct view view;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of depth grids at 1920x1080: processor time and bytes, one JSON line per row. With a folder as argument, also writes pictures of
-   the demo plant from pairs of cameras, with the depth grid of the first, for reprojection.mjs. */
+/* Measures making depth grids (coarse depths sent with a picture, from which the page draws it for another camera) at
+   1920x1080: processor time and bytes, one JSON line per quantity. With a folder as argument, writes pairs of pictures of the
+   demo plant from two cameras, with the first camera's depth grid, for reprojection.mjs. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,11 +20,13 @@
 #include "value/quality.h"
 
 enum { ROUNDS = 30, PREVIEW_QUALITY = 80 };
-static const double NEARER = 0.4; /* distance of the camera from its target, as a share of the distance in the plant's first view */
+static const double NEARER = 0.4; /* distance of the camera from its target, as a share of that distance in the plant's initial view */
 
-struct pair_case { /* how the second camera of a pair differs from the first */
+struct pair_case { /* how the second camera of a pair of pictures differs from the first */
     const char *name;
-    double orbit_deg, nearer; /* nearer: fraction of the distance to its target by which the camera approaches it */
+    /* orbit_deg: turn about the vertical through the target; nearer: fraction of the distance to the target by which the camera
+       approaches it */
+    double orbit_deg, nearer;
 };
 static const struct pair_case pairs[] = { { "orbit_1", 1, 0 },    { "orbit_3", 3, 0 },    { "orbit_6", 6, 0 },
                                           { "nearer_5", 0, 0.05 }, { "nearer_10", 0, 0.1 }, { "nearer_20", 0, 0.2 } };
@@ -38,8 +41,8 @@ static void print_row(const char *name, double *values, int count, const char *u
     fflush(stdout);
 }
 
-/* Readings of neighbours differ little, as in a plant. If they differed much, dots would mark the field; they keep their place
-   on the screen and so would differ between any two pictures. */
+/* Sets readings that differ little between neighbouring sensors, as in a plant. Strong differences would be drawn as dots,
+   which stay at their place on the screen and so would differ between any two cameras. */
 static void fill(struct snapshot *snapshot, const struct plant *plant)
 {
     snapshot->taken_mono_ns = clock_mono_ns();
@@ -84,7 +87,8 @@ static double encoded_bytes(struct demo_scene *bench, struct frame *frame)
     return bytes;
 }
 
-/* Measures both steps of making a grid on one thread, from the depth buffer that the last preview left. */
+/* Measures the two steps of making a depth grid on one thread, computing its cells and coding them, from the depth buffer of
+   the last preview frame. */
 static void measure(struct demo_scene *bench, double nearer)
 {
     double cells_ms[ROUNDS], codes_ms[ROUNDS], all_ms[ROUNDS], bytes[ROUNDS], share[ROUNDS];

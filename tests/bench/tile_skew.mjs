@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the delay between two tiles of a wall, in two browsers on two screens, that show the same picture. The picture
-// encodes a number: each box, visible or hidden, is one digit, and both tiles show it. Grabs pixels from the screens instead of
-// asking the programs.
+// Measures how much later one tile of a wall shows a picture than another tile, in two browsers on two X screens. The picture
+// shows a number: each box is one binary digit, visible or hidden, and both tiles show all digits. The test grabs the pixels of
+// both screens, so it does not rely on what the programs report.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -51,7 +51,8 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Opens the session that leads the wall: its camera faces the row of boxes, and its parameters hide some of them.
+// Opens the session that leads the wall. Its camera faces the row of boxes, and client.tell(number) hides the boxes whose
+// digits are 0 or 1 in Gray code.
 async function driver() {
     const client = await PlainClient.open(plant.port);
     await client.hello({ width: WIDTH, height: HEIGHT, codecs: ['jpeg'], tile: { wall: 'wall', display: 1 } });
@@ -62,7 +63,8 @@ async function driver() {
     client.seq = 0;
     ending.push(() => client.close());
     client.tell = (number) => {
-        // Gray code: neighbouring numbers differ in one digit, so a mixture of two frames never reads as a third number
+        // Gray code: consecutive numbers differ in one digit only, so a screen grabbed while it changes shows one of the two
+        // numbers and no third
         const gray = number ^ (number >> 1);
         client.say({ type: 'params', seq: ++client.seq, look: 'materials',
             hidden: boxes.filter((_, i) => gray >> (i % BITS) & 1).map(({ id }) => id) });
@@ -71,7 +73,8 @@ async function driver() {
     return client;
 }
 
-// Returns the colours of the pixels at the digits on one screen. area: the frame's rectangle on the screen.
+// Returns the green values of the pixels at the digits' places on one screen. side: 0 left, 1 right tile; area: the tile's
+// rectangle on its screen.
 function digits(screen, side, area) {
     const { at } = screen.grab();
     return PLACES_M.map((m) => {
@@ -91,7 +94,8 @@ function reader(shown, hidden) {
     };
 }
 
-// Shows five numbers per second. Returns, per screen, the milliseconds at which each number was first visible.
+// Shows a new number every CHANGE_MS. Returns for each of the two screens a list { value, at }: the numbers seen and the time
+// in ms at which each was first seen.
 async function watch(name, client, areas, seconds) {
     const settle = async (number) => {
         client.tell(number);
@@ -99,7 +103,8 @@ async function watch(name, client, areas, seconds) {
         return areas.map((area, side) => digits(screens[side], side, area));
     };
     const differ = (one, other) => one.every((lights, side) => lights.every((light, i) => Math.abs(light - other[side][i]) > 10));
-    let shown = await settle(0), hidden = await settle(0b10101); // 0b10101 in Gray code sets every digit
+    // 0b10101 in Gray code is 0b11111: every box is hidden, while 0 hides none
+    let shown = await settle(0), hidden = await settle(0b10101);
     for (const end = performance.now() + 60000; !differ(shown, hidden); hidden = await settle(0b10101)) {
         assert.ok(client.leads(), 'it leads no more: this machine is too busy to say how far apart tiles are');
         assert.ok(performance.now() < end, `no digits to be read: ${JSON.stringify([shown, hidden])}`);
@@ -125,7 +130,7 @@ async function watch(name, client, areas, seconds) {
     return seen;
 }
 
-// Returns the delays between the two screens for numbers that both showed.
+// Returns, in ascending order, the times in ms between the appearance of each number on one screen and on the other.
 function skews([left, right]) {
     const out = [];
     for (const { value, at } of left) {
@@ -146,7 +151,7 @@ function judge(name, seen, seconds) {
 }
 
 test('two browsers, one with a clock that is 5 s off', options, async () => {
-    // browsers start first, so that the leader does not wait for them
+    // the browsers start before the leading session, so that the leader need not wait for tiles that are still starting
     const url = `http://127.0.0.1:${plant.port}/wall.html?wall=wall&display=`;
     const open = await Promise.all(screens.map((screen, i) => browserOn(screen.name, 'about:blank', WIDTH, HEIGHT, i ? CLOCK_MS : 0)));
     ending.push(...open.map(({ close }) => close));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `step_samples FOLDER` writes test files: a skid with two pumps and six bolts, as STEP in three schemas and as IGES, in millimetres,
-   inches and metres. */
+/* `step_samples FOLDER` writes CAD files for tests: the same skid (a plate with two pumps and six bolts) as STEP in three
+   schemas and as IGES, in millimetres, inches and metres. */
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepToIGES_BREntity.hxx>
@@ -89,7 +89,8 @@ bool write_step(const Handle(TDocStd_Document) & document, const std::string &pa
     return writer.Transfer(document, STEPControl_AsIs) && writer.Write(path.c_str()) == IFSelect_RetDone;
 }
 
-/* --- IGES: Open CASCADE's writer keeps no tree, so it is made entity by entity -------------------------------------------------------- */
+/* --- IGES: Open CASCADE's writer loses the tree of assemblies, so this code makes each IGES entity itself
+   ----------------------------- */
 
 using entity = Handle(IGESData_IGESEntity);
 
@@ -135,7 +136,7 @@ struct iges_drawing {
         out->Init(of, gp_XYZ(x, y, z) / unit_mm, scale != 1, scale);
         return named(out, text);
     }
-    /* Returns the entity rotated so that its axis lies along x, with its foot at (x, y). */
+    /* Returns the entity with a transformation that lays its vertical axis along x and puts its origin at (x, y). */
     entity turned(const entity &what, double x, double y)
     {
         Handle(IGESGeom_TransformationMatrix) matrix = new IGESGeom_TransformationMatrix;
@@ -153,7 +154,8 @@ struct iges_drawing {
         what->InitColor(color);
         return what;
     }
-    /* IGES groups have no colour, so each surface gets one. */
+    /* Returns the faces of a shape as coloured IGES surfaces. Each surface has its own colour, because IGES groups have none.
+       */
     std::vector<entity> sides(const TopoDS_Shape &of, double red, double green, double blue)
     {
         std::vector<entity> out;
@@ -163,7 +165,8 @@ struct iges_drawing {
     }
 };
 
-/* Writes the same skid as IGES; the first side of each motor is blue. One casing is rotated, and one bolt is four times as large. */
+/* Writes the skid as IGES; in each motor one face is blue, the others are green. In addition to the STEP files, it contains a
+   casing laid on its side ("Turned") and a bolt enlarged four times. */
 bool write_iges(const std::string &path, const char *unit, double unit_mm)
 {
     iges_drawing d(unit, unit_mm);
@@ -187,7 +190,8 @@ bool write_iges(const std::string &path, const char *unit, double unit_mm)
     return d.writer.Write(path.c_str());
 }
 
-/* Writes ungrouped surfaces, three on level 1 and three on level 2, as many CAD systems export them. */
+/* Writes the six faces of a box as separate surfaces without a group, three on IGES level 1 and three on level 2, as many CAD
+   systems export bodies. */
 bool write_loose(const std::string &path)
 {
     iges_drawing d("MM", 1);

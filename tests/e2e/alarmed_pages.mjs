@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of the page in one browser, on one plant with an alarm: everything that every user can see and open.
+// Tests of the page in one browser, on one plant with an active alarm: the parts that users of every role can see and open.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first group of tests
+// imported by this file, so that the browser is closed after the last group of tests and not after the first
+import './support/browser.mjs';
 import './alarmed_pages/alarmed.mjs';
 
 describe('alarmed_pages', { concurrency: 2 }, () => {

@@ -18,7 +18,8 @@ const skip = notBuilt();
 let plant, trail, tokens, syslog;
 
 const path = (name) => join(plant.folder, name);
-// The complete lines of the trail; the daemon may just be writing another one.
+// Returns the parsed complete lines of the audit trail. The text after the last line break is ignored, because the daemon may
+// be writing a line at this moment.
 const lines = () => readFileSync(trail, 'utf8').split('\n').slice(0, -1).map((line) => JSON.parse(line));
 const verify = (...args) => runProgram('plantcast', ['audit', 'verify', trail, ...args]);
 const bearer = (token) => `Authorization: Bearer ${token}\r\n`;
@@ -28,8 +29,9 @@ async function found(what, where) {
     return await until(`${what} in the trail`, () => lines().find(where), 90, () => readFileSync(trail, 'utf8'));
 }
 
-// A server that parses RFC 5425 (messages preceded by their length). requestCert true: it requires a client certificate. closes
-// true: it closes each connection after the handshake, like a server that rejects the certificate's name.
+// A syslog server that parses RFC 5425, in which each message is preceded by its length. requestCert true: it requires a client
+// certificate. closes true: it closes each connection after the handshake, like a server that rejects the name in the client's
+// certificate.
 class SyslogServer {
     constructor(key, cert, { requestCert = true, closes = false } = {}) {
         this.messages = [];
@@ -76,7 +78,8 @@ function starts() {
         return 0;
     }
 }
-// Starts the daemon and waits until its start is in the trail, which may be later than the daemon is ready.
+// Restarts the daemon and waits until its start is recorded in the audit trail, which can happen after the daemon reports that
+// it is ready.
 async function start(...args) {
     await plant.daemon?.stop();
     const count = starts();
@@ -84,9 +87,10 @@ async function start(...args) {
     await until('the start in the trail', () => starts() > count);
 }
 
-// Waits until the trail verifies: the daemon may just be writing a line, or removing one that did not fit on the disk.
+// Waits until `plantcast audit verify` accepts the trail. It may fail for a moment, while the daemon writes a line or removes a
+// line that did not fit on the disk.
 const whole = () => until('a good trail', () => verify().code === 0, 90, () => verify().err);
-// Waits for the metric, which follows a line of the log.
+// Waits until the metric plantcast_audit_good has this value; the daemon sets it after it has logged the failure or recovery.
 const isGood = (value) => until(`plantcast_audit_good ${value}`, async () =>
     new RegExp(`^plantcast_audit_good ${value}$`, 'm').test((await ask('/metrics', tokens.viewer)).body.toString()));
 
@@ -179,8 +183,8 @@ test('a note can be changed by its author, and ended by the author or an enginee
 
 test('each file and each command of an import is recorded, with its user and its outcome', { skip, timeout: 120000 }, async () => {
     await start('--import');
-    // opens a connection per request, because the server may close one whose upload it refuses while the next request is being
-    // sent on it
+    // Opens a new connection for each request. The server may close a connection whose upload it refused, which would break the
+    // next request on the same connection.
     const post = (what, token, body, headers = {}) => fetch(`http://127.0.0.1:${plant.port}/api/v1/import${what}`,
         { method: 'POST', body, headers: { Authorization: `Bearer ${token}`, Connection: 'close', ...headers } });
     const since = lines().at(-1).seq, { engineer, operator } = tokens;
@@ -251,8 +255,8 @@ test('thousands of wrong tokens make few lines in the trail, and other clients g
     await found('the slowing', (line) => /delayed/.test(line.why ?? ''));
     const held = await found('unchecked ones', (line) => /tokens from rate-limited addresses were refused unchecked/.test(line.what ?? ''));
     assert.equal(held.result, 'refused');
-    // Ten failures and the other client's login; after that one token is checked every 5 s, and a summary is written every
-    // minute.
+    // Expected lines: ten failed logins of the attacking address and one login of the other client. Then the daemon checks one
+    // token every 5 s and writes one summary per minute.
     const { length: count } = lines().slice(before_).filter(({ event }) => event === 'login');
     const seconds = (performance.now() - since) / 1000, most = 12 + seconds / 5 + seconds / 60;
     assert.ok(count <= most, `${count} lines in the trail in ${seconds} s`);
@@ -320,7 +324,8 @@ test('a small full disk raises an alarm, no line on it is torn, and a read-only 
     trail = join(small, 'audit.log');
     await start();
     assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${full}`]).status, 0);
-    // Sends wrong tokens until the audit log fails: the disk is full, but the file's last page still has room for some lines.
+    // Sends wrong tokens, each of which adds a line to the trail, until writing fails. The first lines may still fit into the
+    // last disk block of the file, although the disk is full.
     for (let i = 0; i < 60 && await good() === '1'; i++, await sleep(20))
         await ask('/api/v1/tags', 'pc_wrong', { localAddress: `127.0.2.${i + 1}` });
     await plant.daemon.line(/audit: .*audit\.log cannot be written \(No space left on device/);
@@ -347,13 +352,14 @@ test('a full trail file is renamed, and a new one begins', { skip }, async () =>
     await start('--audit-size', '1');
     await until('the new file', () => readdirSync(plant.folder).some((name) => /^full\.log\.\d{12}$/.test(name)));
     await plant.daemon.stop();
-    assert.equal(lines()[0].event, 'audit'); // the line that reports that the full file's last line is not a line of an audit trail
+    // the first line of the new file reports that the last line of the full file was not a line of an audit trail
+    assert.equal(lines()[0].event, 'audit');
     trail = usual;
 });
 
 test('syslog over TLS: each line is valid RFC 5424, lines survive an outage, and an untrusted server gets none', { skip }, async () => {
     const key = readFileSync(path('log.key')), cert = readFileSync(path('log.pem'));
-    const port = await freePort(); // a port that no other program gets while no syslog server listens
+    const port = await freePort(); // port that no other program takes while the syslog server is stopped during this test
     syslog = new SyslogServer(key, cert);
     await syslog.listen(port);
     await start('--audit-syslog', `localhost:${port}`, '--audit-ca', path('log.pem'), '--audit-cert', path('log.pem'),
@@ -377,7 +383,8 @@ test('syslog over TLS: each line is valid RFC 5424, lines survive an outage, and
     assert.match(wrong.err, /needs --audit/);
 });
 
-// With TLS 1.3, the client's handshake succeeds before the server has checked the client's certificate.
+// A server that rejects the daemon's certificate. With TLS 1.3, the daemon's handshake succeeds before the server has checked
+// that certificate, so the daemon learns of the rejection later: by an alert, or because the connection is closed.
 for (const [how, options, reason] of [['by an alert', {}, 'alert certificate required'],
     ['by closing', { requestCert: false, closes: true }, '(closed|reset)']])
     test(`a syslog server that refuses our certificate after the handshake, ${how}, loses no line`, { skip }, async () => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast backup NAME` while the service's daemon runs, and `plantcast restore` on a bare host: the same server and the same
-// picture.
+// `plantcast backup NAME` while the service's daemon runs, then `plantcast restore` on a host without Plantcast data: the
+// restored files and the drawn picture equal those of the first host.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -41,18 +41,21 @@ async function serve(root) {
 async function stop() {
     if (daemon && daemon.exitCode === null) {
         const inner = readFileSync(`/proc/${daemon.pid}/task/${daemon.pid}/children`, 'utf8').trim().split(' ')[0];
-        process.kill(Number(inner), 'SIGTERM'); // unshare passes no signal on, so the daemon itself is signalled
+        // the daemon is a child of unshare, which does not pass on signals, so the test signals the daemon itself
+        process.kill(Number(inner), 'SIGTERM');
         await daemon.ended;
     }
 }
-// Draws the readings recorded for an instant through the daemon, with a token of the tokens file.
+// Returns a picture (PNG bytes) of the readings recorded for one instant, drawn by the running daemon; authenticates with the
+// viewer token.
 function draw(root) {
     root.write('/tmp/token', tokens.viewer, 0o600);
     ok(root.run(`plantcast snapshot https://localhost:${port}/ --ca ${ETC}/tls/fullchain.pem --token-file /tmp/token ` +
         `--at ${BEGIN_S + 3000} ` + '--size 320x200 -o /tmp/picture.png; chmod 644 /tmp/picture.png'));
     return readFileSync(root.path('tmp/picture.png'));
 }
-// All files that the service needs, with owner, mode, and size or content.
+// Returns a sorted list of the files and folders that the service needs, with owner, group, mode, and size and checksum;
+// history, prepared files and audit logs are left out.
 const listing = (root) => ok(root.run(`find ${ETC} /etc/plantcast/mail.password ${STATE} -path ${STATE}/history -prune -o ` +
     `-path ${STATE}/prepared -prune -o ! -name 'audit.log*' -printf '%p %U %u %g %m ' ` +
     "! -type d -exec sha256sum {} ';' -o -type d -printf '\\n'"))
@@ -99,7 +102,7 @@ test('backup refuses to run without a choice for the keys, or without an instanc
 });
 
 test('a backup of a running daemon contains everything, and its keys only encrypted', options, () => {
-    // runs the backup with only the capabilities that the nightly systemd unit leaves it
+    // runs the backup with only those capabilities that the systemd unit of the nightly backup grants
     const [, unit] = readFileSync('deploy/systemd/plantcast-backup@.service', 'utf8').match(/^CapabilityBoundingSet=(.*)$/m);
     const set = unit.split(' ').map((name) => name.replace('CAP_', '+').toLowerCase());
     const { code, err, out } = first.run(`setpriv --no-new-privs --bounding-set=-all,${set.join(',')} ` +
@@ -117,7 +120,8 @@ test('a backup of a running daemon contains everything, and its keys only encryp
 });
 
 test('commands find a service\'s history from the path of its plant file', options, () => {
-    ok(first.run(`cd ${ETC} && plantcast backup plant.yaml -o /root/plain`)); // the plant file is named by a relative path
+    // the command gets the plant file as a relative path; the backup must contain the history all the same
+    ok(first.run(`cd ${ETC} && plantcast backup plant.yaml -o /root/plain`));
     assert.ok(readdirSync(first.path('root/plain')).some((name) => /^history-.*sqlite$/.test(name)));
     for (const path of [`${ETC}/plant.yaml`, 'plant.yaml', '../p1/plant.yaml']) {
         const other = new BareRoot(folder);
@@ -135,7 +139,8 @@ test('one restore command on a bare host gives the same server', options, async 
     const second = new BareRoot(folder);
     cpSync(join(folder, 'backup'), second.path('root/backup'), { recursive: true });
     second.write('/root/key', readFileSync(first.path('root/key')), 0o600);
-    second.run('useradd --system other'); // gives the user plantcast another number here than on the first machine
+    // adds another user first, so that the user plantcast gets a user ID here that differs from that of the first host
+    second.run('useradd --system other');
     const { code, err, out } = second.run('plantcast restore /root/backup --identity /root/key');
     assert.equal(code, 0, err);
     assert.doesNotMatch(out, /missing/);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command line as a client: many commands at once over https, and through a proxy that serves the daemon under a path.
+// The command line as a client of the daemon: many commands at once over https, and through a proxy that serves the daemon
+// below a path.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -91,7 +92,7 @@ test('snapshot --view accepts views of the plant file and of the page, by id or 
         const tokens = join(plant.folder, 'view_tokens'), token = (name) => join(plant.folder, `${name}.token`);
         for (const [name, ...more] of [['all', '--role', 'operator'], ['some', '--role', 'viewer', '--views', 'boxes']])
             writeFileSync(token(name), (await run('token', 'add', tokens, '--name', name, ...more)).out);
-        appendFileSync(plant.file, // only engineers may set the power
+        appendFileSync(plant.file, // The view sets `power`, which only engineers may set themselves.
             'views: [{ id: boxes, title: Both boxes, view: "group=temperature&power=3&camera=0,-8,0,0,0,0,0,0,1,30" }]\n');
         await plant.startDaemon('--tokens', tokens);
         const bearer = `Authorization: Bearer ${readFileSync(token('all'), 'utf8').trim()}`;

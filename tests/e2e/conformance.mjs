@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PROTOCOL.md checked sentence by sentence against a real daemon, with a client written from that page alone
-// (support/plain_client.mjs). daemon.mjs tests the answers to fits, picks and errors.
+// Checks each statement of PROTOCOL.md against a real daemon, with a client written from that page alone
+// (support/plain_client.mjs). The answers to fits, picks and errors are tested in daemon.mjs.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { FLAG, get, http, PlainClient } from './support/plain_client.mjs';
@@ -86,7 +86,7 @@ test('pictures are complete, in order and of the requested size, and state their
     const still = await client.frameWhere('refined', (p) => p.camera_seq === 1 && p.flags & FLAG.still);
     assert.deepEqual([still.full_width, still.full_height], [320, 180]);
     let last = 0, isPart = false;
-    // the parts of a picture are frames with the same seq
+    // frames with equal seq are parts of one picture; otherwise seq must increase
     for (const { seq, flags, x, y, width, height, full_width, full_height, payload } of client.frames) {
         assert.ok(seq > last || (isPart && seq === last), 'seq increases');
         [last, isPart] = [seq, Boolean(flags & FLAG.more)];
@@ -107,7 +107,7 @@ test('pictures echo the parameters, sizes and projections that they show', { ski
     const { seq, group, ramp_interval: ramp, range, distance, unit } = await client.text('params');
     assert.deepEqual([seq, group, ramp, range, distance, unit], [5, 'pressure', 2, [0, 8], 'euclidean', 'bar']);
     const shown = await client.frameWhere('parameters 5', (p) => p.params_seq === 5);
-    // markers are sent only when they change
+    // takes the last `markers` message before the frame, because the server sends markers only when they change
     const markers = client.texts.findLast((m) => m.type === 'markers' && m.markers && m.seq <= shown.seq);
     assert.deepEqual(markers?.markers.map(([tag]) => tag), [2], 'markers are sent before their frame');
     client.say({ type: 'resize', width: 200, height: 120, pixel_ratio: 2 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One daemon reads the devices and two others draw: readings, alarms and operators' actions are passed between them, and the
-// loss of the core is reported.
+// One daemon (the core) reads the devices, and two others (renderers) draw: readings, alarms and operators' actions are passed
+// between the daemons, and the renderers report the loss of the core.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -42,7 +42,7 @@ test('renderers show the core\'s values, qualities and source times; the device 
     await all(async (node) => (await node.tags())['PI-1'].quality_name === bad);
     await nodes.plant.tell('release PI-1');
     await all(async (node) => (await node.tags())['PI-1'].quality_name === 'Good');
-    await sleep(2000); // waits longer than a reading may be old
+    await sleep(2000); // waits longer than the age at which a reading becomes stale; unchanged readings must stay Good
     await until('a steady value that is not stale', async () => (await a.tags())['TI-2'].quality_name === 'Good');
     await nodes.onePoller();
     await until('two renderers', async () => await core.metric('plantcast_renderers') === 2);
@@ -50,7 +50,7 @@ test('renderers show the core\'s values, qualities and source times; the device 
 
 test('two renderers draw byte-identical pictures of one view', options, async () => {
     const picture = async (node) => Buffer.from(await (await node.fetch('/snapshot.png?width=240&height=160&fit=E-101')).arrayBuffer());
-    // a reading may be older at one node for a moment
+    // the comparison is repeated, because for a moment one daemon may still draw an older reading
     await until('equal pictures', async () => {
         const [one, two, three] = await Promise.all([core, a, b].map(picture));
         assert.equal(one.subarray(1, 4).toString(), 'PNG');
@@ -77,7 +77,8 @@ test('an acknowledgement at one renderer is done by the core with the user\'s na
     await shelve(3, 3600);
     await all(async (node) => (await alarm(node, 'shelved'))?.reason === 'is looked at');
     await shelve(4, 1);
-    await all(async (node) => !await alarm(node, 'shelved')); // when the shelving time is over, the core tells the renderers
+    // once the shelving time of 1 s is over, the core tells the renderers that the alarm is no longer shelved
+    await all(async (node) => !await alarm(node, 'shelved'));
     const { rows } = await (await core.fetch('/api/v1/alarms/journal')).json();
     assert.deepEqual([...new Set(rows.filter(({ who }) => who === 'anna').map(({ event }) => event))].sort(), ['acknowledge', 'shelve']);
     anna.close();
@@ -193,7 +194,7 @@ test('a core of another version or plant with the same tags is named by both nod
         await renderer.ready();
         await renderer.program.line(new RegExp(`no readings: .*${ours}`));
         await until('its refusal', () => core.program.said.includes(`renderer ${name}: refused: ${theirs}`));
-        await sleep(2500); // waits until the peer has retried several times
+        await sleep(2500); // waits until the refused renderer has tried to connect several times
         assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'the refusal is logged once');
         assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
         assert.equal(await renderer.metric(`plantcast_core_up{core="${core.url}"}`), 0);
@@ -224,7 +225,9 @@ test('an action that the core cannot parse does not end the link; revoking the r
     const point = (more) => `{"type":"point","wall":"w","display":1,"x":${more}}`;
     client.say(point('['.repeat(2040) + ']'.repeat(2040)));
     client.say(point(`[${Array(14000).fill('1.1').join()}]`));
-    client.say({ type: 'note', seq: 1, text: 'sent after them', asset: 'E-101' }); // the core answers in the order of what it receives
+    // The core answers messages in the order in which it receives them, so the answer to this one shows that it has processed
+    // those above.
+    client.say({ type: 'note', seq: 1, text: 'sent after them', asset: 'E-101' });
     await client.text('noted');
     assert.equal(await a.metric('plantcast_core_connects_total'), connects);
     await until('good readings', async () => (await a.tags())['TI-1'].quality_name === 'Good');

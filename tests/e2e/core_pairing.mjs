@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that connects to a renderer: the core shows its digits and admits it. Later the renderer admits it even while the
-// core is away.
+// Pairing of a display that connects to a renderer: the core shows its digits and admits the display. Afterwards, the renderer
+// admits it even while the core cannot be reached.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

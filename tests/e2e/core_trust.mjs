@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core does for a renderer only what its own check of the user allows. The tests send messages to /core as a renderer would,
-// with a renderer's token.
+// The core checks the user itself before it does what a renderer requests, so that a renderer under an attacker's control gains
+// no rights. The tests send messages to /core with a renderer's token.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -59,7 +59,8 @@ async function open(token = nodes.tokens.renderer) {
     return client;
 }
 
-// Returns version, plant and configuration from the core's message, which every renderer knows.
+// Returns the version, plant name and configuration that a renderer must send. Any renderer can learn them: from the programs
+// and from the core's message.
 async function learnIdentity() {
     const client = await open(), [, version] = /plantcastd (\S+)/.exec(runProgram('plantcastd', ['--version']).out);
     const configuration = /configuration ([0-9a-f]{16})/.exec(core.program.said)[1];

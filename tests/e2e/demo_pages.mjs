@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of the page on one demo plant, in one browser: starting a demo daemon takes two seconds of processor time. They run one
-// after another; each freezes the plant's readings and releases them.
+// Tests of the page on one demo plant in one browser; they share the plant, because starting its daemon takes two seconds of
+// processor time. The groups run one after another; each freezes the plant's readings and releases them at its end.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first group of tests
+// imported by this file, so that the browser is closed after the last group of tests and not after the first
+import './support/browser.mjs';
 import './demo_pages/demo.mjs';
 
 for (const subject of ['screens', 'views', 'codecs', 'rings'])

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names and units in other systems' text encodings: every format that import and match read, in each encoding. Prints a table
-// of how many are right.
+// Names and units in the text encodings of other systems: each file format that `plantcast import` and `plantcast match` read,
+// in each encoding. Prints a table of how many names and units were decoded correctly.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -17,7 +17,8 @@ const SAMPLES = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/cad/st
 const FOUND = join(DATA, 'found');
 const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
 
-// Two names and a unit per encoding. node can write none of these encodings, iconv can write them all.
+// By encoding: its name for iconv, two names and a unit. iconv encodes the texts, because node can write none of these
+// encodings.
 const ENCODINGS = {
     'UTF-8': ['UTF-8', '离心泵', '储罐 V-201', '℃'],
     GB18030: ['GB18030', '离心泵', '储罐 V-201', '℃'],
@@ -54,7 +55,8 @@ Objects:  {\n${[a, b].map((name, i) => `\tGeometry: 100${i}, "Geometry::g", "Mes
 \tModel: 200${i}, "Model::${name}", "Mesh" {\n\t\tVersion: 232\n\t}\n`).join('')}}
 Connections:  {\n${[0, 1].map((i) => `\tC: "OO",200${i},0\n\tC: "OO",100${i},200${i}\n`).join('')}}\n`;
 
-// A file of Open CASCADE, with other names. IGES strings begin with their length.
+// Returns a CAD file that Open CASCADE wrote (step_samples); the tests replace its names. In IGES, each string is preceded by
+// its length, which must be replaced as well.
 let samples = null;
 const sample = (name) => {
     if (!samples) {
@@ -113,7 +115,7 @@ const FORMATS = {
         encode(ifc('IFC4', ['pump 1', 'pump 2']).replace("'pump 1'", `'${a}'`).replace("'pump 2'", `'${b}'`), iconv) },
     obj: { needs: 'plantcast-import-assimp', make: (a, b, iconv) => encode(obj(a, b), iconv) },
     dae: { needs: 'plantcast-import-assimp', make: (a, b, iconv) => encode(dae(a, b, iconv), iconv) },
-    // A blank ends a name of an STL file.
+    // replaces blanks in the name, because a name in an STL file ends at the first blank
     stl: { needs: 'plantcast-import-assimp', make: (a, b, iconv) => encode(stl(a, b.replaceAll(' ', '-')), iconv) },
     fbx: { needs: 'plantcast-import-assimp', make: (a, b, iconv) => encode(fbx(a, b), iconv) },
 };

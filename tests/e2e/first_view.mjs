@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first view of a plant whose file defines no views: the plant fills the picture, and no part of it lies under a legend.
+// The first view of a plant whose file defines no views: the plant fills the picture, and the legends cover no part of the
+// plant.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -60,7 +61,7 @@ for (const [name, screen] of Object.entries(SCREENS))
         }
     });
 
-// A box at the origin of a plant that lies at survey coordinates; some models contain one.
+// The plant lies at survey coordinates (far from the origin), except for one box at the origin, as some CAD models contain.
 test('a notice names assets far outside the first view, and its button shows everything', options, async () => {
     const far = await TinyPlant.create(), at = [260978, 7007098, 12];
     const text = readFileSync(far.file, 'utf8').replace('model: box.gltf,', `model: box.gltf, placement: { translate: [${at}] },`)

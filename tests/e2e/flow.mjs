@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many clients at once, well-behaved and bad ones: what each costs the server and the other clients. SOAK_S=1800 makes it a
-// long run.
+// Many clients at once, well-behaved and misbehaving: measures what each costs the server and the other clients. SOAK_S sets
+// the duration in seconds, such as 1800 for a long run.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { camera, median, metrics, Mover, openFiles, openMany, residentKb, sanitized, sleep } from './support/crowd.mjs';
@@ -34,7 +34,7 @@ test('a hundred viewers of one view cost one render, one encode and a hundred se
         client.say({ type: 'follow', session });
     await Promise.all(all.map((c) => c.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
     const mover = new Mover(leader, 20);
-    await sleep(4000); // waits until all clients have the best quality
+    await sleep(4000); // the camera moves until the server sends the best quality to all clients, so that they can share pictures
     mover.stop();
     await sleep(500);
     const start = await metrics(plant.port, ...names);
@@ -49,7 +49,8 @@ test('a hundred viewers of one view cost one render, one encode and a hundred se
         `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`);
 });
 
-// Waits until the daemon's memory stops growing; caches for a picture size do not count as a client's memory.
+// Waits until the daemon's memory stops growing and returns it in kB. By then, caches that depend on the picture size are
+// filled, so they are not counted as memory of a client.
 async function standsStillKb() {
     let kb = residentKb(pid), same = 0;
     for (let i = 0; i < 40 && same < 4; i++) {
@@ -80,7 +81,9 @@ test('fifty clients that read nothing cost next to nothing', { skip }, async () 
     }
     const moreKb = residentKb(pid) - beforeKb;
     console.log(`# ${STALLED} stalled clients: ${moreKb} kB more`);
-    const picturesKb = 3 * 1280 * 720 * 4 / 1024; // size of the pictures in flight at that moment: two being drawn, one being encoded
+    // kB of uncompressed pictures that the daemon may hold at the time of the measurement: two being drawn and one being
+    // encoded
+    const picturesKb = 3 * 1280 * 720 * 4 / 1024;
     assert.ok(sanitized || moreKb <= 5 * 1024 + picturesKb, `the daemon grew by ${moreKb} kB`);
 });
 
@@ -96,7 +99,8 @@ test('over 1 Mbit/s and 200 ms, a picture is never more than a second old, and a
         for (const one of [fast, slow, relay])
             one.close();
     });
-    // Measures both rates in turn: a delay that the fast client sees as well is not caused by the slow link.
+    // Measures the fast client's frame rate alone and next to the slow client, three times in turn. Subtracts the fast client's
+    // largest delay from the slow one's, because delays that both have come from the busy machine and not from the slow link.
     for (let round = 0, frames = 0; round < 3; round++) {
         await sleep(500);
         const alone = await mover.rate(1000), slowMover = new Mover(slow, 30, frames), begin = performance.now();
@@ -124,7 +128,8 @@ test('a client that reads nothing for 15 s is disconnected, and its connection c
         client.close();
 });
 
-// A random client that connects, drags, hides its page, stops reading, and is cut off.
+// Until the time `end`, opens one client after another that acts at random: it drags the camera, hides its page, stops reading,
+// or is cut off.
 async function wander(port, random, end) {
     while (performance.now() < end) {
         const client = await PlainClient.open(port).catch(() => null);
@@ -148,9 +153,9 @@ async function wander(port, random, end) {
     }
 }
 
-// Returns the files that the daemon has open for clients. SQLite keeps the descriptor of a closed month file while another
-// handle of it is open, and reuses it. There are thus as many such descriptors as handles were ever open at once, and some may
-// appear late.
+// Returns the files that the daemon has open, without those of the history, which may be at most MOST_OF_HISTORY. SQLite does not
+// close the descriptor of a month file while another handle of the file is open, but reuses it later. So the number of these
+// descriptors depends on how many handles were ever open at once, and it may still grow.
 const MOST_OF_HISTORY = 10;
 function openForClients() {
     const all = openFiles(pid), others = all.filter((name) => !name.includes('.history/'));
@@ -187,7 +192,8 @@ test(`after ${SOAK_S} s of random connects, drags, stalls and cuts, no resource 
     assert.ok(late < 1.5 * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
     assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
     const patience = performance.now() + 180000;
-    for (; openForClients().length > filesBefore.length; await sleep(250)) // files opened for the last clients may close later
+    // the daemon may close files of the last clients some time after the clients have left
+    for (; openForClients().length > filesBefore.length; await sleep(250))
         assert.ok(performance.now() < patience,
             `files are still open:\n${openForClients().join('\n')}\nbefore:\n${filesBefore.join('\n')}`);
     assert.equal(steady.closed.code, 1000);

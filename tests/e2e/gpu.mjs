@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The GPU is reset, and its memory runs out, while sessions are connected: a preloaded library destroys the daemon's context or
-// refuses allocations. Each test runs once as on a GPU, where GL draws everything, and once as without one.
+// The GPU is reset, or its memory runs out, while sessions are connected: a preloaded library destroys the daemon's GL context
+// or refuses allocations. Each test runs twice: as on a host with a GPU, where GL draws everything, and as on a host without
+// one.
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
@@ -47,7 +48,8 @@ function aim(client, eye) {
     return client.seq;
 }
 
-// Sets TI-1. Returns the time from which frames show the value.
+// Sets TI-1 and waits until the daemon has read the value. Returns the UTC time in microseconds of that reading, so that frames
+// of this time or later show the value.
 async function setWarm(plant, value) {
     await plant.tell(`set TI-1 ${value}`);
     return until(`${value} to be read`, async () => {
@@ -57,7 +59,8 @@ async function setWarm(plant, value) {
     });
 }
 
-// Waits for each client's refined picture from another side, with readings newer than sinceUs.
+// Moves each client's camera to its own side of the plant and waits for the refined picture with readings newer than sinceUs.
+// Returns the digests of the pictures.
 async function rest(clients, sinceUs) {
     const pictures = await Promise.all(clients.map((client, i) => {
         const seq = aim(client, i);
@@ -69,7 +72,8 @@ async function rest(clients, sinceUs) {
     return pictures.map(digest);
 }
 
-// Moves the camera until told to stop, then returns the received pictures as [camera, bytes].
+// Moves the client's camera around the plant until stop() is called, which returns the received pictures as [index of the
+// camera position, size in bytes].
 function move(client) {
     const seen = [];
     let stopped = false;
@@ -85,11 +89,12 @@ function move(client) {
     return { count: () => seen.length, stop: async () => { stopped = true; await done; return seen; } };
 }
 
-// Counts pictures whose size in bytes differs from all earlier ones of the same camera. An empty picture has half the size.
+// Counts pictures in `seen` whose size in bytes differs by 4 % or more from every picture in `known` of the same camera
+// position. A wrongly empty picture would have half the usual size.
 const strange = (seen, known) =>
     seen.filter(([eye, bytes]) => !known.some(([other, usual]) => other === eye && Math.abs(bytes / usual - 1) < 0.04)).length;
 
-// The variant "as on a GPU" takes most of a minute, so only make test-long runs it.
+// Each test runs in two variants. The variant "as on a GPU" takes most of a minute, so only `make test-long` runs it.
 for (const hardware of [true, false]) {
     const where = hardware ? 'as on a GPU' : 'without a GPU', options = { skip: skip || (hardware && long) };
     test(`a GL context that is lost ${LOSSES} times under load is recreated each time, ${where}`, options, async () => {
@@ -127,7 +132,9 @@ for (const hardware of [true, false]) {
         }
         const grown = residentBytes(plant) - before;
         console.log(`# ${where}: resident ${(grown / 1e6).toFixed(1)} MB more, ${strangers} of ${moved} moving pictures strange`);
-        if (!long) // on a loaded machine, moving pictures have another JPEG quality and thus another size
+        // skipped in long runs: on a loaded machine the daemon lowers the JPEG quality of moving pictures, which changes their
+        // sizes
+        if (!long)
             assert.ok(strangers < 0.2 * moved, `${strangers} of ${moved} pictures for moving clients equal no earlier picture`);
         assert.equal(faults.get('lost'), LOSSES);
         assert.equal(await plant.metric('plantcast_gl_losses_total'), LOSSES);
@@ -142,7 +149,8 @@ for (const hardware of [true, false]) {
     });
 }
 
-// Parameters with different fields, colours, isolines, lights and sizes, each of which needs its own GPU memory.
+// Parameters that the client requests in turn. Each needs GPU memory of its own, for fields, colours, isolines, lights or a
+// picture size.
 const WISHES = [
     { isolines: 10 }, { light: [0.3, 0.5, 0.8] }, { ghost: ['P-101A'] }, { selected: 'E-101' }, { colormap: 'turbo' },
     { clip: { planes: [[1, 0, 0, 0.1]] } }, { split: { group: 'pressure' } }, { width: 300, height: 200 },
@@ -150,7 +158,9 @@ const WISHES = [
 const USUAL = {
     isolines: null, light: [0.4, -0.5, 0.8], ghost: [], selected: null, colormap: 'relief', clip: null, split: null,
 };
-const LITTLE_BYTES = 20000, WITHOUT_MS = 600, BUSY_TIMES = 8; // BUSY_TIMES: factor on waiting times when the machine is busy
+// LITTLE_BYTES: GPU memory left to the daemon; WITHOUT_MS: time for which the test leaves it no more than that; BUSY_TIMES: how many
+// times it waits WITHOUT_MS until an allocation is refused, for a busy machine
+const LITTLE_BYTES = 20000, WITHOUT_MS = 600, BUSY_TIMES = 8;
 
 function wish(client, { width = SIZES[3][0], height = SIZES[3][1], ...params }) {
     client.params = (client.params ?? 0) + 1;
@@ -188,7 +198,9 @@ test('a client that finds no GPU memory is refused with the reason; all others k
     await again.until('a picture', (c) => c.frames.length > 0, PATIENCE_MS);
     again.close();
     const seen = await moving.stop();
-    if (!long) // on a loaded machine, moving pictures have another JPEG quality and thus another size
+    // skipped in long runs: on a loaded machine the daemon lowers the JPEG quality of moving pictures, which changes their
+    // sizes
+    if (!long)
         assert.ok(strange(seen, seen.slice(0, 3 * EYES.length)) < 0.1 * seen.length);
     assert.deepEqual(await rest(clients, since), expected);
     assert.ok(clients.every((client) => !client.closed && !client.texts.some((message) => message.type === 'error')));
@@ -209,7 +221,7 @@ test('a view refused for lack of GPU memory is drawn completely, unasked, once t
         came.push(await shown(client));
     }
     assert.ok(refused.filter(Boolean).length > WISHES.length / 2, `views refused for lack of memory: ${refused}`);
-    faults.set('losses', 1); // a context loss: everything is created again, now with enough memory
+    faults.set('losses', 1); // makes the daemon lose its GL context, so that it creates everything again, this time with enough memory
     for (const [i, one] of WISHES.entries()) {
         wish(client, one);
         const right = await shown(client);
@@ -230,7 +242,7 @@ test('while the driver restarts or GPU memory is full, the daemon is not ready; 
     aim(client, 3);
     await client.until('attempts at another context', () => faults.get('refusals') === 0 && faults.get('made') > made, PATIENCE_MS);
     assert.equal(await status(), 503);
-    faults.set('hardware', 1); // the GPU is back, but has no free memory
+    faults.set('hardware', 1); // the GPU works again, but the preloaded library still refuses it memory (room_bytes)
     await client.until('another attempt', () => /cannot load the plant: out of GPU memory/.test(plant.daemon.said), PATIENCE_MS);
     assert.equal(await status(), 503);
     faults.set('room_bytes', 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy in front of two renderers: when a node is killed, drained, stopped or cut off from the core, no view and no
-// acknowledgement is lost.
+// HAProxy in front of two renderers: a node is killed, drained, stopped or cut off from the core, and no viewer loses its view
+// and no acknowledgement is lost.
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
@@ -47,10 +47,11 @@ async function start(name, i) {
     return Object.assign(node, { agentPort, name });
 }
 
-// Returns the eye from a view token: MAC.PAYLOAD, where the payload is JSON in base64url.
+// Returns the camera's eye position from a view token: MAC.PAYLOAD, where the payload is JSON in base64url.
 const eyeOf = (token) => JSON.parse(Buffer.from(token.split('.')[1], 'base64url')).c.eye;
 
-// A page without a screen: it reconnects as pages do, and restores its view only by the view token.
+// A client that behaves like a page without drawing pictures: it reconnects as pages do, and restores its view with nothing but
+// the view token.
 class Viewer {
     constructor(number) {
         Object.assign(this, { number, eye: [3 + number / 10, -5, 2], returns: 0, moved: null, resume: null, lostAt: null });
@@ -113,7 +114,8 @@ const standing = async (node) => (await (await node.fetch('/api/v1/alarms', node
 test('each node reports its spare drawing capacity; a cookie keeps a client at one node', options, async () => {
     assert.match(await line(renderers[0].agentPort), /^up \d{1,3}%\n$/);
     viewers = [];
-    // on a busy machine one node may for a while be able to draw less than the other, so it gets fewer viewers
+    // On a busy machine one node may for a while report less spare capacity than the other, so it gets fewer viewers. Adds
+    // viewers until each node has at least LEAST.
     const counts = () => ['r1', 'r2'].map((name) => viewers.filter(({ node }) => node === name).length);
     while (viewers.length < VIEWERS || Math.min(...counts()) < LEAST) {
         assert.ok(viewers.length < MOST, `viewers per node ${counts()} after ${MOST} viewers`);
@@ -147,7 +149,7 @@ test('kill -9 of one of two nodes: all sessions are back within 10 s with their 
     await until('three alarms', async () => (await standing(core)).filter(({ state }) => state === 'unacknowledged').length === 3);
     const hit = viewers.filter(({ node }) => node === 'r1'), done = [];
     const acknowledge = async (viewer, tag, seq) => {
-        for (;;) { // a user repeats an action that was not confirmed
+        for (;;) { // repeats the acknowledgement until it is confirmed, as a user would after the connection was lost
             const { client } = viewer, from = client.texts.length;
             client.say({ type: 'alarm', seq, action: 'acknowledge', alarms: [[tag, 'H']] });
             const answer = await client.until('an answer', ({ texts, closed }) => closed ?? texts.slice(from)
@@ -197,7 +199,8 @@ test('a drained node sends its sessions to the other node one by one, and gets n
 });
 
 test('a forged resume token or another user\'s restores no view; the user\'s own, unchanged, does', options, async () => {
-    await renderers[1].stop(); // restarts this renderer, so that it keeps no views of earlier sessions
+    // restarts the second renderer, so that it has no views of earlier sessions in memory and must restore them from the token
+    await renderers[1].stop();
     renderers[1] = await start('r2', 1);
     const { resume } = viewers[0], [secret, body, mac] = resume.split('.');
     const cases = [[`${secret}.${body}.${mac.replace(/.$/, (c) => (c === '0' ? '1' : '0'))}`, 'operator', false],

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hardening of all programs by compiler and linker, and the systemd unit's restrictions on a daemon that an attacker controls.
+// Hardening: the protections that compiler and linker add to all programs, and the systemd unit's restrictions on a daemon that
+// an attacker controls.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -84,7 +85,8 @@ test('under the systemd unit\'s system call filter, the daemon draws with llvmpi
         assert.deepEqual([frame.full_width, frame.full_height], [320, 180]);
         client.say({ type: 'params', seq: 1, baseline: 'now' });
         await client.text('params');
-        // the result of this loop check is written and synced to disk
+        // sends the result of a loop check (comparison of a displayed value with the instrument); the daemon must write and
+        // sync it to disk under the unit's restrictions
         client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true });
         const proved = await client.text('proved');
         assert.equal(proved.kept, true, plant.daemon.said);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of a machine that runs for years: its volume becomes read-only, and its certificate expires.
+// Faults of a machine that runs for years: the volume of the history becomes read-only, and the daemon's certificate expires.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -17,7 +17,8 @@ const at = (name) => join(scratch, name), sleep = (ms) => new Promise((done) => 
 const sh = (line) => spawnSync('/bin/sh', ['-euc', line], { encoding: 'utf8' });
 after(() => rmSync(scratch, { recursive: true, force: true }));
 
-// A volume that becomes read-only like ext4 when the disk below fails.
+// Mount point of an ext4 volume that becomes read-only, as after an error of the disk below, when a test writes to the file
+// (trigger_fs_error) that makeVolume() returns.
 const volume = at('volume');
 function makeVolume() {
     mkdirSync(volume);
@@ -35,7 +36,8 @@ async function gauge(plant, name) {
 const ledger = (plant, folder) => runProgram('plantcast',
     ['history', 'export', plant.file, '--tags', 'TI-1', '--folder', folder, '--from', '-1h']).out.trim().split('\n').slice(1);
 
-// Sets the tag and waits until the daemon has read it: a value that lasts less than a poll interval could be missed.
+// Sets TI-1 and waits until the daemon has read the value, because the daemon could miss a value that lasts less than a poll
+// interval.
 async function take(plant, value) {
     await plant.tell(`set TI-1 ${value}`);
     await until(`${value} is read`, async () => {
@@ -55,7 +57,9 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
     }
     const runtime = at('runtime'), history = join(volume, 'history');
     mkdirSync(runtime);
-    process.env.RUNTIME_DIRECTORY = runtime; // the service's runtime folder, in which the daemon stores what no disk accepts
+    // folder in which the daemon stores, when it stops, the readings that the disk did not accept; systemd sets this variable
+    // for the service
+    process.env.RUNTIME_DIRECTORY = runtime;
     const plant = await TinyPlant.create();
     try {
         await plant.start('--history', history);
@@ -63,7 +67,9 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
         await until('a point on disk', () => ledger(plant, history).some((line) => /,11[.,]/.test(`${line},`)));
         writeFileSync(trigger, '1');
         assert.notEqual(sh(`touch ${volume}/x`).status, 0, 'the volume is read-only');
-        await take(plant, 77); // 77 does not lie on the line from 11 to 33, so the history must record this reading
+        // 77 does not lie on the straight line between the values 11 and 33, so the history must store this reading as a point
+        // of its own
+        await take(plant, 77);
         await until('plantcast_history_good is 0', async () => await gauge(plant, 'plantcast_history_good') === 0);
         await plant.daemon.line(/history-[\d-]+\.sqlite: .*error$/m);
         await plant.daemon.line(/history: cannot be written \(/);
@@ -72,8 +78,8 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
         await take(plant, 33);
         assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
         unmount();
-        // Mounts a copy, because programs with mount namespaces of their own (unshare, services) may still hold the volume, and
-        // a held volume stays read-only.
+        // Repairs and mounts a copy of the volume's image. Programs with mount namespaces of their own (unshare, services) may
+        // still use the volume itself, which therefore stays read-only.
         const mended = sh(`cp --sparse=always ${volume}.img ${volume}.mended; fsck.ext4 -fy ${volume}.mended >/dev/null || [ $? = 1 ]
             mount -o loop ${volume}.mended ${volume}; touch ${volume}/x`);
         assert.equal(mended.status, 0, mended.stderr);
@@ -90,7 +96,7 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
     }
 });
 
-// Makes a certificate that expires in that many seconds.
+// Makes a key and a certificate NAME.pem that expires in this number of seconds.
 function certificate(name, seconds) {
     const utc = (ms) => new Date(ms).toISOString().replace(/[-:T]/g, '').slice(2, 14) + 'Z';
     writeFileSync(at('ca.cnf'), `[ca]\ndefault_ca=a\n[a]\ndatabase=${at('index')}\nnew_certs_dir=${scratch}\nrand_serial=yes

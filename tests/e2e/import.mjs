@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast import` of a real CAD export, compared with another program's result for the same files.
+// `plantcast import` of real CAD exports in RVM: names, boxes, areas and attributes are compared with the GLB files that
+// another converter made from the same exports.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -77,7 +78,7 @@ function shapes(path) {
 
 const median = (list) => list.sort((a, b) => a - b)[list.length >> 1];
 
-// The other program used its own chord tolerances and moved the models to the origin.
+// The reference files of the other converter: it used the chord tolerances chordMm and moved the models to the origin.
 for (const { file, as, chordMm, nodes, counted, assets } of [
     { file: 'plm-sample', as: 'plm_plant_hierarchy', chordMm: 2, nodes: 315, counted: '316', assets: 19 },
     { file: 'huldra_WD1-PSUP', as: 'huldra_wd1_psup', chordMm: 5, nodes: 4084, counted: '4,085', assets: 321 },
@@ -101,7 +102,9 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         }
         console.log(`# ${common.length} shapes, ${off} boxes differ; area ${areas[0].toFixed(2)} m2 for ${areas[1].toFixed(2)}`);
         assert.equal(off, 0, 'number of boxes that differ');
-        // The other program removes fewer coincident faces: it keeps those that differ in size, and all faces of ducts.
+        // Plantcast leaves out faces that another primitive covers. The other converter leaves out fewer: it keeps covered
+        // faces of another size, and all faces of ducts. The import with --keep-covered finds the nodes that lost no face,
+        // whose areas can be compared.
         const all = run('plantcast', 'import', model, '-o', join(folder, 'all'), '--chord', String(chordMm), '--keep-covered');
         assert.equal(all.status, 0, all.stderr);
         const kept = shapes(join(folder, `all/${file}.glb`));
@@ -127,7 +130,7 @@ test('a real export with broken attributes or numbers gets one error line, and l
     const head = text.subarray(0, text.indexOf('NEW')).toString('latin1'), id = Buffer.from('\0\0\0P\0\0\0R\0\0\0I\0\0\0M', 'latin1');
     const notFinite = Buffer.from(good), model = join(folder, 'a.rvm');
     for (let at = good.indexOf(id); at >= 0; at = good.indexOf(id, at + 4))
-        notFinite.writeFloatBE(NaN, at + 32); // the first number of a primitive's transformation
+        notFinite.writeFloatBE(NaN, at + 32); // replaces the first number of each primitive's transformation matrix by NaN
     for (const [bytes, attributes, why] of [
         [good, text.subarray(0, text.length >> 1), /a\.att: line \d+: the file ends before the END of \d+ elements/],
         [good, `${head}${'NEW A\r\n'.repeat(100000)}`, /a\.att: line \d+: elements are nested more than \d+ deep/],
@@ -224,7 +227,8 @@ test('an unreadable model gets one error line, and leaves no files', { skip: not
     assert.equal(run('plantcast', 'import', '-o', out).status, 2);
 }));
 
-// A line yields triangles without area; plantcast-prep refuses an asset without area.
+// The degenerate triangle LINE (three corners on a line) and the flat triangle FLAT have no area. The import must not make
+// assets of them, because plantcast-prep refuses an asset without area.
 test('nodes without surface area do not become assets', { skip: notBuilt }, () => inFolder((folder) => {
     const out = join(folder, 'plant'), line = [0, 0, 0, 1, 0, 0, 3, 0, 0], triangle = [0, 0, 0, 1, 0, 0, 0, 1, 0];
     const bytes = Buffer.from(new Float32Array([...line, ...triangle]).buffer);

@@ -85,8 +85,9 @@ test('OBJ: a material file in a folder written with backslashes is found', { ski
     assert.equal(triangles, 8);
 }));
 
-// 100 in = 2.54 m. The geometric transform moves the pump's own mesh by 1 in along x; the child is 2 in away along x. Neither
-// moves the other.
+// In FBX, a geometric transform of a node moves the node's own mesh but not its children. Here it moves the pump's mesh by 100
+// in = 2.54 m along x; the child lies 200 in = 5.08 m from the pump along x, and its own transform moves its mesh by 2.54 m
+// along y.
 test('FBX: a geometric transform moves its own mesh and no child', { skip }, () => withMaterials((folder) => {
     const whole = fbx(2.54), moved = (x, y) => `"A",${x},0,0\n            P: "GeometricTranslation", "Vector3D", "Vector", "",${y}\n`;
     const mesh = /Geometry: 100[\s\S]*?\n {4}\}\n/.exec(whole)[0], model = /Model: 200[\s\S]*?\n {4}\}\n/.exec(whole)[0];
@@ -101,7 +102,7 @@ test('FBX: a geometric transform moves its own mesh and no child', { skip }, () 
     assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1]));
 }));
 
-// A triangle as a glTF file, or as a GLB file with these chunks.
+// One triangle as a glTF file whose buffer is `uri`, or as a GLB file with the given chunks.
 const triangle = Buffer.alloc(44);
 [0, 0, 0, 1, 0, 0, 1, 1, 0].forEach((v, i) => triangle.writeFloatLE(v, 4 * i));
 [0, 1, 2].forEach((v, i) => triangle.writeUInt16LE(v, 36 + 2 * i));
@@ -143,7 +144,8 @@ test('glTF: percent signs and accents in file names are decoded; unknown require
     const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
     assert.match(ran('plantcastd', '--check').stdout,
         /not prepared yet \(no prepared files in .*\), so some things were not checked: glTF textures and extensions that /);
-    // The check names what was left out, even after a second run of plantcast-prep, which does not read the model again.
+    // `plantcastd --check` names what the import left out, even after a second run of plantcast-prep, which finds the model
+    // prepared and does not read it again.
     for (let run = 0; run < 2; run++) {
         assert.equal(ran('plantcast-prep').status, 0);
         const checked = ran('plantcastd', '--check').stdout;
@@ -205,7 +207,8 @@ test('FBX, COLLADA and OBJ: shapes that are not read are reported', { skip }, ()
     assert.match(free.out, /not shown: 1 nodes that consist only of lines or points: Pipe axis\n/);
 }));
 
-// Files with features on which exporters differ. The second reader is three.js, which does not apply the unit of FBX and OBJ.
+// Files that use features which exporters write differently. The area and size that Plantcast imports are compared with those
+// of three.js, the second reader, which ignores the unit of FBX and OBJ (`metres`).
 const polygons = obj().replace(/f .*\n/g, '').concat('g slab\nf -6 -5 \\\n-4 -3\ng wedge\nf 1 5 2\nf 4 3 6\nf 2 5 6 3\nf 1 4 6 5\n');
 const SECOND = [['a.obj', obj()], ['polygons.obj', polygons], ['mm.dae', dae(0.001)], ['feet.dae', dae(0.3048)],
     ['mirrored.dae', dae().replace('<node id="n2"', '<node id="n2x"><matrix>-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix>' +
@@ -216,7 +219,7 @@ const SECOND = [['a.obj', obj()], ['polygons.obj', polygons], ['mm.dae', dae(0.0
     ['geometric.fbx', fbx(2.54).replace('P: "Lcl Translation", "Lcl Translation", "", "A",0,0,0', (line) => `${line}\n            P: ` +
         '"GeometricTranslation", "Vector3D", "Vector", "",10,20,30\n            P: "Lcl Rotation", "Lcl Rotation", "", "A",0,0,90\n' +
         '            P: "Lcl Scaling", "Lcl Scaling", "", "A",-1,2,1'), { metres: 0.0254 }]];
-// Indented with tabs, without which the second reader cannot read FBX.
+// Returns the FBX text with tabs instead of blanks, because three.js cannot read FBX that is indented with blanks.
 const indented = (text) => Buffer.from(text.replace(/^( {4})+/gm, (blanks) => '\t'.repeat(blanks.length / 4)));
 test('FBX, COLLADA and OBJ: area and size equal those of a second reader', { skip }, (t) => withMaterials(async (folder) => {
     const second = await secondMeshReader();
@@ -281,12 +284,14 @@ test('glTF: meshopt data with a fallback buffer without a uri is read', { skip: 
     for (const [name, extensions] of Object.entries(cases)) {
         packed.buffers[standIn].extensions = extensions;
         const { triangles, size } = boxed(folder, `${name}.gltf`, JSON.stringify(packed));
-        assert.ok(triangles === 1 && near(size, [1, 0, 1]), JSON.stringify(size)); // Z up: the y axis of glTF becomes z
+        // Plantcast's Z axis points up, so the y axis of the glTF file becomes z
+        assert.ok(triangles === 1 && near(size, [1, 0, 1]), JSON.stringify(size));
     }
 }));
 
 test('a signal ends the import, and no file is left behind', { skip }, () => withMaterials(async (folder) => {
-    writeFileSync(join(folder, 'a.ply'), ply().slice(0, ply().length >> 1)); // Assimp hangs on this truncated file
+    // Assimp never ends on this truncated file, so the import is still running when the signal arrives
+    writeFileSync(join(folder, 'a.ply'), ply().slice(0, ply().length >> 1));
     const program = spawn(join(BIN, 'plantcast'), ['import', join(folder, 'a.ply'), '-o', join(folder, 'plant')]);
     let said = '';
     program.stderr.on('data', (bytes) => said += bytes);

@@ -104,13 +104,14 @@ test('IGES without groups, and an IGES assembly written by Open CASCADE, are imp
     assert.ok(near(all.size, [0.1, 0.2, 0.3]), JSON.stringify(all));
     assert.deepEqual(layers.map(({ name, triangles, properties }) => [name, triangles, properties.Layer]),
         [['Layer 1', 6, '1'], ['Layer 2', 6, '2']]);
-    const skid = nodes('skid.igs'); // the program that wrote skid.igs supports only one level of assemblies
+    const skid = nodes('skid.igs'); // skid.igs was written by another program, which supports only one level of assemblies
     assert.ok(near(skid[0].size, [2, 1, 0.32]), JSON.stringify(skid[0]));
     assert.deepEqual(skid.slice(1, 6).map(({ name }) => name), ['Skid S-100', 'Plate:1', 'Casing:1', 'Motor:1', 'Casing:1']);
     assert.ok(near(skid[5].size, [0.2, 0.2, 0.3]) && near(skid[5].centre, [0.3, 0.7, 0.15]), JSON.stringify(skid[5]));
 }));
 
-// Imports a file. Returns its findings, the area and size of its triangles, and the output.
+// Imports one of the sample files. Returns the report's entry for the model, the area (m2) and size (m) of its triangles, the
+// exit status, and all printed text.
 function imported(folder, name) {
     const plant = join(folder, 'imported'), report = join(folder, 'report.json');
     const { status, stdout, stderr } = plantcast('import', join(folder, name), '-o', plant, '--report', report, '--chord', '0.2');
@@ -137,7 +138,7 @@ test('STEP: area and size equal those of a second reader', { skip }, (t) => with
     for (const name of files) {
         const { area, size, lost, errors } = imported(folder, name), theirs = second(name, readFileSync(join(folder, name)));
         console.log(`# ${name}: ${area.toFixed(6)} m2 of ${theirs.area.toFixed(6)}, ${size.map((v) => v.toFixed(4)).join(' x ')} m`);
-        // The second reader omits instances of subfigures that have another size.
+        // adds the area of the four times larger bolt, because the second reader omits scaled instances of IGES subfigures
         const bolt = /tree|inches/.test(name) ? Math.PI * 0.04 * (2 * 0.2 + 2 * 0.04) : 0;
         const good = Math.abs(area / (theirs.area + bolt) - 1) < 0.01 && (bolt || near(size, theirs.size));
         assert.ok(good, JSON.stringify([name, size, theirs]));
@@ -157,8 +158,8 @@ test('parts in other files are found despite case, folders and escapes in their 
         assert.deepEqual(errors, [{ count: 1, text: 'referenced file gone.stp is not in the model\'s folder' }]);
     }));
 
-// Removes one statement of each kind. The import then names what is missing; where Open CASCADE crashes instead, that too is
-// one line of output.
+// Removes one statement of each kind from a STEP file. The import must report what is missing, or refuse the file with one
+// line, also where Open CASCADE crashes. It must never lose surface silently.
 test('STEP: no kind of damage removes surface without a report', { skip }, () => withSamples((folder) => {
     const text = readFileSync(join(folder, 'skid_203.step'), 'latin1'), whole = imported(folder, 'skid_203.step').area, silent = [];
     const table = { 'as before': 0, named: 0, refused: 0 };
@@ -180,13 +181,15 @@ test('STEP: no kind of damage removes surface without a report', { skip }, () =>
     assert.ok(table.named >= 6, JSON.stringify(table));
 }));
 
-// Each broken file is either read or refused with one line, within its time limit, and leaves nothing behind.
+// Each broken file is either imported or refused with one line of output, within its time limit, and the import leaves no files
+// behind.
 test('each broken STEP or IGES file gets one error line, and leaves no files', { skip }, () => withSamples((folder) => {
     const step = readFileSync(join(folder, 'skid_214.stp')), iges = readFileSync(join(folder, 'skid.igs'));
     const text = step.toString('latin1');
     const ring = text.replace(/NEXT_ASSEMBLY_USAGE_OCCURRENCE\(('[^']*','[^']*','[^']*'),#(\d+),#(\d+)/g,
         (whole, names, a) => `NEXT_ASSEMBLY_USAGE_OCCURRENCE(${names},#${a},#${a}`);
-    // Letters instead of some numbers; and subfigures, instances and groups that contain themselves.
+    // Two damaged IGES files: nanIges has letters instead of some numbers; in selfIges, subfigures, instances and groups
+    // contain themselves.
     const points = readFileSync(join(folder, 'tree.igs'), 'latin1');
     const nanIges = points.replace(/\d\.,/g, (number, at) => (at % 3 === 0 ? 'NA,' : number));
     const selfIges = points.split('\n').map((line) => {
@@ -208,7 +211,7 @@ test('each broken STEP or IGES file gets one error line, and leaves no files', {
         'nan.igs': nanIges, 'huge.igs': points.replaceAll(',2000.,', ',1.E99,'), 'self.igs': selfIges,
         'half.igs': iges.subarray(0, iges.length >> 1), 'noise.igs': Buffer.from(iges.map((b, i) => i % 97 === 13 ? 255 - b : b)),
     };
-    // in nan.step Open CASCADE would search for the end for hours
+    // time limits in seconds: short for nan.step, on which Open CASCADE would compute for hours
     importBroken(folder, samples, (name) => ['--timeout', { 'nan.step': '2', 'nan.igs': '100' }[name] ?? '8'],
         ({ name, stdout, stderr }) => {
             if (name === 'nan.igs')

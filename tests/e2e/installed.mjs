@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page as an installed app: its service worker caches one version of the page's files for use without a network. The test's
-// server has only these files.
+// The page as an installed app: its service worker caches the files of one version of the page for use without a network. A
+// minimal web server of this test serves nothing but these files.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
@@ -41,7 +41,8 @@ after(async () => {
     server?.close();
 });
 
-// Returns { version: [path, ...] } for this page's caches; other caches appear under their own names
+// Returns { version: [path, ...] }: the cached files of each version of the page. Caches that do not belong to the page appear
+// under their own names.
 const kept = () => page.evaluate(async () => Object.fromEntries(await Promise.all((await caches.keys()).map(async (name) =>
     [name.replace('plantcast-', ''), (await (await caches.open(name)).keys()).map(({ url }) => new URL(url).pathname)]))));
 const reload = async () => {
@@ -65,7 +66,8 @@ test('the service worker caches files as the page uses them, parts loaded later 
 });
 
 test('a new version of the page replaces all cached files of the old one', options, async () => {
-    // The page may still request the version after its last part was loaded, and would then reload itself just when told to.
+    // Marks the new version as already loaded. The page may still ask for the version after its last part was loaded, and would
+    // then reload itself at the same time as the test reloads it.
     await page.evaluate(() => sessionStorage.setItem('plantcast.renewed', 'bbbbbbbbbbbb'));
     version = 'bbbbbbbbbbbb';
     await page.evaluate(() => caches.open('foreign'));

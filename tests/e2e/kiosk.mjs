@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kiosk's supervisor (deploy/systemd/kiosk) with the real Chromium under a service manager: it feeds the watchdog only
-// while the page responds, the page's storage survives a restart, and systemd accepts its units.
+// The kiosk's supervisor (deploy/systemd/kiosk), which starts Chromium and reports to the service manager. Expected: it feeds
+// the watchdog only while the page responds, the page's storage survives a restart, and systemd accepts the kiosk's units.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chownSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -47,7 +47,8 @@ async function until(what, is) {
     }
 }
 
-// before: a command that starts the supervisor; around: a command that wraps the browser.
+// Starts the supervisor under a fake service manager. before: command prefix that runs the whole; around: command prefix that
+// runs the browser.
 function startKiosk(url, { before: starter = [], around = [], env = display.env } = {}) {
     const [program, ...args] = [...starter, 'tests/support/service_manager.py',
         '--watchdog', String(WATCHDOG_S), 'deploy/systemd/kiosk', url, ...around, CHROMIUM,
@@ -168,7 +169,7 @@ test('the kiosk still shows a server whose certificate authority has changed', {
         (request, response) => server.emit('request', request, response));
     await new Promise((done) => secure.listen(0, '127.0.0.1', done));
     try {
-        // the host trusts first its former authority, then the new one, then both
+        // runs `kiosk --trust` with the old certificate authority, then with the new one, then with a file that contains both
         for (const pem of [former.ca, present.ca, former.ca + present.ca]) {
             writeFileSync(file, pem);
             const env = { ...display.env, HOME: state };
@@ -189,7 +190,7 @@ test('the kiosk still shows a server whose certificate authority has changed', {
 test('in cage, which draws into memory here, the kiosk shows the page as on a monitor', { ...options, skip: noCage }, async () => {
     const own = state;
     state = mkdtempSync(join(tmpdir(), 'plantcast-cage-'));
-    chownSync(state, NOBODY, NOBODY); // cage refuses to run as root
+    chownSync(state, NOBODY, NOBODY); // runs as the user `nobody`, because the compositor cage refuses to run as root
     beats.length = 0;
     try {
         const { DISPLAY: _, ...env } = display.env;
@@ -235,7 +236,9 @@ const noAnalyze = spawnSync('systemd-analyze', ['--version']).error ? 'no system
 test('systemd-analyze finds no fault in the kiosk\'s units', { skip: noAnalyze }, () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-units-')), names = ['.service', '-restart.service', '-restart.timer'];
     try {
-        for (const name of names) // starts /bin/true instead of the kiosk's programs, which are not installed here
+        // replaces the kiosk's programs, which are not installed here, by /bin/true, because systemd-analyze checks that
+        // programs exist
+        for (const name of names)
             writeFileSync(join(folder, `plantcast-kiosk${name}`), readFileSync(`deploy/systemd/plantcast-kiosk${name}`, 'utf8')
                 .replaceAll('/usr/lib/plantcast/kiosk', '/bin/true'));
         writeFileSync(join(folder, 'seatd.service'), '[Service]\nExecStart=/bin/true\n');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of the page in one browser when something is missing: its own parts, its server, the plant's values.
+// Tests of the page in one browser while something is missing: one of the page's own parts, its server, or the plant's values.
 import { describe } from 'node:test';
 import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first group of tests
 

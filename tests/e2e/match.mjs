@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plantcast match`: tag lists generated from real plants' names, matched and compared with the truth; malformed lists; manual
-// changes and a second run; and the whole way from a CAD export to a picture.
+// `plantcast match`: compares matches of generated tag lists for real plants with the true equipment. Also tests malformed
+// lists, manual changes followed by a second run, and all steps from a CAD export to a picture.
 import { DATA, inFolder } from './support/folders.mjs';
 import { boxesFile } from './support/gltf_model.mjs';
 import { seed } from './support/sweep.mjs';
@@ -52,7 +52,8 @@ function count(plant, truth) {
     return { counts, wrong, own, precision: right / (right + not), recall: right / own };
 }
 
-// Each real plant: imported, matched with 5,000 tags, results counted.
+// Each real plant is imported and matched with 5,000 generated tags; the numbers of right and wrong matches are compared with
+// limits.
 for (const { plant, format, bring } of [
     { plant: 'plm-sample', format: 'kepware', bring: (out) => run('plantcast', 'import', join(DATA, 'cad/plm-sample.rvm'), '-o', out) },
     { plant: 'huldra_WD1-PSUP', format: 'intouch',
@@ -138,7 +139,8 @@ test('manual changes stay, and a second run changes nothing', { skip: notBuilt }
     const first = texts();
     match();
     assert.deepEqual(texts(), first);
-    // In matches.csv, an asset for one tag and none for another; in tags.csv, a confirmed position and another asset.
+    // A user's corrections. In matches.csv: PT-101 gets an asset, LT-201 gets none. In tags.csv: the position of one tag on
+    // E-101 is confirmed, and another tag gets another asset. A second run must keep them.
     edit('matches.csv', 'PT-101,none,,', 'PT-101,none,P-101,');
     edit('matches.csv', 'LT-201,sure,V-201', 'LT-201,none,V-201');
     edit('tags.csv', ',E-101,equipment,', ',E-101,,');
@@ -183,11 +185,15 @@ test('a change that a user saves during matching is not overwritten', { skip: no
         const ended = new Promise((done) => child.once('exit', done)), watched = watch(folder);
         let said = '';
         child.stderr.on('data', (piece) => { said += piece; });
-        watched.on('change', (_, name) => { // a change of the trial file: the program has matched and now checks the result
+        // The trial file changes when the program has matched the tags and is about to check the result, but has not written it
+        // yet.
+        watched.on('change', (_, name) => {
             if (!/^\.trial/.test(name) || stopped || child.exitCode !== null)
                 return;
             child.kill('SIGSTOP');
-            stopped = existsSync(join(folder, `.trial.${child.pid}.yaml`)); // the trial file exists, so the result is not written yet
+            // while the trial file exists, the result is not written; the user's change of matches.csv at this moment must not
+            // be lost
+            stopped = existsSync(join(folder, `.trial.${child.pid}.yaml`));
             if (stopped)
                 writeFileSync(join(folder, 'matches.csv'), mine);
             child.kill('SIGCONT');
@@ -214,22 +220,28 @@ test('a killed, interrupted, concurrent or out-of-disk match leaves a valid plan
             (_, i) => `E-10${i % 3}.TT-${i},${400001 + 2 * i},${unit},0,90`)].join('\n');
         mkdirSync(first);
         boxPlant(first, ['E-100', 'E-101', 'E-102']);
-        for (const [count, unit] of [[6, 'degC'], [600, 'bar']]) { // a plant without tags, and one with tags, which gains a group
+        // the first run matches a plant without tags; the second run matches one with tags and adds the group of another unit
+        for (const [count, unit] of [[6, 'degC'], [600, 'bar']]) {
             writeFileSync(list, rows(count, unit));
             cpSync(first, whole, { recursive: true });
             const args = [list, '--modbus', '127.0.0.1:502'];
             good(run('plantcast', 'match', whole, ...args));
             const replacedAt = names.map((name) => statSync(join(whole, name), { bigint: true }).ctimeNs);
             assert.deepEqual(replacedAt, [...replacedAt].sort((a, b) => Number(a - b)), 'files are replaced in the order of their names');
-            for (let replaced = 0; replaced <= names.length; replaced++) { // names of the files in the order in which they are renamed
+            // `names` lists the files in the order in which the program renames them; the loop restores the state after each of
+            // the renames
+            for (let replaced = 0; replaced <= names.length; replaced++) {
                 rmSync(plant, { recursive: true, force: true });
                 cpSync(first, plant, { recursive: true });
                 for (const name of names.slice(0, replaced))
                     copyFileSync(join(whole, name), join(plant, name));
                 for (const left of ['tags.csv.4194304.new', 'matches.csv.4194304.3.new', '.trial.4194304.yaml'])
-                    writeFileSync(join(plant, left), 'half of a li'); // left by a process that has ended: no process has the number 4194304
+                    // half-written file left by a process that has ended: no process can have the number 4194304
+                    writeFileSync(join(plant, left), 'half of a li');
                 const others = [`tags.csv.${process.pid}.new`, 'tags.csv.4194304.7.new'], hourAgo = Date.now() / 1000 - 3600;
-                for (const name of others) // files that another process is still writing, on this machine or in another container
+                // files that may belong to a running process, of this machine (first name) or of another container (second
+                // name): they must not be removed
+                for (const name of others)
                     writeFileSync(join(plant, name), 'half of a li');
                 for (const name of readdirSync(plant).filter((each) => /4194304/.test(each) && each !== others[1]))
                     utimesSync(join(plant, name), hourAgo, hourAgo);
@@ -267,8 +279,8 @@ test('a killed, interrupted, concurrent or out-of-disk match leaves a valid plan
         assert.notEqual(readFileSync(elsewhere, 'utf8'), before['tags.csv']);
     }));
 
-// Starts a daemon in a folder where a replacement of files was interrupted. Afterwards the plant equals `whole`, and no
-// temporary file is left.
+// Starts a daemon on a folder in which the replacement of files by an import was interrupted. Expected: the daemon completes it
+// and logs that once, the files equal those in `whole`, and no temporary file is left.
 async function startsWhole(folder, whole, filesOf, what) {
     const daemon = new Program('plantcastd', ['--port', '0', '--gl', 'osmesa', '--h264', 'off', join(folder, 'plant.yaml')]);
     try {
@@ -282,7 +294,7 @@ async function startsWhole(folder, whole, filesOf, what) {
     }
 }
 
-// An import is killed before each of its renames, including those where new files replace old ones.
+// A preloaded library kills an import before each of its renames in turn, also before those that set aside the old file.
 const KILLER = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/kill_at_rename.so');
 const noKiller = notBuilt || (existsSync(KILLER) ? false : 'not built: kill_at_rename.so');
 for (const last of ['import', 'undo'])
@@ -301,7 +313,7 @@ for (const last of ['import', 'undo'])
         good(run('plantcast', 'import', model, '-o', first));
         good(match(first));
         good(run('plantcast-prep', join(first, 'plant.yaml')));
-        draw('E-103', 'E-101', 'E-102'); // E-100 and the equipment of its tag are gone
+        draw('E-103', 'E-101', 'E-102'); // the new model has no E-100, so the equipment of a tag is missing
         const args = last === 'undo' ? ['--undo', '-o'] : [model, '-o'];
         if (last === 'undo')
             good(run('plantcast', 'import', model, '-o', first));
@@ -347,7 +359,7 @@ for (const last of ['import', 'undo'])
         assert.ok(finished >= 3, `only ${finished} kills were recovered`);
     }));
 
-// Kepware's export of a device, and a plant drawn in PDMS: no line of either is edited by hand.
+// A tag list exported by Kepware and a plant drawn in PDMS. The test uses both unedited, as a user would.
 const ROOM = `Tag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,\
 Eng Units,Description
 "ART1105BA_TT01",400001,Float,1,R/O,100,None,,,0,150,"degC","Tank ART1105BA shell top temperature"
@@ -381,7 +393,7 @@ test('two systems\' exports become a live picture', { skip: noData, timeout: 240
     const before = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8'));
     good(run('plantcast', 'match', out, join(out, 'kepware.csv')));
     assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8')), before);
-    // If the user gives only the equipment, no coordinates are needed.
+    // The user names the equipment of a tag and leaves the coordinates empty: `plantcastd --check` must accept that.
     const list = join(out, 'tags.csv'), shorter = before[1].replace(/^(TT-1101,.*,equipment,,).*$/m, '$1,,');
     assert.notEqual(shorter, before[1]);
     writeFileSync(list, shorter);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources of type mqtt with Debian's mosquitto: numbers and JSON, timestamps and qualities in payloads, retained values,
-// invalid payloads, and a broker that is killed, frozen and restarted.
+// Sources of type mqtt, tested with Debian's broker mosquitto: numbers and JSON, timestamps and qualities in payloads, retained
+// values, invalid payloads, and a broker that is killed, frozen and restarted.
 import assert from 'node:assert/strict';
 import { createServer } from 'node:net';
 import packets from 'mqtt-packet';
@@ -51,7 +51,8 @@ test('numbers reach the tags of their topics, scaled, and with their true age', 
     await until('TI-2', { ...good, value: -30 });
     await until('PI-1', { ...good, value: 5 });
     await until('XS-1', { ...good, value: 1 });
-    // the tag has a value, but a stale one; a tag without a value would have another quality
+    // OLD has the same topic as TI-1 but becomes stale after 2 s. This quality means a stale value; a tag without any value has
+    // another quality.
     await until('OLD', { quality_name: 'Bad_CommunicationError' });
     await until('TI-1', good);
     const counts = [['messages_total{source="broker",result="ok"}', 4], ['messages_total{source="broker",result="refused"}', 0],
@@ -86,7 +87,7 @@ for (const protocol of ['5', '3.1.1'])
         await broker.restart();
         for (const end = performance.now() + 90000; await metric('up{source="broker"}') !== 1; await sleep(100))
             assert.ok(performance.now() < end, 'the source did not connect again');
-        // the value is still stale: a new connection to the broker does not make it current
+        // TI-1 stays stale after the reconnection, because a new connection to the broker does not make the old value current
         await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 1);
         await publisher.tell('plant/ti1', 20);
         await until('TI-1', { ...good, value: 20 });
@@ -106,10 +107,12 @@ test('JSON values are read by path, with the time and quality in the payload', o
     assert.ok(left.age_ms >= 3000 && left.age_ms <= 3000 + Date.now() - began + 1, `the reading is ${left.age_ms} ms old`);
     await until('TI-2', { ...good, value: 17.25 });
     await until('PI-1', { ...good, value: 4 });
-    await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // this message does not contain the left tag
+    // this message contains no value for `left`, so TI-1 keeps its value
+    await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) });
     await until('TI-2', { quality_name: 'Uncertain_SensorNotAccurate', value: 18 });
     await until('TI-1', { ...good, value: 40.5 });
-    await publisher.tell('line/temps', { right: 99, meta: at(-60000) }); // this message is older than the present value
+    // this message has a timestamp before that of the present value, so it must be ignored
+    await publisher.tell('line/temps', { right: 99, meta: at(-60000) });
     await publisher.tell('line/temps', { left: { v: [1, null] }, right: 19, meta: at(0) });
     await until('TI-1', { quality_name: 'Bad_SensorFailure' });
     await until('TI-2', { ...good, value: 19 });
@@ -142,7 +145,8 @@ test('a gateway that publishes only changes: no tag gets another\'s value', opti
     for (const [name, value] of [['A3', 24], ['A1', 21], ['F1', 21], ['F2', 23]])
         await until(name, { ...good, value });
     await tell(['G.A3', 34], ['G.A1', 31, false]);
-    await until('F1', { quality_name: 'Bad' }); // F1 has the quality of its own item in the message
+    // F1 gets the quality of the item G.A1 (false), not of the message
+    await until('F1', { quality_name: 'Bad' });
     tags = await plant.tags();
     assert.equal(tags.A1.quality_name, 'Bad_NoMatch');
     assert.equal(tags.F2.value, 23); // F2 keeps its value, because no message mentioned it
@@ -169,7 +173,8 @@ test('a persistent session delivers values published meanwhile, with their true 
     assert.ok((await until('PI-1', { ...good, value: 2 })).age_ms >= 1500);
 });
 
-// A broker that sends topics without a subscription: the longest possible topics, each before a reading.
+// A malicious broker sends messages to which the client has not subscribed, with topics of the maximum length of 64 kB, each
+// before a valid reading.
 test('topics of 64 kB from a malicious broker affect nothing else', options, async () => {
     await broker.kill();
     let sent = 0;

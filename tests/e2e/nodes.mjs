@@ -13,7 +13,7 @@ import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
 
-// Returns a model as a data URI with a triangle of that size in each of the given nodes.
+// Returns a glTF model with one triangle of the given size, used by each of the given nodes.
 function model(nodes, size = 1, meshName = 'plate') {
     const made = gltfModel([0, 0, 0, size, 0, 0, 0, 2 * size, 0], nodes);
     made.meshes[0].name = meshName;

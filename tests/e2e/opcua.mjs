@@ -3,6 +3,7 @@
 import { describe } from 'node:test';
 import './opcua/server.mjs'; // imported here, so that the server ends with the program and not with the first group of tests
 
-// The group that sets the server's clock runs last, because afterwards node-opcua's clock is off by some milliseconds.
+// The group `hostile` sets the server's clock and therefore runs last: afterwards node-opcua's clock is off by some
+// milliseconds.
 for (const subject of ['values', 'secure', 'hostile'])
     describe(subject, () => import(`./opcua/${subject}.mjs`));

@@ -34,7 +34,8 @@ async function load() {
             if (!document.getElementById('waiting')?.hidden)
                 return;
             observer.disconnect();
-            requestAnimationFrame(() => { globalThis.firstPictureMs = performance.now(); }); // the picture is drawn by then
+            // at the next animation frame the picture has been painted
+            requestAnimationFrame(() => { globalThis.firstPictureMs = performance.now(); });
         }).observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ['hidden'] });
     });
     await page.goto(plant.url, { timeout: PATIENCE_MS });

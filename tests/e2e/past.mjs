@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time travel with a real daemon, by the client written from PROTOCOL.md: past values are shown as they were, and other
-// sessions are unaffected.
+// Time travel (showing recorded instants) with a real daemon and a client written from PROTOCOL.md alone: frames and messages
+// contain the values of the chosen instant, and sessions that show the present are unaffected.
 import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -13,7 +13,8 @@ const BEGIN_S = Math.floor(Date.now() / 1000) - 3600;
 const at = (s) => (BEGIN_S + s) * 1e6;
 let plant;
 
-// TI-1 rises from 10 by 1 per minute for half an hour; TI-2 stays at 40 and is bad from minute 10 to 20; then nothing is recorded.
+// Returns half an hour of samples: TI-1 rises from 10 by 1 per minute; TI-2 is 40, but Bad from minute 10 to 20. Then both get
+// the quality "no data".
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let s = 0; s <= 1800; s += 10)
@@ -117,7 +118,7 @@ test('one session\'s time travel does not affect others, and followers come alon
     follower.say({ type: 'follow', session: client.welcome.session });
     await follower.text('following');
     await live.frameWhere('refined', (p) => p.flags & FLAG.still);
-    await travel(client, at(300), 60); // at this speed, playback reaches the end of the records after 25 s
+    await travel(client, at(300), 60); // plays back at 60 times the normal speed, which reaches the end of the records after 25 s
     await follower.frameWhere('of then too', (p) => p.flags & FLAG.past && p.data_time_us >= at(300));
     await follower.until('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 60));
     const ofThen = (m) => m.type === 'tags' && m.time_us >= at(300) && m.time_us < at(3000);
@@ -131,7 +132,9 @@ test('one session\'s time travel does not affect others, and followers come alon
 
 test('the same instant is drawn once for all sessions that show it', { skip }, async () => {
     const first = await open(), second = await open();
-    let isShared = false; // a frame is cached for half a second; on a busy machine the two requests may for a while be farther apart
+    // Repeats with other instants until a frame was shared. The server caches a frame for half a second, and on a busy machine
+    // the two requests may be farther apart.
+    let isShared = false;
     for (let s = 440, end = performance.now() + 90000; s < 1800 && performance.now() < end && !isShared; s++) {
         const before = await plant.metric('plantcast_renders_shared_total');
         await Promise.all([first, second].map((client) => travel(client, at(s))));
@@ -206,7 +209,7 @@ test('snapshots, picks and films of the past are correct, and impossible times a
     assert.deepEqual([early.code, /no readings recorded/.test(early.err), existsSync(film)], [1, true, true]);
 });
 
-// This test is the last, because history begins earlier afterwards.
+// This test runs last, because it imports a week of older history, which changes the beginning of the recorded time.
 test('an imported gap, blanks and state words count as no data in pictures, readings, trends, exports and tables', { skip }, async () => {
     const file = join(plant.folder, 'gap.csv'), from = BEGIN_S - 7 * 86400, day = 86400;
     const rows = [[0, 10], [10, 10], [10, 11], [20, 'I/O Timeout'], [30, 'No Data'], [40, 12], [50, ''], [60, 12], [70, 12], [2 * day, 80],
@@ -240,7 +243,8 @@ test('an imported gap, blanks and state words count as no data in pictures, read
     for (const source of [`${url}/`, plant.file])
         assert.deepEqual([pick(source, 65), pick(source, day)], [12, null], source);
 
-    // A gap that --longest-gap allows is drawn as a line everywhere.
+    // A gap that is shorter than --longest-gap counts as recorded: pictures, readings and exports interpolate linearly across
+    // it.
     const bring = (name, list, ...more) => {
         writeFileSync(file, `Time,${name}\n${list.map(([s, value]) => `${from + s},${value}`).join('\n')}\n`);
         const brought = runProgram('plantcast', ['history', 'import', plant.file, file, ...more]);
@@ -253,7 +257,7 @@ test('an imported gap, blanks and state words count as no data in pictures, read
     const late = day + 3600, middle = 12 + 68 * (late - 70) / (2 * day - 70);
     for (const source of [`${url}/`, plant.file])
         assert.ok(Math.abs(pick(source, late) - middle) < 0.5, `${source}: the value is ${pick(source, late)}, not ${middle}`);
-    // nothing was recorded in this span: only the points before and after it are returned
+    // within this minute nothing was recorded, so the API returns only the last point before and the first point after it
     const joined = await told('TI-1', day, day + 60);
     assert.deepEqual(joined.map(([, value, quality]) => [value, quality]), [[12, 0], [80, 0]]);
 
@@ -262,7 +266,8 @@ test('an imported gap, blanks and state words count as no data in pictures, read
     assert.match(without.out, /TI-1,[^,]*,12,0x00000000,°C\r\nTI-1,[^,]*,80,0x00000000/);
     assert.doesNotMatch(without.out, /TI-1,[^,]*,,0x80310000/);
 
-    // Its Stale s of 1 s is shorter than ten times the spacing, so 3 s without a sample count as no data.
+    // The default for the longest gap is ten times the spacing of the samples, but not more than the tag's `Stale s`, which is
+    // 1 s for TI-2. So 3.5 s without a sample count as no data.
     const steps = Array.from({ length: 20 }, (_, i) => [i / 2 + (i > 9 ? 3 : 0), 50]);
     assert.match(bring('TI-2', steps), /Gaps without data: 1 \(longer than 1 s\)/);
     assert.ok((await told('TI-2', 0, 12)).some(([us, , quality]) => us === (from + 4.5) * 1e6 + 1 && quality === 0x80310000),

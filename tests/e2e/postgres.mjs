@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// History in Debian's PostgreSQL: every point once, with its quality, despite failures of the server, the connection and the
-// daemon; a replacement machine gets the history back.
+// History in Debian's PostgreSQL: the database gets every point exactly once with its quality, despite failures of the server,
+// the connection and the daemon. A replacement machine restores its history from the database.
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -13,7 +13,7 @@ import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs
 import { until as waitFor } from './support/until.mjs';
 
 const skip = notBuilt() || (missingPostgres() ?? false);
-const AWAY_MS = sweep(600000, 0); // additional time for which the database is away in long runs
+const AWAY_MS = sweep(600000, 0); // milliseconds for which the test additionally stops the database in long runs
 const options = { skip, timeout: 240000 + AWAY_MS };
 const TAGS = ['TI-1', 'TI-2', 'PI-1'];
 let server, plant, link, feeding, plain, databases = 0;
@@ -38,7 +38,7 @@ after(async () => {
     await server?.destroy();
 });
 
-// Changes readings all the time, so that each sample is recorded.
+// Changes all readings every 50 ms, so that the history must record each sample. Runs until stopFeeding().
 function feed() {
     let going = true;
     const done = (async () => {
@@ -57,7 +57,7 @@ async function stopFeeding() {
 }
 
 const historyOf = (name) => join(plant.folder, `${name}.history`);
-// Configures a new database and a new folder of history.
+// Writes the plant file with a new database and a new history folder. keep: the database of the previous call is used again.
 function configure({ port, more = '', space = '', folder = `h${databases}`, keep = false } = {}) {
     if (!keep)
         server.makeDatabase(`d${++databases}`, space);
@@ -78,7 +78,7 @@ const settled = () => until('nothing waits', async () => await metric('postgres_
 const sent = (count) => until(`${count} points are sent`, async () => await metric('postgres_points_total') >= count);
 const waiting = (count) => until(`${count} points wait`, async () => await metric('postgres_waiting_points') >= count);
 
-// Asserts that the database has the same points, up to three seconds ago, as the API, each once.
+// Asserts that the database and the API have the same points from `from` until three seconds ago, each exactly once.
 async function assertSame(from) {
     await stopFeeding();
     await settled();
@@ -110,7 +110,8 @@ async function assertSame(from) {
 }
 
 const begin = () => Math.floor(Date.now() / 1000) * 1e6;
-// Starts a daemon and waits until it has sent points. Returns since when.
+// Starts a daemon and changing readings, and waits until 20 points have been sent to the database. Returns the time before the
+// start in microseconds.
 async function startSending() {
     const from = begin();
     await plant.startDaemon();
@@ -161,7 +162,7 @@ test('the database has an import\'s gap and Bad sample, and a later import remov
     await until('the gap is gone', async () => rows().some(([s, value]) => s === 40.000001 && value === '10'));
     assert.deepEqual(rows().filter(([, , quality]) => quality === none), [[86410.000001, '', none]]);
 
-    // TI-2 has a Stale s of 1 s, so the 3.5 s after 4.5 s count as no data.
+    // TI-2 has a `Stale s` of 1 s, so the 3.5 s between the samples at 4.5 s and 8 s count as no data.
     writeFileSync(file, `Time,TI-2\n${Array.from({ length: 20 }, (_, i) => `${from + i / 2 + (i > 9 ? 3 : 0)},50`).join('\n')}\n`);
     bring();
     const without = () => server.ask(`SELECT extract(epoch FROM time)::numeric(20, 6) - ${from} FROM plantcast.history
@@ -170,7 +171,8 @@ test('the database has an import\'s gap and Bad sample, and a later import remov
     assert.deepEqual(without(), [4.500001, 12.500001]);
 });
 
-// Replaces Grafana's macros and variables, with these plants, tags and units selected.
+// Returns a dashboard's SQL query with Grafana's macros and variables replaced, as Grafana does for the selected plants, tags
+// and units (`chosen`).
 function expanded(sql, from, chosen) {
     const time = (at) => `${at} BETWEEN to_timestamp(${from / 1e6}) AND now()`;
     const text = (name) => [chosen[name]].flat().map((one) => `'${one.replaceAll("'", "''")}'`).join(',');
@@ -358,7 +360,8 @@ test('a replacement machine gets the plant\'s history and continues it', options
     await sent(200);
     const to = Date.now() / 1000;
     await assertSame(from);
-    // The newest samples are sent only every 5 s; until then, lines in the database end earlier.
+    // The daemon sends the newest sample of each tag only every 5 s. Waits for that, because until then the recorded time ends
+    // earlier in the database than in the API.
     const ends = `SELECT count(*) FROM plantcast.newest WHERE t > to_timestamp(${to})`;
     await until('the lines are that long there', () => Number(server.ask(ends)[0][0]) === TAGS.length);
     const url = (to) => `http://127.0.0.1:${plant.port}/api/v1/history?tags=${TAGS}&from=${from / 1e6}&to=${to}&points=20000`;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Long answers about history: a client that does not read its answer costs little memory, and one that requests everything does
-// not delay others.
+// Long answers about history: a client that does not read its answer costs the daemon little memory, and a client that requests
+// all history repeatedly does not delay other clients.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
@@ -12,7 +12,8 @@ import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const TAGS = 64, POINTS = Number(process.env.PLANTCAST_POINTS ?? 4000), BEGIN_S = 1793500000, READERS = 64;
-const SECONDS = Number(process.env.PLANTCAST_SECONDS ?? 2); // set longer, and with more points, for manual runs
+// duration of the measurement; manual runs set it longer, and set PLANTCAST_POINTS higher
+const SECONDS = Number(process.env.PLANTCAST_SECONDS ?? 2);
 const GREEDY = { localAddress: '127.0.0.2' }, OTHER = { localAddress: '127.0.0.3' };
 const names = Array.from({ length: TAGS }, (_, i) => `T-${i + 1}`);
 const query = (tags, points) => `/api/v1/history?tags=${tags}&from=${BEGIN_S}&to=${BEGIN_S + POINTS}&points=${points}`;
@@ -63,7 +64,7 @@ test('a long answer arrives complete, in pieces', options, async () => {
     const csv = await (await fetch(`${url}${all}&format=csv`)).text();
     assert.equal(csv.split('Tag,Time').length, 2, 'the CSV has one header line');
     assert.equal((await get(plant.port, all, 'HEAD')).status, 200);
-    const old = await new Promise((done) => { // HTTP/1.0: the end of the connection ends the body
+    const old = await new Promise((done) => { // with HTTP/1.0, the server marks the end of the body by closing the connection
         const socket = connect(plant.port, '127.0.0.1', () => socket.write(head(all).replace('1.1', '1.0')));
         let said = '';
         socket.on('data', (bytes) => { said += bytes; });
@@ -102,7 +103,8 @@ test('a client that constantly requests everything does not delay others', optio
             had += bytes.length;
             if (!going)
                 socket.destroy();
-            // asks again later: 503 because the server has not yet noticed that the earlier connections closed
+            // repeats a request that was refused with 503, because the server may not yet have noticed that the earlier
+            // connections of this address closed
             else if (bytes.toString('latin1', 0, 12).endsWith(' 503'))
                 setTimeout(() => socket.write(head(all)), 200);
             else if (bytes.subarray(-5).toString() === '0\r\n\r\n')

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Changed readings are shown at once, unchanged readings cost almost nothing, and a reading becomes stale even without a write.
+// The daemon sends changed readings at once, uses almost no processor time for unchanged ones, and marks a reading stale even
+// if no device writes anything.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -38,10 +39,11 @@ test('an event loop with nothing to do sleeps', options, async () => {
     await sleep(2000);
     const rate = await sleeps(3);
     assert.ok(rate < 5,
-        `the loop wakes ${rate} times a second`); // the loop would sleep ten times a second if it polled every tenth of a second
+        `the loop wakes ${rate} times a second`); // a loop that polled every 100 ms would wake ten times a second
 });
 
-// The device is read every 100 ms, so the oldest reading of a frame is as old as the change that led to the frame.
+// All tags are read every 100 ms, so the frame's oldest reading is about as old as the change that caused the frame. Its age is
+// the delay from the change to the frame.
 test('a changed reading is sent without waiting for a tick', options, async (t) => {
     const ages = [];
     for (let i = 0; i < CHANGES; i++) {
@@ -51,7 +53,7 @@ test('a changed reading is sent without waiting for a tick', options, async (t) 
         ages.push((await client.frameWhere(`change ${i}`, made)).oldest_age_ms);
         await sleep(350 + 37 * (i % 5));
     }
-    // The median would be 50 ms if the loop polled every tenth of a second.
+    // The median delay must be at most 35 ms; it would be 50 ms if the event loop looked for changes every 100 ms.
     promise(t, `from a reading to its frame, median of ${ages.join(', ')} ms`, median(ages), 35);
 });
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A new CAD export of an existing plant: matches stay, sensors follow their equipment, a review lists the rest. Tested with a
-// running daemon, undone, killed midway, and on a full disk.
+// `plantcast import` of a new CAD export into an existing plant: matches stay, sensors move with their equipment, and a review
+// lists what needs a decision. Tested with a running daemon, undone again, killed midway, and on a full disk.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import {
@@ -32,7 +32,8 @@ const review = (folder) => rowsOf(join(folder, 'review.csv'))
 const filesOf = (folder) => Object.fromEntries(readdirSync(folder, { withFileTypes: true })
     .filter((entry) => entry.isFile()).map(({ name }) => [name, readFileSync(join(folder, name)).toString('base64')]));
 
-// A pump moves, a second one is added, another is renamed, a pipe and a part of a tank are removed.
+// Writes a changed CAD export: the pump 1101 is moved, a copy of it is added as 1102, another pump is renamed, and a pipe and a
+// part of a tank are removed.
 function revise(folder) {
     const rvm = readRvm(readFileSync(`${SAMPLE}.rvm`)), path = join(folder, 'plm-sample.rvm');
     const replace = (name, by) => {
@@ -59,7 +60,7 @@ function bring(folder, ...more) {
     good(run('plantcast', 'import', `${SAMPLE}.rvm`, '-o', folder));
     writeFileSync(join(folder, 'export.csv'), LIST);
     good(run('plantcast', 'match', folder, join(folder, 'export.csv'), ...more));
-    // The user has confirmed the sensor's position on the pump that will move.
+    // edits the tag list as a user would who confirms the position of the sensor on the pump that the revision moves
     const list = join(folder, 'tags.csv'), text = readFileSync(list, 'utf8');
     writeFileSync(list, text.replace(/(TT-1101,.*-ART1101PO-,)equipment(,,).*/, '$1$2-4.700,-4.150,3.3'));
     assert.notEqual(readFileSync(list, 'utf8'), text);
@@ -86,13 +87,13 @@ test('a real plant\'s import applies renamed, moved, deleted and added equipment
     assert.match(file, /- \{ id: "-ART1102PO-", /);
     assert.doesNotMatch(file, /ART1010TY/);
     good(run('plantcastd', '--check', join(plant, 'plant.yaml')));
-    // Matching again undoes nothing; a tag that left the list is named.
+    // Running `plantcast match` again must not undo the revision, and must name the tag that is missing from the new tag list.
     writeFileSync(join(plant, 'export.csv'), LIST.replace(/^art1111po.*\n/m, ''));
     const again = good(run('plantcast', 'match', plant, join(plant, 'export.csv')));
     assert.match(again.stdout, /1 tags are no longer in the exported list; decisions about these tags are kept: art1111po\.TE-03/);
     assert.equal(readFileSync(join(plant, 'tags.csv'), 'utf8'), list);
     assert.match(readFileSync(join(plant, 'matches.csv'), 'utf8'), /^art1111po\.TE-03,sure,-ART1111PO-,/m);
-    // matches.csv has changed since, so undoing requires --force.
+    // The second match changed matches.csv after the import, so undoing the import requires --force.
     const refused = run('plantcast', 'import', '--undo', '-o', plant);
     assert.equal(refused.status, 1);
     assert.match(refused.stderr, /changed since the import: matches\.csv; --force undoes/);
@@ -141,8 +142,8 @@ T5;temperature;second;;equipment;;;;e
 T6;temperature;second;TT-9;;;;;f
 `);
     const first = filesOf(plant);
-    // A and B exchange names; A is rotated about the vertical and moved; C has another number; TT-9 is gone; D is moved; F is
-    // new; E, which no asset uses, is gone.
+    // The new model: A and B exchange their names; A is also rotated about the vertical and moved; C has another number; TT-9,
+    // the node of T2, is missing; D is moved; F is new; E, which no asset uses, is missing.
     boxes(model, [{ ...D, at: [20, 0, -3] }, { name: 'F', at: [40, 0, 0] }, C, { ...B, name: 'A' },
         { ...A, name: 'B', at: [0, 1, 0], turned: true }]);
     const said = good(run('plantcast', 'import', model, '-o', plant));
@@ -152,7 +153,8 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(file, /nodes: "#2"\n/);
     assert.match(file, /- \{ id: "F", model: "m\.glb", nodes: "F" \}/);
     assert.doesNotMatch(file, /id: "E"/);
-    // (0.5, 1, 0), Y up, after a quarter turn about Y and 1 m upwards: (0, 2, -0.5).
+    // Expected position of T1, which was at (0.5, 1, 0) on A: A's quarter turn about Y, then A's movement by 1 m upwards give
+    // (0, 2, -0.5) in glTF's axes with Y up.
     assert.match(tags, /^T1;temperature;first;;;0;0\.5;2;a$/m);
     assert.match(tags, /^T2;temperature;second;;equipment;;;;b$/m);
     assert.match(tags, /^T3;temperature;third;"?#2"?;;;;;c$/m);
@@ -161,16 +163,17 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(said.stdout, /tag +place lost +T2 +on second: the tag's node TT-9 is no longer in the model/);
     assert.match(said.stdout, /tags: 2 moved, 2 place lost/);
     assert.ok(review(plant).includes('node removed E'));
-    // Importing the same again changes nothing, and undo still restores the state before the first import.
+    // A second import of the same model changes nothing, and undo still restores the files as they were before the first
+    // import.
     assert.match(good(run('plantcast', 'import', model, '-o', plant)).stdout, /plant\.yaml: unchanged/);
     good(run('plantcast', 'import', '--undo', '-o', plant));
     assert.deepEqual(filesOf(plant), first);
-    // No name of the plant is in the new model: it belongs to another plant.
+    // A model without any node name of the plant belongs to another plant: the import must refuse it.
     boxes(model, [{ name: 'X', at: [100, 0, 0] }]);
     const other = run('plantcast', 'import', model, '-o', plant);
     assert.equal(other.status, 1);
     assert.match(other.stderr, /the imported models contain no asset of this plant/);
-    // An additional model adds its assets.
+    // Importing a model file with a new name adds its assets to the plant and leaves the others.
     boxes(join(folder, 'n.gltf'), [{ name: 'G', at: [50, 0, 0] }, { name: 'A', at: [60, 0, 0] }]);
     good(run('plantcast', 'import', join(folder, 'n.gltf'), '-o', plant));
     assert.match(readFileSync(join(plant, 'plant.yaml'), 'utf8'), /- \{ id: "G", model: "n\.glb", nodes: "G" \}\n/);
@@ -226,7 +229,8 @@ test('under a running daemon, readings, history and alarms keep their tags', { s
         await until('a reading', async () => (await value('TT-1101')).value === 77);
         const before = await api('/api/v1/plant');
         good(run('plantcast', 'import', revise(outside), '-o', plant));
-        assert.equal((await value('TT-1101')).value, 77); // users who stayed connected see the same values as before
+        // the daemon still serves the old files, so the connected users' values are unaffected until the reload
+        assert.equal((await value('TT-1101')).value, 77);
         assert.equal(tiny.prepare().code, 0);
         const reload = async () => {
             const answer = await fetch(`http://127.0.0.1:${tiny.port}/api/v1/reload`, { method: 'POST' }), said = await answer.json();
@@ -271,12 +275,14 @@ test('after a kill midway or a full disk, the plant is the old or the new one', 
         child.kill('SIGKILL');
         await ended;
         const now = filesOf(plant), hourAgo = new Date(Date.now() - 3600000);
-        // leaves a trial file, like a program that was killed while it tried the new plant file
+        // leaves the trial plant file of a program that was killed while it checked the new plant file
         writeFileSync(join(plant, `.trial.${child.pid}.yaml`), '');
-        // makes the left files look old: the program would not delete files of the last minute, which may be in use
+        // makes the left files an hour old, because the next import does not delete files of the last minute, which another
+        // program may be using
         for (const name of readdirSync(plant).filter((left) => left.includes(`.${child.pid}.`)))
             utimesSync(join(plant, name), hourAgo, hourAgo);
-        // untouched: the killed import changed no file; otherwise the next import completes its changes
+        // true: the killed import had not yet changed any of the plant's files. Otherwise the next import first completes its
+        // changes. Both must end with the same files (`whole`).
         const untouched = Object.keys(old).every((name) => now[name] === old[name]);
         kept += untouched;
         if (untouched)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The soak test of a whole host (make soak-host) leaves no program, mount or file behind: after Ctrl-C, after a kill, and after
-// a failed start.
+// The soak test of a whole host (make soak-host) must leave no process, mount or file behind: when it is ended by Ctrl-C, when
+// it is killed, and when its start fails.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { chmodSync, mkdtempSync, readdirSync, readFileSync, readlinkSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
@@ -29,7 +29,8 @@ function programsOf(folder) {
 }
 const mountsOf = (folder) => readFileSync('/proc/mounts', 'utf8').split('\n').filter((line) => line.includes(folder));
 
-// Starts the soak test as the Makefile does, in its own process group like a shell's job.
+// Starts the soak test as the Makefile does. It runs in its own process group, so that a signal to the group acts like Ctrl-C
+// in a shell.
 function soak(t, bin = BIN) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-soak-')), { NODE_TEST_CONTEXT, ...env } = process.env;
     chmodSync(folder, 0o711); // lets PostgreSQL, which runs as another user, enter the folder

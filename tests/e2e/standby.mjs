@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores and a database: one polls and owns the alarms, the other takes over within 5 s after a kill -9. Whatever is cut,
-// stopped or killed, the two never poll at the same time; no operator action is lost, and no notification is sent twice.
+// Two cores and a database: the leading core polls the devices and owns the alarms, and the standby takes over within 5 s after
+// a kill -9. Whichever connection or program fails, the two must never poll at the same time, lose an operator action or send a
+// notification twice.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { linkSync, readdirSync, renameSync, writeFileSync } from 'node:fs';
@@ -40,7 +41,7 @@ after(async () => {
 });
 
 const begin = () => Math.floor(Date.now() / 1000) * 1e6;
-// TI-2 changes all the time, so that each sample is recorded.
+// Changes TI-2 every 40 ms until feeding() is called, so that the history must record each sample.
 function feed() {
     let going = true;
     const done = (async () => {
@@ -72,7 +73,8 @@ test('of two cores one leads, the other follows and is not ready; a renderer fin
     assert.equal(terms(two.other(core)), 0);
     await core.program.line(/history: read \d+ points from PostgreSQL/);
     const months = readdirSync(join(two.plant.folder, core.name, 'history')).filter((name) => /^history-[\d-]+\.sqlite$/.test(name));
-    // only months with points have a file: one, or two if a month has just begun
+    // the core has one month file, or two if a month has just begun: it reads only months with points from the database and
+    // creates no files for the others
     assert.ok(months.length < 3, `months without points are not queried: ${months}`);
     t.diagnostic(`${core.name} leads`);
 });
@@ -94,14 +96,15 @@ test('kill -9 of each leader: the other core polls within 5 s, operators\' actio
         anna.say({ type: 'note', seq: 50 + round, text: `round ${round}`, asset: 'E-101' });
         await anna.text('noted');
         anna.close();
-        // the last round cuts the link to the standby, which then misses what the leader records
+        // In the last round, the connection to the standby is cut 4.5 s before the leader is killed, so that the standby lacks
+        // the last points and must read them from the database.
         const cut = round === 3 ? two.other(core).toOther : null;
         if (cut) {
             await cut.cut();
             cutAt = (Date.now() + 100) * 1000;
             await sleep(2000);
             await feeding();
-            await sleep(2500); // waits until the leader has sent all recorded points
+            await sleep(2500); // waits until the leader has sent all recorded points to the database
             killedAt = Date.now() * 1000;
         }
         const { leads, pause_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
@@ -125,8 +128,9 @@ test('kill -9 of each leader: the other core polls within 5 s, operators\' actio
     t.diagnostic(JSON.stringify(hook.taken.map(({ alarms, ...more }) => [more.id, alarms.map(({ tag, state }) => `${tag} ${state}`)])));
 });
 
-// Each core begins a line with the first sample that it gets: such a point may lie on a line in the database, which then means
-// the same. The database also lacks the last unchanged sample of a killed leader.
+// Returns whether a point that the database lacks follows from its points, because it lies on the line between the neighbours
+// or repeats the last value. A core begins a line with the first sample that it gets, so it may have such points. The database
+// also lacks the last unchanged sample of a killed leader.
 function isOnLine(points, us, value, quality) {
     const all = [...points].map(([at, text]) => [Number(at), ...text.split(' ')]).filter((one) => one[2] === quality);
     const next = all.findIndex(([at]) => at > Number(us)), [a, b] = [all[next - 1], all[next]];
@@ -137,16 +141,19 @@ function isOnLine(points, us, value, quality) {
     return Math.abs(a[1] - value + (b[1] - a[1]) * (us - a[0]) / (b[0] - a[0])) < 1e-9;
 }
 
-// While nothing changes, a core needs no point, but the returning core has sent its own first point to the database.
+// Returns whether a point that only the database has lies between two points with its own value and quality. A core records no
+// such points, but the core that returned has sent its first point to the database.
 function isOfRest(points, us, value, quality) {
     const all = [...points].map(([at, text]) => [Number(at), ...text.split(' ')]), next = all.findIndex(([at]) => at > Number(us));
     return [all[next - 1], all[next]].every((one) => one && one[1] === value && one[2] === quality);
 }
 
-const FEW = 50; // limit on points waiting to be sent: there are always new ones
+// maximum number of points waiting to be written at which files and database count as up to date; some always wait while values
+// change
+const FEW = 50;
 
-// Only make test-long runs this test, because two cores, a device and a database each run at their own pace. historian_test
-// covers points that arise from the passing of time alone.
+// Only `make test-long` runs this test: its result depends on how two cores, a device and a database happen to be timed.
+// historian_test covers the cases that depend on time with a simulated clock.
 const inLong = { ...options, skip: skip || long };
 test('history is complete: database and API agree, and only the take-overs are gaps', inLong, async () => {
     await sleep(5000);
@@ -157,7 +164,8 @@ test('history is complete: database and API agree, and only the take-overs are g
     for (const node of [core, two.other(core)].map((one) => one.node))
         await until('the files are up to date', async () => await node.metric('plantcast_history_waiting_points') < FEW, 30);
     await until('the database is up to date', async () => await core.node.metric('plantcast_postgres_waiting_points') < FEW, 30);
-    // [core, how often it must have read what it lacked]: twice for the core whose standby left and came back
+    // [core, how often it must have read the points of another core's lead]: twice for the core whose standby was cut off and
+    // came back, once for the other
     for (const [one, often] of [[core, 2], [two.other(core), 1]])
         await until('what it lacked is read', () => one.program.said.split('polls devices and owns').pop()
             .match(/read \d+ points from PostgreSQL, covering the \d+ s in which another core led/g)?.length >= often, 60);
@@ -188,7 +196,8 @@ test('history is complete: database and API agree, and only the take-overs are g
 });
 
 test('no alarm was notified twice, and each alarm change is in both cores\' journals once', options, async () => {
-    // messages by id, because a killed sender may send one twice
+    // one message per id, because a sender that was killed before it noted the success may send the message again with the same
+    // id
     const messages = [...new Map(hook.taken.map((one) => [one.id, one])).values()];
     const told = messages.flatMap(({ alarms }) => alarms.map(({ tag, state, raised }) => `${tag} ${state} ${raised}`));
     assert.deepEqual(told.filter((one, i) => told.indexOf(one) !== i), []);
@@ -229,7 +238,8 @@ test('a standby that is loading its plant takes over as fast as an idle one', op
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGKILL'));
     assert.doesNotMatch(other.program.said, /reload:/);
     renameSync(`${list}.kept`, list);
-    writeFileSync(`${list}.fifo`, ''); // lets the waiting reload continue, which then finds that the list is not a regular file
+    // writes to the FIFO on which the core's reload waits; the reload then reports that the tag list is not a regular file
+    writeFileSync(`${list}.fifo`, '');
     await other.program.line(/reload:/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
@@ -298,7 +308,8 @@ test('a database that refuses every change is logged once, and its recovery once
     assert.equal(server.psql(`REVOKE UPDATE ON ${table} FROM plantcast`).status, 0);
     try {
         await until('the refusal in the log', () => count('permission denied') === 1);
-        const before = beat(), end = performance.now() + 3000; // time for several turns of the thread that renews the lease
+        // 3 s in which the thread that renews the lease tries several times and the database refuses each time
+        const before = beat(), end = performance.now() + 3000;
         await until('several turns', () => performance.now() > end);
         assert.equal(beat(), before, 'the database stores no change');
         assert.ok(await two.ready(core), 'the core leads with the lease confirmed by its standby');
@@ -310,7 +321,7 @@ test('a database that refuses every change is logged once, and its recovery once
     await until('that it is well again', () => count('PostgreSQL answers again') === 1);
 });
 
-// Receives what a service tells its manager (sd_notify): { said, child }.
+// Listens on a socket as systemd does for sd_notify(). Returns { said: the messages that the core sent, child }.
 function manager(path) {
     const told = { said: '' };
     told.child = spawn('python3', ['-c', `import socket
@@ -334,13 +345,13 @@ test('during maintenance of the standby and without the database, the leader pol
     standby('maintenance');
     await alone(1);
     await core.program.line(/lease: standby: maintenance: this core leads alone/);
-    // A database that answers but refuses each change, like one with a full disk: the order to leave maintenance must wait for
-    // it.
+    // Makes the database refuse every change of the lease, as one with a full disk would. The core must therefore not leave
+    // maintenance (leading alone) although it is told to.
     server.ask(`CREATE FUNCTION refuse() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RAISE 'refused'; END $$;
         CREATE TRIGGER refuse BEFORE UPDATE ON plantcast.lease EXECUTE FUNCTION refuse()`);
     standby('normal');
     await core.program.line(/lease: PostgreSQL does not answer \(.*refused/);
-    await sleep(5000); // wait longer than a lease lasts
+    await sleep(5000); // longer than the validity of a lease: the core must still lead
     assert.ok(await two.ready(core), 'the core continues to lead');
     server.ask('DROP FUNCTION refuse CASCADE');
     await alone(0);
@@ -349,7 +360,7 @@ test('during maintenance of the standby and without the database, the leader pol
     const since = two.network.now();
     await server.kill();
     await core.program.line(/lease: PostgreSQL does not answer/);
-    await sleep(5000); // wait longer than a lease lasts
+    await sleep(5000); // longer than the validity of a lease
     assert.ok(await two.ready(core));
     const pause_ms = await two.network.longestPause(since);
     t.diagnostic(`${pause_ms.toFixed(0)} ms without a poller`);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cores whose clocks differ by an hour: the standby reports that and takes over as fast as usual; nothing is lost, notified
-// twice or shown older than it is. Points that a core with a slow clock recorded while the other was away are not read by the
-// other afterwards, but the database has them.
+// Two cores whose clocks differ by an hour: the standby reports that and takes over as fast as usual. No point is lost, no
+// notification is sent twice, and no value is shown older than it is. If a core with a slow clock recorded points while the
+// other core was away, the other does not read them when it returns, but the database has them.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -21,7 +21,7 @@ after(() => server?.destroy());
 
 const json = async (node, path) => (await node.fetch(path)).json();
 
-// Returns the good points of TI-2, [[time_us, value], ...], recorded at a core and in its database.
+// Returns the good points of TI-2 in a core's history as [[time_us, value], ...]; sent() returns those in the database.
 async function recorded(node) {
     const now_s = Date.now() / 1000, span = `from=${now_s - 2 * HOUR_S}&to=${now_s + 2 * HOUR_S}`;
     const { series } = await json(node, `/api/v1/history?tags=TI-2&${span}&points=20000`);
@@ -31,7 +31,7 @@ const sent = () => server.ask(`SELECT (extract(epoch FROM s.t) * 1000000)::bigin
     JOIN plantcast.tag g ON g.id = s.tag WHERE g.name = 'TI-2' AND s.q = 0 AND s.v IS NOT NULL ORDER BY s.t`)
     .map(([us, value]) => [Number(us), Number(value)]);
 
-// Changes TI-2 twenty times, each time after the leader has read the previous value.
+// Changes TI-2 twenty times, each time after the leading core has read the previous value.
 async function move(two, leader) {
     for (let i = 0; i < 20; i++) {
         const value = 20 + i % 7;
@@ -40,7 +40,8 @@ async function move(two, leader) {
     }
 }
 
-// Allows late answers of the device on a busy machine; otherwise the journal would list Bad readings.
+// Lengthens the device's timeout and the tags' `Stale s`. Otherwise the journal would contain alarms for Bad readings if the
+// device answers late on a busy machine.
 function allowLateAnswers({ file, plant }) {
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(file, readFileSync(file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000'));
@@ -102,7 +103,8 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await all('one', () => recorded(one.node), [30, 0]);
             await all('the database', sent, [30, 15]);
             const { rows } = await json(one.node, '/api/v1/alarms/journal?tag=TI-1');
-            // BAD comes and goes on a busy machine that delays readings by more than `Stale s`.
+            // Only the events of the high alarm (H) are compared. On a busy machine alarms of kind BAD may be raised and
+            // cleared, because readings arrive later than `Stale s`.
             const events = rows.filter(({ kind }) => kind === 'H').map(({ event }) => event);
             assert.ok(events.includes('raise') && new Set(events).size === events.length, `each event occurs once: ${events}`);
         } finally {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display paired at the leading core is also paired at the core that takes over; one revoked there stays revoked when the
-// first core leads again.
+// A display that was paired at the leading core is still paired at the core that takes over. A display whose pairing is revoked
+// there stays revoked when the first core leads again.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { runProgram } from './support/tiny_plant.mjs';
@@ -30,7 +30,8 @@ const ask = async ({ port }) => {
     const headers = { Authorization: `Pairing ${SECRET}` };
     return (await fetch(`http://127.0.0.1:${port}/api/v1/pair?wall=room&display=1`, { headers })).json();
 };
-// Sends an action to a renderer, which answers once the standby has it too, and refuses it while the renderer has no core.
+// Sends a pairing action through the renderer until it succeeds. The renderer answers after the standby has stored the action
+// too, and refuses it while it has no core.
 const act = (message) => until('the answer of the core', async () => {
     const client = await renderer.client({}, { token: engineer });
     client.say({ seq: 1, ...message });
@@ -38,7 +39,7 @@ const act = (message) => until('the answer of the core', async () => {
     client.close();
     return answer.type === 'paired' && answer;
 }, 60);
-// Checks that the display is shown its wall's picture.
+// Asserts that the node admits the display and sends it a picture of its wall.
 async function shows(node) {
     const client = await until('being let in',
         () => node.client({ headers: [`Authorization: Bearer ${SECRET}`] }, { token: SECRET }).catch(() => null));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A leader that is shut down properly evaluates its last samples, sends them to its standby and hands over the lease: each
-// change of an alarm is written once, the standby leads at once, and the two never poll at the same time.
+// A leading core is shut down properly: it evaluates its last samples, sends them to its standby and hands over the lease.
+// Expected: the journal has each alarm change once, the standby leads at once, and the two never poll at the same time.
 import assert from 'node:assert/strict';
 import { copyFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -10,7 +10,8 @@ import { runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 }, STOPS = 2, ROWS = 20, POLL_MS = 100;
-const GIVEN_MS = 1500, BLIND_MS = 2500; // time without a poller; time without readings at a renderer
+// GIVEN_MS: maximum time in which no core polls; BLIND_MS: maximum time in which a renderer has no usable readings
+const GIVEN_MS = 1500, BLIND_MS = 2500;
 let two, stopFeeding;
 
 before(async () => { two = skip ? null : await TwoCores.running((cores) => cores.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 })); });
@@ -19,7 +20,7 @@ after(async () => {
     await two?.destroy();
 });
 
-// Makes the alarm of TI-1 come and go with each poll.
+// Sets TI-1 alternately above and below its limit, once per poll interval, until stopFeeding().
 function feed() {
     let going = true;
     const done = (async () => {
@@ -36,13 +37,13 @@ async function journal(core, tag) {
     return (await (await core.node.fetch(`/api/v1/alarms/journal?tag=${tag}&limit=1000`)).json()).rows;
 }
 
-// Returns the changes of TI-1's alarm, the oldest first.
+// Returns the journal rows of TI-1's high alarm at a core, the oldest first.
 async function changes(core) {
     const rows = await journal(core, 'TI-1');
     return rows.filter(({ kind }) => kind === 'H').map(({ time_us, event, state }) => `${time_us} ${event} ${state}`).sort();
 }
 
-// Measures the longest time without usable readings at a renderer: { end() } returns it in milliseconds.
+// Watches a renderer every 20 ms. end() returns the longest time in milliseconds in which TI-1 was not Good there.
 function watch(renderer) {
     let going = true, longest = 0, seen = performance.now();
     const done = (async () => {
@@ -75,9 +76,10 @@ test('with changing leaders each change of an alarm is written once, and the sta
     const core = await two.leader();
     await two.followed(core);
     await stopFeeding();
-    await two.plant.tell('set TI-1 51'); // a value that feed() does not use: once it is read, no change is under way
+    await two.plant.tell('set TI-1 51'); // a value that feed() never sets: once the core has read it, it has read all earlier changes
     await until('the last value', async () => (await core.node.tags())['TI-1'].value === 51);
-    // The journal is written in order: once a later alarm of another tag is in it, so are all changes of TI-1's alarm.
+    // Raises an alarm of another tag. The journal is written in order, so when it contains this alarm, it contains all earlier
+    // changes of TI-1's alarm.
     await two.plant.tell('set TI-2 95');
     await until('a later alarm', async () => (await journal(core, 'TI-2')).some(({ event, kind }) => event === 'raise' && kind === 'H'));
     assert.match((await changes(core)).at(-1), / clear /);
@@ -89,7 +91,7 @@ test('with changing leaders each change of an alarm is written once, and the sta
     assert.deepEqual(await two.network.overlaps(), []);
 });
 
-// Restarts both cores, each with its own token file and its own token with the role standby.
+// Restarts both cores so that each has a token file of its own and a token of its own for the role standby.
 async function separateTokens() {
     for (const core of Object.values(two.cores)) {
         const own = (name) => join(two.plant.folder, core.name, name);
@@ -127,7 +129,9 @@ test('the cores get new tokens as KEYS.md describes, without a refused connectio
     await two.restart(leader);
     await two.followed(standby);
     await revokeLeaders();
-    await two.goesOn(t, standby, 4); // a daemon ends connections with a revoked token within 3 s
+    // waits longer than the 3 s within which a daemon ends connections whose token was revoked; the standby must still follow
+    // the leader
+    await two.goesOn(t, standby, 4);
     await two.followed(standby);
     for (const { node, program } of [leader, standby]) {
         assert.equal(await node.metric('plantcast_core_refused_total'), 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values read from pictures with a legend strip, from their pixels alone, compared with the renderer's values: from the picture
-// itself, from JPEGs, and from a screenshot that was scaled, framed and compressed.
+// Values read back from pictures with a legend strip (a printed row of colours with their values), from the pixels alone, are
+// compared with the renderer's values. Sources: the picture itself, JPEGs of it, and a screenshot that was scaled, framed and
+// compressed.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, writeFileSync } from 'node:fs';
@@ -25,8 +26,9 @@ const ffmpeg = (from, to, ...more) => {
 const readings = (out) => [...out.matchAll(/^(\d+),(\d+): ([-\d.e]+) °C \(([-\d.e]+) to ([-\d.e]+)\)$/gm)]
     .map(([, x, y, value, low, high]) => ({ x: Number(x), y: Number(y), value: Number(value), low: Number(low), high: Number(high) }));
 
-// Returns the share of points that are read, the share of value bounds that contain the true value, and the mean error and mean
-// width in percent of the range.
+// Reads all points of `spots` from a picture; move maps a point of the original picture to this one. Returns as shares: points
+// that can be read, and points whose bounds contain the true value; in percent of the range: the mean error and the mean width
+// of the bounds.
 function judge(name, move = ([x, y]) => [x, y]) {
     const { out } = read(name, ...spots.map(({ at }) => move(at)));
     const truth = new Map(spots.map(({ at, value }) => [move(at).join(), value]));
@@ -47,7 +49,8 @@ before(async () => {
     assert.equal(plant.prepare().code, 0);
     const { code, err } = snapshot('whole.png', '--strip', 'legend');
     assert.equal(code, 0, err);
-    // The renderer's values on a grid. Of 65 points, four lie under a marker, a label or an edge and have no legend colour.
+    // The renderer's values at 65 points of a grid. Four of the points have no legend colour, because they lie under a marker,
+    // a label or an edge.
     spots = [];
     for (let x = 420; x < 900; x += 48)
         for (let y = 160; y < 600; y += 55) {
@@ -70,7 +73,8 @@ test('values are read from a snapshot with a legend strip', { skip }, () => {
     assert.ok(share > 0.9 && held > 0.97 && error < 0.4 && width < 6);
 });
 
-for (const quality of [3, 8]) { // in ffmpeg's quality scale, these are about 90 and 70 of other programs
+// ffmpeg's quality scale is inverted: 3 and 8 correspond to qualities of about 90 and 70 in other programs
+for (const quality of [3, 8]) {
     test(`values are read from a JPEG of ffmpeg quality ${quality}`, { skip }, () => {
         ffmpeg('whole.png', 'whole.jpg', '-q:v', String(quality));
         const { read: share, held, error, width } = judge('whole.jpg');

@@ -215,8 +215,9 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pi
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
     lanes_int reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
     pixel_value_of(field, &sums, out);
-    /* view of blindness: height of the smallest hot spot here that a sensor would detect: field->seen * e^((d/s)^2 / 2), at
-       most field->most. d: distance of the nearest sensor; s: size of a hot spot */
+    /* The blind-spot view shows how much hotter than its surroundings a spot centred here must be, so that the nearest sensor
+       detects it: field->seen * e^((d/s)^2 / 2), limited to field->most. d: distance to that sensor; s: field->hot_spot_m,
+       the standard deviation of its Gaussian shape; seen: the smallest excess that a sensor detects at its own position */
     if (field->show == PIXEL_BLIND) {
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);

@@ -22,8 +22,8 @@ struct laplacian {
     double *mass_m2;                /* by row: a third of the area of all triangles at the row's point */
 };
 
-/* Assigns matrix rows to the points of `in`, and measures its triangles. `in` must outlive *laplacian. Returns false if out of memory; call
- * laplacian_finish() in both cases. */
+/* Assigns matrix rows to the points of `in`, and computes each triangle's slopes and each point's area (mass_m2) from the edge
+ * lengths. `in` must outlive *laplacian. Returns false if out of memory; call laplacian_finish() in both cases. */
 bool laplacian_init(struct laplacian *laplacian, const struct intrinsic *in);
 /* Frees the arrays. */
 void laplacian_finish(struct laplacian *laplacian);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// On a control room's wall of any size and viewing distance, legends, clock and data age are complete and do not cover the
-// picture.
+// The wall page (pictures on a control room's screens) at several screen sizes and viewing distances: legends, clock and data
+// age are shown completely and do not cover the picture.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -26,7 +26,7 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Returns elements that are cut off or cover the picture.
+// Returns the page's elements that are cut off or that cover the picture; there should be none.
 const amiss = (page) => page.evaluate(() => {
     const box = (element) => element.getBoundingClientRect(), picture = box(document.getElementById('viewport')), found = [];
     const all = (selector) => [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && box(e).width > 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The demo plant that all tests in this folder share, each with its own pages. Its readings change only when a test sets them,
-// so that pages do not request pictures all the time.
+// Starts the demo plant that all tests in this folder share; each test opens its own pages. Readings change only when a test
+// sets them, so that pages do not request pictures all the time.
 import { after } from 'node:test';
 import { startPlant } from '../support/plant.mjs';
 
@@ -14,7 +14,7 @@ async function start() {
     return started;
 }
 
-// Returns the plant; the first caller starts it.
+// Returns a promise of the plant. The first call starts it.
 export function demo() {
     plant ??= start();
     return plant;

@@ -13,7 +13,7 @@ import { becomes, until } from '../support/until.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
-const LARGE = { viewport: { width: 1920, height: sweep(1080, 800) } }; // every control has room on this screen
+const LARGE = { viewport: { width: 1920, height: sweep(1080, 800) } }; // a desktop screen large enough to show all controls
 let plant;
 
 before(async () => {
@@ -91,7 +91,9 @@ test('tablet: one finger orbits, two fingers pan and zoom', options, () => withP
     await settle(page);
     let tries = 0;
     await until('home again', async () => {
-        if (tries++ % 60 === 0) // Chromium may take a tap right after a three-finger gesture for the end of that gesture
+        // Chromium may treat a tap right after a three-finger gesture as the end of that gesture, so the tap on `home` is
+        // repeated every 60 checks
+        if (tries++ % 60 === 0)
             await page.locator('#home').tap();
         return isHome(await view(page));
     });
@@ -143,7 +145,8 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     const places = await page.evaluate(() =>
         globalThis.plantcast.overlay.markers.map(({ tag, x, half, alarm }) => ({ group: tag.group, x, half, alarm: Boolean(alarm) })));
     for (const { group, x, half, alarm } of places) {
-        // each half marks the sensors of its own group, and tags in alarm of any group
+        // each half of the split picture has markers for the sensors of its own group, and for tags of any group that are in
+        // alarm
         assert.ok(alarm || group === (half ? 'pressure' : 'temperature'), `a marker of group ${group} is in half ${half}`);
         assert.equal(half, box.x + x >= middle - 1 ? 1 : 0);
     }
@@ -154,7 +157,7 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     await page.locator('#groups label', { hasText: 'Temperature' }).click();
     await page.locator('#viewport').focus();
     await page.keyboard.press('j');
-    // the right half shows the quantity that it showed before
+    // key j splits the picture: the right half shows the quantity that was shown before the present one (vibration)
     await page.waitForFunction(() => document.getElementById('right-group').value === 'vibration');
     await page.keyboard.press('j');
     await page.locator('#split-bar').waitFor({ state: 'hidden' });
@@ -244,7 +247,8 @@ test('legends stay readable beside an open panel, which ends above the status ba
             }
         }
         await set({ split: null });
-        await page.locator('#alarm-strip').click(); // the list takes the place that the panel would cover
+        // opens the alarm list, which takes the place that the picture panel would otherwise cover
+        await page.locator('#alarm-strip').click();
         await page.locator('#alarms').waitFor();
         await page.locator('#picture-toggle').click();
         await page.locator('#picture-panel.open').waitFor();
@@ -307,7 +311,8 @@ test('phones: panels are sheets of at most 40 % beside the picture, the legend i
         const upright = height > width, name = `${width}x${height}`;
         await page.setViewportSize({ width, height });
         await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
-        const isOpen = (is) => page.waitForFunction((open) => { // a tap is followed by its click
+        // waits for the legend's height, because the browser sends the click that opens or closes it some time after the tap
+        const isOpen = (is) => page.waitForFunction((open) => {
             const { height: high } = document.getElementById('legend').getBoundingClientRect();
             return open ? high > 60 : high === 28;
         }, is);
@@ -435,7 +440,8 @@ test('phones: a trend\'s chart is readable, its table fits, and the picture stay
         temperatures.forEach((tag, i) => (i === 0 ? showTrend : addTrend)(tag));
     });
     await page.waitForFunction(() => globalThis.plantcast.trends?.series.size === 3);
-    // chooses 30 days, of which only minutes are recorded, so that the table shows its column for incomplete periods
+    // chooses the span of 30 days, of which only minutes are recorded, so that the table shows its column for incomplete
+    // periods
     await page.locator('#trend-span label').nth(4).tap();
     await page.locator('#trend-tags.lacks .known').first().waitFor();
     for (const [width, height] of PHONES) {
@@ -469,7 +475,8 @@ test('phone: two fingers pinch, twist and pan', options, () => withPage(PHONE, a
     assert.notDeepEqual(panned.camera.target, twisted.camera.target);
 }));
 
-// [width, height] of a phone held upright, one held sideways, a small one, and a folded one.
+// screen sizes [width, height] in CSS pixels: a phone held upright, the same phone held sideways, a small phone, and a folded
+// one
 const HELD = [[390, 844], [844, 390], [360, 740], [280, 653]];
 
 test('phones: names and states are readable and complete, and controls are finger-sized', options, () => withPage(PHONE, async (page) => {
@@ -481,7 +488,8 @@ test('phones: names and states are readable and complete, and controls are finge
         const words = await page.evaluate(() => ['plant-name', 'health'].map((id) => document.getElementById(id))
             .filter((e) => e.clientWidth < 30 || e.scrollWidth > e.clientWidth + 1).map((e) => e.id));
         assert.deepEqual(words, [], name);
-        const isOver = await page.evaluate(() => { // the plant's state, even if long, does not cover the words of the alarm strip
+        // with the longest text of the connection state, the state must not cover the words of the alarm strip
+        const isOver = await page.evaluate(() => {
             const state = document.querySelector('#health .words'), { textContent } = state;
             state.textContent = 'Keine Verbindung zum Server';
             const strip = document.getElementById('alarm-strip'), [a, b] = [strip, document.querySelector('.identity')]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Five hundred assumed positions, filtered by equipment, name, distance and confidence, are accepted at once; restoring the old
-// list gives the same bytes.
+// The page accepts, in one step, the assumed positions of five hundred tags, filtered by equipment, name, distance and
+// confidence. Restoring the old tag list afterwards gives the same bytes as before.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -17,7 +17,8 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync
 const options = { skip, timeout: 200000 };
 const ASSUMED = 500, OFF_M = 0.4;
 const name = (i) => `TA-${String(i).padStart(3, '0')}`;
-// A hundred are off the surface of E-101, fifty are on P-101A, and twenty have no position.
+// Of the 500 tags, every fifth lies 0.4 m off the surface of its equipment, every tenth belongs to P-101A, and the last twenty
+// have no position.
 const isOff = (i) => i % 5 === 0, isNowhere = (i) => i >= 480, assetOf = (i) => (i % 10 === 1 ? 'P-101A' : 'E-101');
 const confidence = (i) => (i < 250 ? 0.95 : 0.6);
 const count = (of) => Array.from({ length: ASSUMED }, (_, i) => i).filter(of).length;
@@ -29,7 +30,7 @@ before(async () => {
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
     const head = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Place\n');
-    const middle = { 'E-101': 0, 'P-101A': 3 }; // x of the middle of each box, which is 1 m wide
+    const middle = { 'E-101': 0, 'P-101A': 3 }; // x coordinate in metres of the middle of each equipment's box; the boxes are 1 m wide
     writeFileSync(tagsFile, head + Array.from({ length: ASSUMED }, (_, i) => {
         const x = middle[assetOf(i)] - 0.45 + 0.9 * ((i * 37 % 100) / 100), z = -0.45 + 0.9 * ((i * 61 % 100) / 100);
         const place = isNowhere(i) ? ',,' : `${x.toFixed(3)},${isOff(i) ? -0.5 - OFF_M : -0.5},${z.toFixed(3)}`;

@@ -19,7 +19,7 @@ const LINKS = `links:
   - { name: Faceplate, of: tag, url: 'https://dcs.example/faceplate?tag={name}' }
 `;
 
-// Boxes in rows of twenty, each with its sensors; only the first sensor of each box has a position.
+// Writes a plant of ASSETS boxes in rows of twenty. Each box has several sensors, of which only the first has a position.
 function makeLarge(folder) {
     const assets = [], tags = ['Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,H'];
     for (let a = 0; a < ASSETS; a++) {
@@ -100,7 +100,7 @@ test('an asset picked in 3D is selected in the list, and so is a marker\'s tag',
     await page.mouse.click(box.x, box.y);
     await page.waitForFunction(() => globalThis.plantcast.session.params.selected === 'E-137');
     await page.locator('#place').waitFor();
-    await page.keyboard.press('Escape'); // closes the card, which may cover the marker
+    await page.keyboard.press('Escape'); // closes the asset's card, which may cover the sensor's marker that is clicked next
     await page.mouse.click(marker.x, marker.y);
     await page.waitForFunction(() => /TI-137-0/.test(document.querySelector('.reading[aria-selected="true"]')?.textContent));
     await becomes(() => page.locator('#card .links a').getAttribute('href'), 'https://dcs.example/faceplate?tag=TI-137-0');
@@ -134,8 +134,8 @@ test('the list can be used by the keyboard alone', options, async () => {
     assert.deepEqual(browser.errors, []);
 });
 
-// Measures only the page's own work for each frame while a list with all assets open scrolls; drawing is the browser's
-// business.
+// Scrolls through the list with all assets unfolded, and measures the time that the page's own code takes per frame. The time
+// that the browser needs for layout and painting is not limited by this test.
 test('20,000 tags scroll smoothly', options, async (t) => {
     const { frames, work, rows } = await page.evaluate(async (steps) => {
         const { assets, session } = globalThis.plantcast;
@@ -158,15 +158,17 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     const middle = (list, part = 0.5) => list[Math.floor(list.length * part)];
     t.diagnostic(`pictures every ${middle(frames).toFixed(1)} ms (95 %: ${middle(frames, 0.95).toFixed(1)}), of which the list takes ` +
         `${middle(work).toFixed(2)} ms (95 %: ${middle(work, 0.95).toFixed(2)}); ${rows} rows in the page`);
-    // 20 % quantile: in slower frames the page was waiting for the processor
+    // compares the 20 % quantile, because slower frames include time for which the page waited for the processor
     assert.ok(middle(work, 0.2) < 16, `scrolling takes more than one frame: ${middle(work, 0.2)} ms`);
     assert.ok(rows < 80, `the page contains ${rows} rows`);
     await shoot(page, 'assets-20000');
 });
 
-// Garbage is collected before each measurement. By default one second of use, in `make test-long` half an hour.
-const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // EACH: a panel is opened or closed at every EACH-th action
-// Allowed growth of memory and nodes. By default a panel is used only ten times, so half of the growth allowed for twenty uses.
+// USE_S: seconds for which the page is used between two measurements, in `make test-long` set to half an hour. Garbage is
+// collected before each measurement.
+const USE_S = Number(process.env.USE_S ?? sweep(10, 0.8)), EACH = sweep(4, 1); // EACH: at every EACH-th step a panel is opened or closed
+// Allowed growth of memory (share and megabytes) and of document nodes. In short runs panels are used only ten times, so half
+// the growth is allowed.
 const MOST = sweep({ share: 0.1, megabytes: 2, nodes: 500 }, { share: 0.05, megabytes: 1, nodes: 250 });
 const isSteady = (before, after) => after.megabytes < before.megabytes * (1 + MOST.share) + MOST.megabytes &&
     after.nodes < before.nodes * (1 + 2 * MOST.share) + MOST.nodes;
@@ -182,7 +184,8 @@ test('memory does not grow while the list is used', { ...options, timeout: optio
         const { assets, session, modules, selectTag, showTrend } = globalThis.plantcast, { root } = assets.list;
         const search = document.getElementById('assets-search');
         const press = (key) => document.getElementById('viewport').dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
-        // Opens and closes every panel, trends of some tags, and their cards.
+        // Presses each key in turn, which opens a panel and later closes it again; also selects random tags and shows their
+        // trends and cards.
         const panels = ['e', 'v', 'p', 'm', 'b', 'b', 'm', 'p', 'v', 'e'];
         for (let n = 0, end = performance.now() + long; performance.now() < end || n < each * panels.length; n++) {
             if (n % each === 0) {
@@ -202,9 +205,10 @@ test('memory does not grow while the list is used', { ...options, timeout: optio
         search.dispatchEvent(new Event('input'));
         await new Promise((done) => setTimeout(done, 500));
     }, [ms, EACH]);
-    await use(sweep(3000, 500)); // uses the page for the first time, which creates everything that is created only once
+    await use(sweep(3000, 500)); // The first use creates the objects that the page creates only once; they are not counted as growth.
     let before = await heap(), after;
-    // A busy machine may create some objects only later; a real leak grows each time.
+    // Repeats the measurement up to four times until memory is steady. A busy machine may create some objects only late, but a
+    // real leak grows each time.
     for (let times = 0; times < 4 && !(after && isSteady(before, after)); times++) {
         before = after ?? before;
         await use(USE_S * 1000);

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening and closing every part of the page, and alarms that come and go, leave behind no nodes, listeners or memory.
+// After every part of the page was opened and closed, and after alarms were raised and cleared, the page has no more nodes,
+// listeners or memory than before.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 300000 };
-const WARM_UP = 3, CYCLES = 5, HEAP_KB = 25; // HEAP_KB: largest growth of the heap per cycle
-// TRIES: maximum number of comparisons, PAUSE_MS apart: for a moment the page may differ, for example while it shows a message
+// WARM_UP: unmeasured cycles; CYCLES: measured ones; HEAP_KB: largest allowed growth of the heap in kB per cycle
+const WARM_UP = 3, CYCLES = 5, HEAP_KB = 25;
+// TRIES: maximum number of comparisons of the page before and after a cycle, PAUSE_MS apart. They are repeated because the page
+// may differ for a moment, for example while it shows a message.
 const TRIES = 40, PAUSE_MS = 250;
-// Without compiled code, whose size depends on how long functions run, the heap has nearly the same size in each run.
+// Runs JavaScript without compiled code, whose size depends on how long functions run. Without it the heap has nearly the same
+// size in each run.
 const JITLESS = ['--js-flags=--jitless'];
 let plant, browser, page, devTools;
 
@@ -21,7 +25,8 @@ before(async () => {
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
-    await page.waitForFunction(() => { // instants of the last 4 s count as the present
+    // waits until recorded history begins more than 6 s ago, because the page treats instants of the last 4 s as the present
+    await page.waitForFunction(() => {
         const { session } = globalThis.plantcast;
         return session.time.fromUs && session.clockUs() - session.time.fromUs > 6e6;
     });
@@ -39,8 +44,8 @@ async function measure() {
     const { metrics } = await devTools.send('Performance.getMetrics');
     const { Nodes: nodes, JSEventListeners: listeners, JSHeapUsedSize: heap } =
         Object.fromEntries(metrics.map(({ name, value }) => [name, value]));
-    // Not counted, because they depend on which answers had arrived when the part was closed: the sensor card's content (drift,
-    // neighbours, alarm), and the list of sensors that disagree with their neighbours, each with a button.
+    // Subtracts the contents of the sensor card (drift, neighbours, alarm) and of the list of sensors that disagree with their
+    // neighbours, where each sensor has a button. They depend on which answers had arrived when the part was closed.
     const { card = 0, disagreeing = 0, drifting = 0 } = await contents(), buttons = await page.locator('#disagreeing button').count();
     return { nodes: nodes - card - disagreeing - drifting, listeners: listeners - buttons, heap };
 }
@@ -102,7 +107,8 @@ const ACTIONS = {
     card: async () => {
         for (const name of ['TI-1', 'TI-2', null]) {
             await page.evaluate((tag) => globalThis.plantcast.selectTag(tag && globalThis.plantcast.session.model.tag(tag)), name);
-            await page.waitForFunction((tag) => { // the card's module is loaded and shows this tag
+            // waits until the lazily loaded card is visible and shows this tag, or is hidden for null
+            await page.waitForFunction((tag) => {
                 const card = document.getElementById('card');
                 return tag ? card.checkVisibility() && card.querySelector('h3')?.textContent === tag : !card.checkVisibility();
             }, name);

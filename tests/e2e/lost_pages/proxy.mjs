@@ -28,7 +28,8 @@ before(async () => {
 });
 after(() => plant?.destroy());
 
-// Starts nginx with the plant under /plantcast/; more: further lines for that location.
+// Starts nginx, which serves the plant below /plantcast/. more: further configuration lines for that location; host: host name
+// that nginx passes on.
 async function startNginx(port, more, host = '$http_host') {
     const path = (name) => join(plant.folder, name);
     const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((name) => `${name}_temp_path ${path(name)};`).join('\n');
@@ -82,7 +83,8 @@ test('a page behind nginx without WebSocket lines names nginx and the lines; wit
         }
         assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${plant.port}/`]).code, 0);
         await stop();
-        // the proxy passes the handshake on with a host name other than the page's
+        // nginx passes on the WebSocket handshake with a host name that differs from that of the page, so the server refuses
+        // its origin
         stop = await startNginx(port, PASSES, `127.0.0.1:${plant.port}`);
         await shown(desk.page, /his origin is not allowed/);
         await stop();
@@ -97,8 +99,9 @@ test('a page behind nginx without WebSocket lines names nginx and the lines; wit
 
 const PASS = { passes: true };
 
-// A proxy that answers handshakes itself and passes on all other requests. answer: status line; null: it closes the connection;
-// PASS: it passes on handshakes too. tls: key and certificate, or null.
+// Starts a proxy that answers WebSocket handshakes itself and passes on all other requests. answer: its status line and status
+// code for handshakes; null: it closes the connection; PASS: it passes on handshakes too. headers: added to all answers; tls:
+// key and certificate, or null for plain http.
 async function startOther(answer, headers, tls = null) {
     const serve = (asked, told) => {
         const on = request({ port: plant.port, path: asked.url, headers: { ...asked.headers, host: `127.0.0.1:${plant.port}` } }, (got) => {
@@ -146,7 +149,7 @@ for (const [name, answer, headers, words] of OTHERS)
 test('plantcast ready fails where /stream does, over http and https, and names the proxy that blocks WebSockets', options, async () => {
     makeCertificate(plant.folder);
     const secure = { key: readFileSync(join(plant.folder, 'mail.key')), cert: readFileSync(join(plant.folder, 'mail.pem')) };
-    const ready = async (proxy) => { // runs as a child process, because the proxy runs in this one
+    const ready = async (proxy) => { // Runs `plantcast ready` without blocking this process, which also runs the proxy.
         const program = new Program('plantcast', ['ready', proxy.url, '--ca', join(plant.folder, 'mail.pem')]);
         const code = await new Promise((done) => program.child.once('close', done));
         return { code, err: program.said };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures how much the page transfers and how soon it shows the plant; also tests the parts that are loaded on first use.
+// Measures how many bytes the page transfers and how soon it shows the plant. Also tests the parts of the page that are loaded
+// on first use.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -10,7 +11,8 @@ import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-// limits of the first load: compressed bytes on the wire; a touch screen also loads the code for fingers
+// limits of the first load in compressed bytes: desk: with a mouse; touch: the same plus the code for touch; warp: the code
+// that redraws a picture for another camera. QUIET_MS: time without requests after which the load counts as finished
 const MOST_BYTES = { desk: 70000, touch: 95000, warp: 15000 }, MOST_REQUESTS = 30, QUIET_MS = 1500;
 const source = readFileSync(new URL('../../../clients/web/app/lazy_modules.js', import.meta.url), 'utf8');
 const PARTS = [...source.matchAll(/^    (\w+): \{ file:/gm)].map(([, name]) => name);
@@ -33,7 +35,8 @@ const watchFirst = () => {
     }).observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ['hidden'] });
 };
 
-// { page, errors, close, answers, fetched(): [[path, bytes on the wire], ...] of this server's files, once per request }.
+// Opens the page. Returns what openPage() returns, the list of all answers, and fetched(), which returns [[path, bytes on the
+// wire], ...] with one entry per request; files below /vendor/ are not counted.
 async function openCounted(address, screen, before = null) {
     const answers = [];
     const browser = await openPage(address, screen, before, (page) => page.on('response', (answer) => answers.push(answer)));
@@ -43,7 +46,7 @@ async function openCounted(address, screen, before = null) {
 }
 const sum = (files) => files.reduce((all, [, bytes]) => all + bytes, 0);
 
-// Waits until no request was made for a while.
+// Waits until the page has made no request for QUIET_MS.
 async function calm(page, browser) {
     for (let before = -1, now = 0; now !== before;) {
         before = now;
@@ -104,10 +107,11 @@ const press = async (page, key) => {
 const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
 
 test('a part of the page that cannot be loaded says so, and opens by itself once it can be loaded', options, async () => {
-    // key that opens a part, a file that the part loads, and the part; parts later in this list may load the same file
+    // [key that opens a part, a file that the part loads, selector of the opened part]. A file must not be loaded by an earlier
+    // part of this list, since each file is blocked only while its own part is tested.
     const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'],
         ['p', 'app/picture/picture.html', '#picture-panel.open'], ['v', 'app/views/views.js', '#views.open']];
-    const words = [['v', 'words/lazy.en.js', '#views.open']]; // file with the words of all lazily loaded parts
+    const words = [['v', 'words/lazy.en.js', '#views.open']]; // the file that contains the texts of all lazily loaded parts
     const away = (page, file) => page.route(`**/${file}*`, (route) => route.abort());
     for (const all of [parts, words])
         await withPage(async (page) => {
@@ -118,12 +122,13 @@ test('a part of the page that cannot be loaded says so, and opens by itself once
                 await press(page, key);
                 await isSaid(page);
                 assert.equal(await page.locator(opened).isVisible(), false, file);
-                await press(page, key); // pressing the key again does not close the part
+                await press(page, key); // while the file is missing, a second press of the key must try again instead of closing the part
                 await page.unroute(`**/${file}*`);
                 await page.locator(opened).waitFor();
                 await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page still works
             }
-        }, (page) => all === words && away(page, all[0][1])); // blocks the file before the page opens, because an alarm ring loads it
+        // blocks the file with the texts before the page opens, because the page loads it early if an alarm ring appears
+        }, (page) => all === words && away(page, all[0][1]));
 });
 
 test('no part of the page shows text before its texts are loaded', options, () => {
@@ -178,7 +183,8 @@ test('the first input by mouse, keys or buttons moves the camera, though the cam
     const firsts = [
         async (page) => drag(page),
         async (page) => press(page, 'ArrowLeft'),
-        async (page) => page.locator('#home').click(), // the camera is not at home when the button is clicked
+        // clicks `home`; the test has moved the camera elsewhere before, so that the click moves it
+        async (page) => page.locator('#home').click(),
         async (page) => page.locator('#assets-list .asset').first().click(),
     ];
     for (const act of firsts)
@@ -187,8 +193,8 @@ test('the first input by mouse, keys or buttons moves the camera, though the cam
             await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
             const began = performance.now();
             await act(page);
-            // The page drops input that is older than 2 s. On a busy machine loading may take longer, so the test repeats the
-            // action as a user would.
+            // Repeats the action as a user would. The page drops input that has waited more than 2 s for code to load, which
+            // can happen on a busy machine.
             while (!await waitForMove(page, ELSEWHERE.eye, { timeout: 10000 }).catch(() => null))
                 await act(page);
             promise(t, 'until the camera moves', performance.now() - began, 5000);
@@ -204,7 +210,7 @@ test('a drag that began before the camera controller was loaded is followed, how
     const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
     await page.mouse.move(left, top);
     await page.mouse.down();
-    await page.waitForTimeout(2500); // waits longer than the page delays a click
+    await page.waitForTimeout(2500); // waits longer than the 2 s after which the page drops a click that waits for code
     await page.mouse.move(left + 90, top, { steps: 3 });
     assert.equal(await isCameraControllerThere(page), false);
     assert.deepEqual(await eye(page), ELSEWHERE.eye);
@@ -215,7 +221,7 @@ test('a drag that began before the camera controller was loaded is followed, how
 
 test('the page names the marker under the pointer, even if the pointer has not moved since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
-    await land(page); // waits until the marker under the pointer stands still
+    await land(page); // waits until the camera stands still, and with it the marker over which the pointer is placed
     const marker = await page.evaluate(() => {
         const { x, y } = globalThis.plantcast.overlay.markers.find(({ occluded }) => !occluded);
         return [x, y];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Access control of OPC UA: users, and wrong certificates of client and server.
+// Access control of OPC UA: user names and passwords, and certificates of client and server that the other side does not trust.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -50,7 +50,8 @@ test('values, status codes and times arrive unchanged, and nothing is ever writt
         await server.set('TI-1', 42, { status });
         await until('TI-1', { quality_name: name, value: status >= 0x80000000 ? null : 42 });
     }
-    await sleep(Math.max(0, first + 1600 - performance.now())); // waits, because a value older than the tag's last one would be ignored
+    // waits, because the next value is dated 1.5 s back, and a value older than the tag's last one would be ignored
+    await sleep(Math.max(0, first + 1600 - performance.now()));
     await server.set('TI-2', 43, { at: Date.now() - 1500 });
     const old = await until('TI-2', { ...good, value: 43 });
     assert.ok(old.age_ms >= 1500 && old.age_ms < 9000, `the reading is ${old.age_ms} ms old`);
@@ -87,12 +88,13 @@ test('all tags are Bad when the server is gone; on return all are subscribed aga
 });
 
 test('a lost notification is noticed, and all nodes are read', options, async () => {
-    await server.reset({ readsPerCall: 3 }); // one request may read fewer nodes than the plant has
+    await server.reset({ readsPerCall: 3 }); // the server accepts at most 3 nodes per read request, fewer than the plant has
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
     await until('TI-2', { ...good, value: 21.5 });
     await server.tell({ lose: true });
-    await server.set('TI-1', 61); // the server drops the notification of this change, maybe together with the next one
+    // the server drops the notification of this change, and maybe also that of the next one if both are in one notification
+    await server.set('TI-1', 61);
     await server.set('TI-2', 62);
     await until('TI-2', { ...good, value: 62 });
     await until('TI-1', { ...good, value: 61 });
@@ -117,7 +119,8 @@ test('a tag may have its own deadband; a deadband that the server refuses is log
     await server.reset();
     const rows = ROWS.map((row) => `${row},${{ 'TI-1': '5', 'TI-2': '10%', 'PI-1': '0' }[row.split(',')[0]] ?? ''}`);
     await plant.run(`${server.security()}, deadband: 20`, [...rows, `B,${NODE}Bounded,,,,,,,,,,,,,,20 %`], ',OPC Deadband');
-    await said(/s=TI-2: the server refuses the OPC Deadband 10% \(Bad\w+\) and reports every change/); // TI-2 is a node without EURange
+    // a deadband in percent needs the property EURange, which the node TI-2 lacks
+    await said(/s=TI-2: the server refuses the OPC Deadband 10% \(Bad\w+\) and reports every change/);
     assert.doesNotMatch(plant.daemon.said, /s=XS-1: the server refuses/, 'the deadband of the source is for nodes that support it');
     await until('B', { ...good, value: 50 });
     await until('TI-1', { ...good, value: 20 });
@@ -156,7 +159,8 @@ test(`changes of ${MANY} nodes at once all arrive`, options, async () => {
     const rows = Array.from({ length: MANY }, (_, i) => `N${i},${NODE}N${i},,,,,,,,,,,,,`);
     await server.reset({ many: MANY });
     await plant.run(server.security(), rows);
-    // waits until all values have arrived before the next change, because the server keeps only the newest value of each node
+    // Sets all values three times. Each time waits until the daemon has all of them before the next change, because the server
+    // stores only the newest unsent value of each node.
     for (const each of [0, 1e6, 2e6]) {
         if (each > 0)
             await server.tell({ each });
@@ -172,7 +176,7 @@ test(`changes of ${MANY} nodes at once all arrive`, options, async () => {
 });
 
 test('plantcast tags --browse writes a tag list that the daemon reads unchanged', options, async () => {
-    await server.reset({ many: MANY }); // the server has more nodes than fit into one answer
+    await server.reset({ many: MANY }); // gives the server more nodes than fit into one answer to a browse request
     const url = `opc.tcp://127.0.0.1:${server.port}`, at = (file) => join(server.folder, file);
     const secure = ['--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted')];
     const { code, out, err } = browse(url, ...secure);

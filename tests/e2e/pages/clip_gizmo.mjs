@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clipping by direct manipulation: arrows on the plane, on the box's sides and for the whole box, in both halves, by mouse,
-// keyboard and touch.
+// Moving a section plane or section box with the arrows drawn on the picture: on the plane, on each side of the box, and for
+// the whole box; in both halves of a split picture; by mouse, keyboard and touch.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
@@ -30,7 +30,7 @@ const setClip = async (on, clip) => {
 };
 const readClip = (on) => on.evaluate(() => globalThis.plantcast.session.params.clip);
 const readCamera = (on) => on.evaluate(() => globalThis.plantcast.session.camera);
-// Returns the centre of a handle on the page.
+// Returns the page position of the centre of the handle (arrow) with this id.
 const gripAt = async (on, id) => {
     const box = await on.locator(`.grip[data-id="${id}"]`).boundingBox();
     return [box.x + box.width / 2, box.y + box.height / 2];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sensor that drifts away from its neighbours' estimate: the daemon and the tool find it in recorded history, and the page
-// shows it.
+// A sensor drifts away from the value that its neighbours suggest: the daemon and the command-line tool find the drift in
+// recorded history, and the page shows it.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -19,7 +19,8 @@ PI-1,400009,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 `;
 let plant, url;
 
-// All four follow the time of day; TI-3 also drifts upwards by 8 K in the week. TI-4 is lost for a day.
+// Returns a week of samples of four sensors. All follow the time of day; TI-3 also drifts upwards by 8 K over the week; TI-4
+// delivers no values on the second day.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let quarter = 0; quarter < HOURS * 4; quarter++) {
@@ -84,7 +85,7 @@ test('plantcast sensors drift gives the daemon\'s verdicts; a week earlier all a
         assert.equal((await ask(query))[0], 400, query);
 });
 
-// Returns by how many pixels the card's content exceeds its padding.
+// Returns by how many pixels the card's contents extend beyond the right edge of its inner area; negative if everything fits.
 const overhang = (page) => page.evaluate(() => {
     const card = document.querySelector('#card'), padding = parseFloat(getComputedStyle(card).paddingRight);
     const right = card.getBoundingClientRect().right - padding;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shift handover: notes, alarms, and who acknowledged and shelved them, as a page and as a PDF.
+// The report for the shift handover, as a page and as a PDF: notes, alarms, who acknowledged them, and who shelved them.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
@@ -37,7 +37,8 @@ after(async () => {
 });
 
 test('the handover page lists notes, alarms, acknowledgements and shelved alarms of the shift', options, async () => {
-    await until('the shelved alarm', async () => { // the journal is written with a delay
+    // reloads the page until the journal contains the shelving, because the daemon writes the journal with a delay
+    await until('the shelved alarm', async () => {
         await page.goto(`${plant.url}handover.html`);
         await page.locator('[data-part=notes]').waitFor();
         return await page.locator('[data-part=shelved] td', { hasText: 'sensor is checked' }).count() > 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Actions on alarms by role and alarm mode: offered by the page and enforced by the server; over plain http with a host name.
+// Actions on alarms by user role and by the plant's alarm mode: the page offers exactly the allowed actions, and the server
+// refuses the others. The page is opened over plain http with a host name.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,7 +13,7 @@ const absent = missing(), chromium = process.env.CHROMIUM ?? '/usr/bin/chromium'
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(chromium) ? 'chromium is not installed' : false;
 const options = { skip, timeout: 200000 };
 const SCREENS = { viewer: PHONE, operator: { ...TABLET, viewport: { width: 768, height: 1024 } }, engineer: TABLET };
-// actions that each role may take on a new alarm, if the alarm mode allows them
+// actions that each role may take on a new alarm in the mode `local`; the other modes allow none
 const DOES = { viewer: [], operator: ['acknowledge', 'shelve'], engineer: ['acknowledge', 'shelve'] };
 const pages = {};
 let plant, browsers, flags;
@@ -24,7 +25,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     appendFileSync(plant.file, 'alarms: local\nviews: [{ id: strong, title: Strong, view: "group=temperature&strength=2&power=3" }]\n');
-    plant.keepFresh(); // prevents stale readings, so that there is only the intended alarm
+    plant.keepFresh(); // prevents readings from becoming stale, so that no alarm exists except the one that the test raises
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
     assert.equal(plant.prepare().code, 0);
@@ -33,7 +34,8 @@ before(async () => {
         runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
     const tokens = Object.fromEntries(Object.keys(SCREENS).map((role) => [role, make(role)]));
     chmodSync(file, 0o600);
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]) // set before the daemon first reads, so that there is one alarm
+    // values before the daemon's first read: only TI-1 is above its limit, so there is exactly one alarm
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
         await plant.tell(`set ${tag} ${value}`);
     flags = ['--behind-proxy', '--host', 'plant.example', '--tokens', file];
     await plant.startDaemon(...flags);
@@ -61,13 +63,14 @@ const waitForState = (page, states) => page.waitForFunction((any) =>
     any.includes(globalThis.plantcast.session.model.alarms.list()[0]?.state ?? 'none'), states);
 const waitForMode = (page, mode) => page.waitForFunction((is) => globalThis.plantcast.session.welcomed &&
     globalThis.plantcast.session.model.alarms.known && globalThis.plantcast.session.model.alarms.mode === is, mode);
-// Waits until these actions are offered for the first alarm in the list, or in the list of those set aside.
+// Waits until the page offers exactly the actions `wanted` for the first alarm of the list; list: the active alarms, or those
+// that were shelved.
 const offers = async (page, wanted, role, list = '#alarms-list') => {
     await page.locator(`${list} tr`).first().waitFor();
     const actions = page.locator(`${list} tr`).first().locator('[data-action]');
     await becomes(() => actions.evaluateAll((all) => all.map((button) => button.dataset.action)), wanted, role);
 };
-// Returns the server's answer to an action that the page does not offer.
+// Sends an alarm action that the page offers no button for. Returns the server's refusal or error code, or "done".
 const ask = (page, action) => page.evaluate(async (what) => {
     const { actOnAlarm } = await import('/core/requests.js'), { session } = globalThis.plantcast;
     return new Promise((done) => {
@@ -133,7 +136,8 @@ test('operators change and end their own notes, engineers end all; a changed not
         }
     });
     const { operator, engineer } = pages;
-    const refused = await operator.evaluate(() => new Promise((done) => { // the page offers no button for this
+    // sends the removal of the engineer's note directly, because the page offers operators no button for it
+    const refused = await operator.evaluate(() => new Promise((done) => {
         const { session } = globalThis.plantcast;
         session.on('noted', ({ refusal }) => done(refusal));
         session.post({ type: 'remove_note', seq: 2, id: session.notes.find(({ text }) => text === 'of the engineer').id });
@@ -161,7 +165,9 @@ for (const mode of ['display', 'mirror']) {
             await waitForMode(page, mode);
             await page.waitForFunction((words) => document.getElementById('alarm-mode').textContent === words,
                 mode === 'display' ? 'View only: acknowledge in the control system' : 'Mirrored from the control system');
-            if (mode === 'display') // `display` mode also has alarms from limits, `mirror` only those of the control system
+            // in `display` mode TI-1's limit still raises an alarm; in `mirror` mode the list is empty, because only the
+            // control system's alarms appear
+            if (mode === 'display')
                 await offers(page, [], role);
             await becomes(() => page.locator('#alarms [data-action]').count(), 0, role);
         });
@@ -173,7 +179,8 @@ for (const mode of ['display', 'mirror']) {
     });
 }
 
-// Only engineers may send field parameters: a viewer's page names the saved view, and the server looks up its parameters.
+// Only engineers may send the field parameters that the saved view contains. A viewer's page therefore sends only the view's
+// name, and the server looks up the parameters.
 test('a viewer keeps a saved view after a reload of the page and a restart of the daemon', options, async () => {
     const { viewer } = pages, isStrong = () => viewer.waitForFunction(() => {
         const { confirmed, params, welcomed } = globalThis.plantcast?.session ?? {};
@@ -181,11 +188,14 @@ test('a viewer keeps a saved view after a reload of the page and a restart of th
     });
     await viewer.evaluate(async () => (await globalThis.plantcast.modules.get('views')).openNamed('strong', false));
     await viewer.waitForFunction(() => globalThis.plantcast.session.confirmed.strength === 2);
-    await viewer.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat' })); // the viewer's own change is kept, too
+    // the viewer changes the look in addition to the saved view; both must be restored
+    await viewer.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat' }));
     await viewer.waitForFunction(() => /named=strong/.test(location.hash) && /look=flat/.test(location.hash));
     await viewer.reload();
     await isStrong();
-    const resume = await viewer.evaluate(() => globalThis.plantcast.session.resume); // each start of the daemon issues a new resume secret
+    // the resume secret shows when the page is connected to the restarted daemon, because each start of the daemon issues a new
+    // one
+    const resume = await viewer.evaluate(() => globalThis.plantcast.session.resume);
     await plant.daemon.stop();
     await plant.startDaemon(...flags, '--port', String(plant.port));
     await viewer.waitForFunction((old) => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.resume !== old, resume);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assets that start hidden or ghosted: which views start that way, how the user shows the assets, and what a link and a plant
-// reload change.
+// Assets that the plant file defines as hidden or ghosted (translucent) at the start: which views start that way, how the user
+// shows these assets again, and what a link and a plant reload change.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -22,7 +22,7 @@ test('a plant changed since its preparation is prepared when the daemon starts',
         assert.match(tiny.daemon.said, /preparing the plant: prepared files are missing or outdated/);
         const { assets } = await (await fetch(`http://127.0.0.1:${tiny.port}/api/v1/plant`)).json();
         assert.ok(assets.some(({ id }) => id === 'NEW'));
-        // A plant that cannot be prepared: the daemon prints one line and does not start.
+        // The model is no valid glTF, so the plant cannot be prepared: the daemon must print one line and not start.
         await tiny.daemon.stop();
         writeFileSync(join(tiny.folder, 'box.gltf'), '{');
         const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0']);
@@ -55,7 +55,7 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
         assert.ok(outline.every((place) => Math.abs(place[1]) < 0.6), 'assets that start hidden are not in the first view');
         await shoot(page, 'start');
 
-        // Pictures without further parameters use the same start.
+        // A snapshot without parameters hides and ghosts the same assets as the page's start; its size in bytes tells.
         const picture = async (more = '') => {
             const answer = await fetch(`${url}snapshot.png?width=320&height=200&camera=6,-9,5,1.5,0,0${more}`);
             return (await answer.arrayBuffer()).byteLength;
@@ -72,7 +72,8 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
         });
         assert.ok(files[0].equals(files[1]) && !files[0].equals(files[2]));
 
-        // Showing all assets, and the link to that view.
+        // The user shows all assets with one button; the page's link then contains empty lists, so that a reload shows all
+        // assets again.
         await page.locator('#shown button').click();
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.length === 0);
         assert.deepEqual(await sets(), NONE);
@@ -83,7 +84,7 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed);
         assert.deepEqual(await sets(), NONE, 'the link shows all assets');
 
-        // A changed start applies to new sessions.
+        // The plant file now ghosts ROOF at the start: after a plant reload, this applies to new sessions only.
         await page.evaluate(() => globalThis.plantcast.session.setParams({ hidden: ['E-101', 'HOUSE'] }));
         await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.length === 2);
         write('ROOF', 'ghost');

@@ -6,8 +6,9 @@ import { readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { BIN } from './tiny_plant.mjs';
 
-// Imports each of these files, { name: bytes }, in the folder. What is readable is read; a file is refused in one line that names it, and
-// nothing of it is left behind. options(name): further arguments; check({ name, status, stdout, stderr }): further assertions.
+// Imports each of the broken files { name: bytes }. Asserts that an import either succeeds, or refuses the file with one line
+// that names it and leaves no files behind. options(name): further arguments for this file; check({ name, status, stdout,
+// stderr }): further assertions by the caller.
 export function importBroken(folder, files, options, check) {
     for (const [name, bytes] of Object.entries(files)) {
         const path = join(folder, name), plant = join(folder, 'plant');

@@ -21,10 +21,10 @@ const QUIET = [
     '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
     '--disable-sync', '--host-resolver-rules=MAP plant.example 127.0.0.1', // maps the host name plant.example to the loopback address
 ];
-const PATIENCE_MS = 120000; // limit for everything that waits for a page, even on a very busy machine
+const PATIENCE_MS = 120000; // maximum time that a test waits for anything on a page, long enough for a very busy machine
 export const SCREENSHOTS = join(BUILD, 'screenshots');
-// Layout depends on CSS pixels, the cost of a picture on device pixels. Their density is therefore halved except in `make
-// test-long` or with `...SHARP`.
+// Screens of tests have one device pixel per CSS pixel: layout depends on CSS pixels alone, and fewer device pixels make
+// pictures cheaper. With `make test-long`, and in tests that pass `...SHARP`, screens have two.
 export const SHARP = { deviceScaleFactor: 2 };
 const DENSITY = sweep(SHARP, { deviceScaleFactor: 1 });
 export const DESKTOP = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1280, height: 800 }) };
@@ -36,7 +36,7 @@ export const PHONE = { viewport: { width: 390, height: 844 }, ...DENSITY, hasTou
 export const FLYING = { reducedMotion: 'no-preference' };
 const MOTION = sweep(FLYING, { reducedMotion: 'reduce' });
 
-// One browser for all pages of a test program, for each set of browser arguments.
+// Browsers by their command-line arguments. All pages of a test program with the same arguments share one browser.
 const browsers = new Map();
 
 export async function browserWith(args) {
@@ -50,7 +50,8 @@ after(async () => {
     await Promise.all([...browsers.values()].map(async (browser) => (await browser).close()));
 });
 
-// Pages not closed yet: a failed test leaves its page open. Each with its newest console lines and failed requests.
+// Pages that are open, each with its newest console lines and failed requests. A page that is still open at the end belongs to
+// a failed test and is reported.
 const open = new Map(), MAX_LINES = 30;
 
 function record(page) {
@@ -74,7 +75,8 @@ async function profileWith(args, shape) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const whole = { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] };
     const context = await playwright().chromium.launchPersistentContext(folder, whole);
-    process.once('exit', () => { // removed only at exit, because a closed browser still writes files for a while
+    // removes the profile only when this process exits, because a closed browser still writes to its profile for a while
+    process.once('exit', () => {
         try {
             rmSync(folder, { recursive: true, force: true });
         } catch {
@@ -84,7 +86,7 @@ async function profileWith(args, shape) {
     return context;
 }
 
-// Starts a browser that fills an X display of that size. clockMs: how far the core's clock is ahead.
+// Starts a browser that fills an X display of that size. clockMs: how far the browser's clock is set ahead.
 export async function browserOn(display, url, width, height, clockMs = 0) {
     const args = ['--kiosk', '--window-position=0,0', `--window-size=${width},${height}`];
     const context = await profileWith(args, { headless: false, viewport: null, env: { ...process.env, DISPLAY: display } });
@@ -139,9 +141,10 @@ function checkJoined() {
 }
 let isChecked = false;
 
-// Returns { page, errors, close }. The page has no stored state. errors: script errors and requests to other origins. before: a
-// function that runs in the page before its scripts, or [function, argument]. arrange(page): further set-up of routes and
-// events. screen.args: browser arguments. screen.profile: uses a separate browser with a profile.
+// Opens a page without stored state. Returns { page, errors: script errors and requests to other origins, close }. before: a
+// function that runs in the page before the page's scripts, or [function, argument]; arrange(page): sets up request routes and
+// event handlers; screen.args: command-line arguments of the browser; screen.profile: use a separate browser with a profile on
+// disk.
 export async function openPage(url, screen = DESKTOP, before = null, arrange = null) {
     isChecked ||= checkJoined() ?? true;
     const { args = [], profile = false, ...own } = screen, shape = { ...MOTION, ...own }, kind = kindOf(shape);
@@ -196,8 +199,8 @@ export const waitForHealth = (page, kind, timeout = PATIENCE_MS) =>
     page.waitForFunction((k) => document.getElementById('health').dataset.kind === k, kind, { timeout });
 export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture);
 
-// Waits until the refined picture of the newest camera and parameters is on the screen. With quietMs and frozen readings, also
-// waits until no picture has followed for that long.
+// Waits until the refined picture for the page's newest camera and parameters is on the screen. quietMs: also waits until that
+// picture has not been replaced for this time, which requires frozen readings.
 export async function settle(page, quietMs = 0) {
     try {
         await page.waitForFunction((quiet) => {
@@ -231,13 +234,14 @@ export async function arrive(page) {
     await settle(page);
 }
 
-// Waits until the picture's colour at a position has changed.
+// Waits until a colour channel at a position of the picture differs by more than `least` from the earlier pixels `rgba`, as
+// returned by grab().
 export const waitForChange = (page, { x, y }, { width, rgba }, least) => page.waitForFunction(([px, py, was, step]) => {
     const now = document.getElementById('picture').getContext('2d').getImageData(px, py, 1, 1).data;
     return was.some((value, i) => Math.abs(value - now[i]) > step);
 }, [x, y, [...rgba.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)], least], { polling: 100 });
 
-// Returns the view as the page would send it: camera and parameters.
+// Returns the camera and the parameters that the page requests from the server.
 export const view = (page) => page.evaluate(() => {
     const { camera, params } = globalThis.plantcast.session;
     return { camera, params };

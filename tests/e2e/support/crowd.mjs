@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many clients, and what they cost the daemon.
+// Opens many clients at once, and measures the daemon's open files, memory and metrics, and the frames that a client gets.
 import { readdirSync, readFileSync, readlinkSync } from 'node:fs';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { get, PlainClient } from './plain_client.mjs';
@@ -33,7 +33,8 @@ export const camera = (seq, angle) => ({
     type: 'camera', seq, eye: [1.5 + 7 * Math.cos(angle), 7 * Math.sin(angle), 4], target: [1.5, 0, 0],
 });
 
-// Moves its camera at the given rate until stop(), starting at sequence number seq. `waits`: time until each camera was shown.
+// Moves the client's camera `hz` times a second, from sequence number seq on, until stop(). `waits`: for each camera, the time
+// and the delay until a frame of that camera arrived.
 export class Mover {
     constructor(client, hz = 60, seq = 0) {
         Object.assign(this, { client, seq, shown: seq, frames: 0, sent: new Map(), waits: [] });

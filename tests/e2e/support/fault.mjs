@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 const REPORTED = /WARNING: ThreadSanitizer|ERROR: \w*Sanitizer|runtime error:/;
 
-// Returns a fault of the program that the tests may not have noticed: it ended although it should not have, or a sanitizer
-// reported an error. Otherwise returns null.
+// Returns a description of a failure of the program that tests may have missed: it ended although mayEnd is false, or a
+// sanitizer reported an error. Returns null if there is none.
 export function faultOf(name, { exitCode, signalCode }, said, mayEnd) {
     const fell = !mayEnd && (exitCode !== null || signalCode !== null);
     if (!fell && !REPORTED.test(said))

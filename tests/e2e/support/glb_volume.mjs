@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volume, area and size of the triangles in a GLB file, or in its nodes with a given name: { volume (m3), area (m2), size (m:
-// x, y, z with Z up) }.
+// Sums up the triangles of a GLB file, or of its nodes with a given name. Returns { volume (m3), area (m2), size (m: x, y, z
+// with Z up) }.
 import { readFileSync } from 'node:fs';
 import { triangleSums } from './triangle_sums.mjs';
 

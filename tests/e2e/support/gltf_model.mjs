@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes glTF models with one mesh, whose bytes are in a data URI.
+// Makes glTF models with one mesh, whose vertex data is contained in the model as a data URI.
 
-// Returns the model. corners: x, y, z of each corner; nodes: the model's nodes; indices: three corners per triangle, or null if each three
-// corners are a triangle; normals: x, y, z of each corner, or null; scene: the root nodes.
+// Returns a glTF model as an object. corners: coordinates x, y, z of all vertices; nodes: the model's nodes; indices: three
+// vertices per triangle, or null if each three consecutive vertices are a triangle; normals: x, y, z per vertex, or null;
+// scene: indices of the root nodes.
 export function gltfModel(corners, nodes, { indices = null, normals = null, scene = [0] } = {}) {
     const floats = [corners, normals].filter(Boolean).map((list) => new Float32Array(list));
     const parts = [...floats, ...(indices ? [new Uint16Array(indices)] : [])];

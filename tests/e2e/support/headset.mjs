@@ -7,7 +7,7 @@ import { createRequire } from 'node:module';
 export const EYE = { width: 700, height: 700 };
 export const SCREEN = { viewport: { width: 2 * EYE.width, height: EYE.height } };
 export const IPD_M = 0.063;
-const HEAD_M = 1.6; // height of the emulated head above the room's floor
+const HEAD_M = 1.6; // height in metres of the emulated head above the floor of the user's room
 
 // Returns an init script that installs the headset, with a field of view of 90 degrees per eye.
 export function headsetScript() {
@@ -26,8 +26,8 @@ export async function enterVr(page) {
     await page.waitForFunction(isNear, null, { polling: 50 });
 }
 
-// Puts the eyes at a point of the plant, looking level along `forward`, and waits for the picture from there. hasLeft: whether
-// the left hand is present besides the right.
+// Moves the headset so that its eyes are at a point of the plant and look horizontally along `forward`, and waits for the
+// picture drawn for that place. hasLeft: the user holds a left controller, too.
 export async function lookFrom(page, eye, forward, hasLeft = false) {
     await page.evaluate(async ([at, towards, head, both]) => {
         const { headset } = globalThis.plantcast.modules.there('enterVr'), { device } = globalThis;
@@ -46,7 +46,7 @@ export async function lookFrom(page, eye, forward, hasLeft = false) {
     }, eye, { polling: 50 });
 }
 
-// Points the right hand at a point of the plant, and waits for the frame that shows it.
+// Turns the right controller so that its ray points at a point of the plant, and waits for the next frame.
 export const aimAt = (page, point) => page.evaluate(async (place) => {
     const { headset } = globalThis.plantcast.modules.there('enterVr'), { position, quaternion } = globalThis.device.controllers.right;
     const { axes, at } = headset.rig, from = place.map((m, i) => m - at[i]), hand = [position.x, position.y, position.z];
@@ -59,7 +59,7 @@ export const aimAt = (page, point) => page.evaluate(async (place) => {
         await new Promise(requestAnimationFrame);
 }, point);
 
-// Pulls the trigger of the right hand.
+// Pulls and releases the trigger of the right controller, and waits for two frames after each.
 export const pull = (page) => page.evaluate(async () => {
     const { headset } = globalThis.plantcast.modules.there('enterVr'), { right } = globalThis.device.controllers;
     for (const value of [1, 0]) {
@@ -70,8 +70,8 @@ export const pull = (page) => page.evaluate(async () => {
     }
 });
 
-// Runs f(headset) in the page right after a frame is drawn. yaw: angle in radians by which the head turns just before that
-// frame.
+// Runs f(headset) in the page right after the next frame is drawn. yaw: angle in radians by which the head has turned since the
+// frame before; null: the head does not turn.
 const inFrame = (page, f, yaw = null) => page.evaluate(`new Promise((done) => {
     const { headset } = globalThis.plantcast.modules.there('enterVr'), { next } = headset, yaw = ${yaw};
     const last = (now, frame) => {
@@ -86,8 +86,8 @@ const inFrame = (page, f, yaw = null) => page.evaluate(`new Promise((done) => {
     };
 })`);
 
-// Returns what the eyes see: { left, right: { width, rgba, undrawn (share of pixels that no picture covers) }, seq of the
-// picture }.
+// Returns the pictures of both eyes and what they consist of: { left, right: { width, rgba, undrawn: share of pixels where the
+// page has no picture to show }, seq: number of the server's picture }.
 export async function seen(page, yaw = null) {
     const { pixels, seq } = await inFrame(page, ((headset) => {
         const { gl } = headset.painter, { drawingBufferWidth: width, drawingBufferHeight: height } = gl;

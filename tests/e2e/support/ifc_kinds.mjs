@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small IFC files, one for each kind of shape, with the expected volume (m3) and size (m) from geometry.
+// Small IFC files, one for each kind of shape that the importer supports, with the volume (m3) and size (m) that follow from
+// the shape's geometry.
 const R = 25, PIPE = Math.PI * R * R * 1e-9, HALF_TURN = Math.PI * 500;
 
-// Statements are written without numbers, as {$name} = text; #{name} refers to another one in the list, or to one of those
-// before.
+// Numbers the statements of a list, given as [name, text], from `first` on. In a text, #{name} is replaced by the number of the
+// statement with that name, in this list or in `before`. Returns { numbers, text }.
 function statements(lines, first, before = new Map()) {
     const numbers = new Map([...before, ...lines.map(([name], i) => [name, first + i])]);
     const numbered = (text) => text.replace(/#\{(\w+)\}/g, (_, to) => `#${numbers.get(to)}`);
@@ -20,7 +21,8 @@ const HEAD = [['o', 'IFCCARTESIANPOINT((0.,0.,0.))'], ['frame', 'IFCAXIS2PLACEME
     ['site', "IFCSITE('0$PlantcastKinds0000002',$,'S',$,$,#{place},$,$,.ELEMENT.,$,$,$,$,$)"],
     ['in', "IFCRELAGGREGATES('0$PlantcastKinds0000003',$,$,$,#{project},(#{site}))"]];
 
-// The statements of element `i`, with identifiers and a name that no other element has; the first is "K-1".
+// Returns the statements of the building element "K-<i + 1>" with its shape and its place in the building; its identifiers and
+// name contain `i`, so that no two elements share them.
 const element = (lines, type, i) => [...lines,
     ['body', `IFCSHAPEREPRESENTATION(#{context},'Body','${type}',(#{item}))`],
     ['shape', 'IFCPRODUCTDEFINITIONSHAPE($,$,(#{body}))'],
@@ -28,8 +30,8 @@ const element = (lines, type, i) => [...lines,
     ['on', "IFCRELCONTAINEDINSPATIALSTRUCTURE('0$PlantcastKinds0000005',$,$,$,(#{element}),#{site})"]].map(([name, text]) =>
     [name, text.replace("'K-1'", `'K-${i + 1}'`).replace(/Kinds00(?=\d{5}')/, `Kinds${String(i).padStart(2, '0')}`)]);
 
-// Returns an IFC file in millimetres with the elements "K-1", "K-2", ... Each is given as { lines, type }: its statements, of
-// which "item" is its shape, and the type of its representation.
+// Returns an IFC file in millimetres with the elements "K-1", "K-2" and so on. Each element is given as { lines, type }: the
+// statements of its shape, of which the one named "item" is the shape itself, and the representation type.
 export function ifcOfAll(schema, elements) {
     const head = statements(HEAD, 1), body = [...head.text];
     elements.forEach(({ lines, type = 'SweptSolid' }, i) =>
@@ -87,8 +89,8 @@ const turned = [point('far', 0, 500, 0), ['axis', 'IFCAXIS1PLACEMENT(#{far},#{x}
 const upright = (name, along) => [[`${name}at`, `IFCPOINTBYDISTANCEEXPRESSION(IFCLENGTHMEASURE(${along.toFixed(6)}),$,$,$,$)`],
     [name, `IFCAXIS2PLACEMENTLINEAR(#{${name}at},$,$)`]];
 
-// An alignment: in plan a line of 1 m, a clothoid of 0.4 m, and an arc of 0.5 m with a radius of 1 m. Its heights follow a
-// line, a parabola from 0.5 m to 1.3 m, a crest arc to 1.7 m, and a line.
+// The centre line of a road (alignment). Seen from above: a line of 1 m, a clothoid of 0.4 m, and an arc of 0.5 m with a radius
+// of 1 m. Its height along the way: a slope, a parabola from 0.5 m to 1.3 m, a circular crest to 1.7 m, and a slope.
 const curveSegment = (name, parent, at, slope, length) => [point(`${name}p`, ...at),
     [`${name}d`, `IFCDIRECTION((${Math.cos(slope).toFixed(12)},${Math.sin(slope).toFixed(12)}))`],
     [`${name}f`, `IFCAXIS2PLACEMENT2D(#{${name}p},#{${name}d})`],
@@ -111,7 +113,7 @@ const gradient = [...plan, ['bowl', 'IFCPOLYNOMIALCURVE(#{flat},(0.,1.),(0.,0.,0
     ...curveSegment('h5', 'level', [1900, crestEnd + 20], gentle, 0),
     ['curve', 'IFCGRADIENTCURVE((#{h1},#{h2},#{h3},#{h4},#{h5}),.F.,#{plan},$)']];
 
-// [name, schemas, statements, expected volume and size, representation type]
+// [name of the kind, IFC schemas, statements, expected { volume, size }, representation type (default: SweptSolid)]
 export const KINDS = [
     ['extrusion', ['IFC2X3', 'IFC4'], [rectangle, ['item', 'IFCEXTRUDEDAREASOLID(#{profile},#{frame},#{z},50.)']], ofBox],
     ['hollow circle extruded', ['IFC4'], [['profile', 'IFCCIRCLEHOLLOWPROFILEDEF(.AREA.,$,$,100.,20.)'],

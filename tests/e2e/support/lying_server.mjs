@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A fake OPC UA server that lies: hand-made messages, and a real server's messages with altered numbers.
+// A fake OPC UA server for testing the client: it sends hand-made wrong messages, or relays a real server's messages with
+// altered numbers.
 import { connect, createServer } from 'node:net';
 
 const u32 = (number) => { const bytes = Buffer.alloc(4); bytes.writeUInt32LE(number >>> 0); return bytes; };
-// Builds a message: TYPE F size body; size: the stated size, which may be wrong.
+// Builds an OPC UA message: a type of three letters, "F", the message's size, and the body. size: the size to state, if it
+// shall be wrong.
 const message = (type, body, size = 8 + body.length) => Buffer.concat([Buffer.from(`${type}F`), u32(size), body]);
 const ACK = message('ACK', Buffer.concat([0, 65536, 65536, 0, 0].map(u32)));
 const POLICY = Buffer.from('http://opcfoundation.org/UA/SecurityPolicy#None');
@@ -11,7 +13,7 @@ const OPN = Buffer.concat([u32(1), u32(POLICY.length), POLICY, u32(-1), u32(-1),
 
 const TOO_LARGE = [0x7fffffff, 0xffffffff, 0x00ffffff, 0x80000000];
 
-// Answers to the first message of a connection.
+// Wrong answers to the first message of a client, by description; each is a list of buffers that are sent one after another.
 export const LIES = {
     'no protocol at all': [Buffer.from('HTTP/1.1 400 Bad Request\r\n\r\n')],
     'sizes of nothing': [message('ACK', Buffer.concat([0, 0, 0, 0, 0].map(u32)))],
@@ -25,7 +27,8 @@ export const LIES = {
 
 const end = (listener, sockets) => new Promise((done) => { sockets.forEach((socket) => socket.destroy()); listener.close(done); });
 
-// Listens on the port. lies: buffers, sent once data has arrived. Returns { stop, seen() }.
+// Listens on the port, and answers the first data of each connection with the buffers `lies`. Returns { stop, seen(): number of
+// connections that sent data }.
 export async function tellLies(port, lies) {
     let seen = 0;
     const sockets = new Set();
@@ -38,7 +41,8 @@ export async function tellLies(port, lies) {
     return { seen: () => seen, stop: () => end(listener, sockets) };
 }
 
-// Relays connections to the server `to`. After the first `spared` bytes from it, one number in every message is made too large.
+// Relays connections to the server at port `to`. Passes on the server's first `spared` bytes unchanged, and then puts a far too
+// large number into each of its messages.
 export async function distort(port, to, spared) {
     let distorted = 0;
     const sockets = new Set();

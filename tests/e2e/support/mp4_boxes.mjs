@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alters boxes of a signed video (MP4, one track), each alteration with what a player would then show wrongly, and why
-// `plantcast verify` refuses it.
+// Alters boxes of a signed video (MP4 with one track). Each alteration makes players show the video wrongly, so `plantcast
+// verify` must refuse it.
 
 // by type of MP4 box: number of bytes before its inner boxes
 const HEADS = { moov: 8, trak: 8, edts: 8, mdia: 8, minf: 8, stbl: 8, stsd: 16, avc1: 86, udta: 8 };
@@ -45,8 +45,8 @@ function patched(path, at, hex) {
 const TRAK = 'moov/trak', STBL = `${TRAK}/mdia/minf/stbl`, AVC1 = `${STBL}/stsd/avc1`;
 const else_ = (type) => `box ${type} has contents that`, none = (type) => `unexpected MP4 box ${type}`;
 
-// Returns [what, bytes, why] for each alteration. Sample offsets are not adjusted, because verification refuses the boxes
-// first.
+// Returns [description, bytes of the video, expected reason for the refusal] for each alteration. The offsets of the frames are
+// not adjusted to the changed boxes, because `plantcast verify` refuses the boxes before it reads frames.
 export function alteredFilms(film) {
     const alter = (change) => rewrite(film, change);
     return [
@@ -66,7 +66,7 @@ export function alteredFilms(film) {
         ['turned', alter(patched(`${TRAK}/tkhd`, 48, 'ffff0000')), else_('tkhd')],
         ['the whole film turned', alter(patched('moov/mvhd', 44, 'ffff0000')), else_('mvhd')],
         ['wider', alter(patched(`${TRAK}/tkhd`, 84, '0282')), else_('tkhd')],
-        ['another size of samples', alter((one, at) => { // changes the size in every box that states it
+        ['another size of samples', alter((one, at) => { // changes the width consistently in both boxes that contain it
             if (at === AVC1)
                 one.writeUInt16BE(one.readUInt16BE(32) + 16, 32);
             if (at === `${TRAK}/tkhd`)

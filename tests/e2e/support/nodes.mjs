@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several daemons of one plant on this machine: a core, and renderers that get readings from it.
+// Starts several daemons for one plant on this machine: a core, which polls the device, and renderers, which get their readings
+// from the core.
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openFiles } from './crowd.mjs';
@@ -12,7 +13,7 @@ export { setTimeout as sleep } from 'node:timers/promises';
 
 export { until };
 
-// Returns a program's sockets; none if it has ended.
+// Returns the names (socket:[INODE]) of the sockets that a process has open; an empty list if the process has ended.
 function sockets(pid) {
     try {
         return openFiles(pid).filter((name) => name.startsWith('socket:'));
@@ -51,7 +52,7 @@ export class Node {
         return Number(text.split('\n').find((line) => line.startsWith(`${name} `))?.split(' ')[1]);
     }
 
-    // Returns the tag's alarm of kind H, or undefined.
+    // Returns the active high alarm (kind H) of a tag, or undefined if there is none.
     async alarm(name = 'TI-1', token = this.token) {
         const { alarms } = await (await this.fetch('/api/v1/alarms', token)).json();
         return alarms?.find(({ tag, kind }) => tag === name && kind === 'H');
@@ -67,8 +68,8 @@ export class Node {
 }
 
 export class Nodes {
-    // Makes a plant with alarms at 90 and one token each for a viewer, an operator, a renderer and a standby. slowDevice:
-    // allows slow answers of the device, for a busy machine.
+    // Makes a plant whose tags have high alarms at 90, and one token for each of the roles viewer, operator, renderer and
+    // standby. slowDevice: the daemons tolerate slow answers of the device, for a busy machine.
     static async create({ slowDevice = false } = {}) {
         const nodes = new Nodes();
         nodes.plant = await TinyPlant.create();
@@ -89,7 +90,8 @@ export class Nodes {
         chmodSync(nodes.tokenFile, 0o600);
         await nodes.plant.startSim();
         nodes.all = [];
-        nodes.trustsLocal = true; // until a test changes this: daemons treat local connections as engineers
+        // true: daemons are started with --trust-local, so local connections have the role engineer; tests may change this
+        nodes.trustsLocal = true;
         return nodes;
     }
 
@@ -100,7 +102,7 @@ export class Nodes {
         return node.ready();
     }
 
-    // Starts the core on a port that stays reserved while the core is down.
+    // Starts the core on a port that no other program gets while the core is down.
     async core(port = 0, ...more) {
         return this.start(['--role', 'core', '--port', String(port || await freePort()), ...more]);
     }
@@ -111,8 +113,8 @@ export class Nodes {
         return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, ...at, ...more]);
     }
 
-    // Returns these daemons' connections to the device, by local address. The daemon of another test may outlive it for a
-    // moment and poll a port that was reused.
+    // Returns the connections from these daemons to the device, as local addresses. Connections of other daemons are left out:
+    // a daemon of another test may run on for a moment and poll a port that this test uses now.
     pollers() {
         const port = this.plant.modbusPort.toString(16).toUpperCase().padStart(4, '0'), established = '01';
         const ours = new Set(this.all.flatMap(({ program }) => sockets(program.child.pid)));
@@ -121,9 +123,9 @@ export class Nodes {
             remote?.endsWith(`:${port}`) && state === established && ours.has(`socket:[${inode}]`)).map(([, local]) => local);
     }
 
-    // Waits until exactly one daemon polls; none may do so only while it reconnects. The system lists connections one by one,
-    // so an ending connection may appear together with its successor. Two pollers are an error only if both are listed twice in
-    // a row.
+    // Waits until exactly one daemon is connected to the device. Fails if the same two connections are listed twice in a row. A
+    // single list with two is no proof, because the system lists connections one by one and may include an ended connection
+    // together with its successor.
     onePoller() {
         let before = [];
         return until('one poller', () => {

@@ -15,7 +15,8 @@ const { DataType, Variant, VariantArrayType } = variant;
 const PUBLISHING_MS = opcua.Subscription.minimumPublishingInterval;
 const COUNTED = { _on_WriteRequest: 'write', _on_CallRequest: 'call' };
 let server, told, nodes, counts;
-// node-opcua reads the clock rarely and extrapolates its time from the last reading; the test may have set the clock since.
+// node-opcua computes its time from the clock, which it reads only rarely. The test may have set the clock, so this interval
+// (ms) makes it read the clock often.
 const { periodicClockAdjustment: looks } = dateTime;
 looks.interval = 50;
 dateTime.installPeriodicClockAdjustment();
@@ -86,7 +87,7 @@ function set({ name, value, status = 0, at }) {
         status ? coerceStatusCode(status) : StatusCodes.Good, at ? new Date(at) : undefined);
 }
 
-// Loses the next notification of any subscription by skipping its sequence number.
+// Loses the next notification of a subscription: skips its sequence number, which the client must notice.
 function lose() {
     const { prototype } = opcua.Subscription, send = prototype._publish_pending_notifications;
     prototype._publish_pending_notifications = function () {

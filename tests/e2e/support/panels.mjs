@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant with alarms, and a tour of everything that opens on the page.
+// Starts a plant with active alarms, and opens every panel, card and dialog of the page in turn.
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { drawnAt, land } from './browser.mjs';
 import { TinyPlant } from './tiny_plant.mjs';
 
-// Returns [plant, url]. arrange(file): further changes of the plant file.
+// Returns [plant, url] of a running plant with active alarms. arrange(file): makes further changes to the plant file before the
+// start.
 export async function startAlarmed(arrange = () => {}) {
     const plant = await TinyPlant.create();
     plant.keepFresh();
@@ -21,11 +22,11 @@ export async function startAlarmed(arrange = () => {}) {
 const PARTS = { picture: '#picture-panel.open', views: '#views.open', split: '#split-bar', trend: '#timeline', alarms: '#alarms',
     timings: '#timings' };
 
-// Opens everything, one after the other; calls f for each.
+// Opens every panel, card and dialog of the page, one after another, and calls f(name) while it is open.
 export async function everyPanel(page, f) {
     const press = async (key, name) => {
-        // A part is loaded when it is first opened. If that takes seconds, the page forgets the key, and a user would press it
-        // again.
+        // Presses the key again if the part does not appear within 10 s. The page loads a part when it is first opened, and
+        // drops the key if loading takes seconds.
         const isOpen = () => !PARTS[name] || page.locator(PARTS[name]).waitFor({ timeout: 10000 }).then(() => true, () => false);
         do {
             await page.locator('#viewport').focus();
@@ -34,7 +35,7 @@ export async function everyPanel(page, f) {
         await f(name);
     };
     await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
-    await land(page); // waits for the camera, so that clicked objects stand still
+    await land(page); // waits until the camera stands still, so that the objects to be clicked do not move
     await f('page');
     const places = await page.evaluate(() => {
         const { model } = globalThis.plantcast.session;
@@ -46,7 +47,7 @@ export async function everyPanel(page, f) {
     await page.locator('#card').waitFor();
     await f('card');
     await page.mouse.click(at[1].x - 6, at[1].y + 30);
-    // clicks again, because a card or label may have appeared meanwhile and covered the point
+    // clicks a second time if no menu appears, because a card or label may have covered the point at the first click
     await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => {
         await page.keyboard.press('Escape');
         await page.mouse.click(at[1].x - 6, at[1].y + 30);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client of plantcast.v1 written from PROTOCOL.md and RFC 6455 alone, on a plain socket, so that it can also misbehave.
+// A client of the protocol plantcast.v1, written from PROTOCOL.md and RFC 6455 alone. It uses a plain socket, so that tests can
+// also violate the protocol.
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 
-export const FLAG = { key: 1, still: 2, noLiveData: 4, more: 8, past: 32 }; // more: another part of the same picture follows
+// bits of a frame's `flags`; more: another part of the same picture follows
+export const FLAG = { key: 1, still: 2, noLiveData: 4, more: 8, past: 32 };
 const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 };
 
-// Resolves with { status, headers (lower case), body } of one HTTP request; `head` is sent as given. localAddress: source
-// address, 127.0.0.1 or another one of this machine.
+// Sends one HTTP request, whose request line and headers are `head`, unchanged. Resolves with { status, headers (lower case),
+// body }. localAddress: source address of the connection, 127.0.0.1 or another address of this machine.
 export function http(port, head, { timeoutMs = 60000, localAddress } = {}) {
     return new Promise((done, fail) => {
         const socket = connect({ port, host: '127.0.0.1', localAddress }, () => socket.write(head));
@@ -77,8 +79,8 @@ function readDepth(bytes) {
 }
 
 export class PlainClient {
-    // Resolves when the server accepts the handshake. options: protocol (null: none), origin, host, path, headers, acknowledge
-    // (true), localAddress.
+    // Opens a WebSocket and resolves with the client when the server accepts the handshake. options: protocol (null: none),
+    // origin, host, path, headers; acknowledge: false: do not acknowledge frames; localAddress: source address.
     static open(port, options = {}) {
         const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', headers = [] } = options;
         const { acknowledge = true, localAddress } = options;
@@ -158,9 +160,9 @@ export class PlainClient {
         } else {
             const frame = readFrame(message);
             if (frame.payload.length < frame.payload_bytes)
-                return; // the server gave this frame up
+                return; // the server has cancelled this frame while sending it, so its payload is incomplete
             this.frames.push({ ...frame, at: performance.now() });
-            // a picture in parts is acknowledged with its last part, because the rest may be given up
+            // acknowledges a picture only with its last part, because the server may cancel the remaining parts
             if (this.acknowledge && !(frame.flags & FLAG.more))
                 this.say({ type: 'ack', seq: frame.seq });
         }
@@ -185,7 +187,8 @@ export class PlainClient {
             this.socket.write(bytes);
     }
 
-    // Sends one byte at a time. Other frames, such as pongs, wait meanwhile, because no frame may begin inside another.
+    // Sends the bytes of a WebSocket frame one at a time. Frames that the client wants to send meanwhile, such as pongs, wait,
+    // because no frame may begin inside another.
     async trickle(bytes, pauseMs) {
         this.held = [];
         for (const byte of bytes) {

@@ -14,7 +14,7 @@ export function chunksOf(png) {
     return chunks;
 }
 
-export const crc = zlib.crc32 ?? ((bytes) => { // node of Debian 12 has no crc32
+export const crc = zlib.crc32 ?? ((bytes) => { // CRC-32; computed here if node lacks zlib.crc32, as in Debian 12
     let sum = ~0;
     for (const byte of bytes) {
         sum ^= byte;

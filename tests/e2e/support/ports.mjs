@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Port numbers for programs that cannot choose their own: neither another test nor an outgoing connection of this machine gets
-// the same one.
+// Reserves port numbers for programs that cannot choose a free port themselves. Neither another test nor an outgoing connection
+// of this machine uses a reserved port.
 import { createServer } from 'node:net';
 
-// The same ports as in tests/support/ports.c. They lie below the system's own range for outgoing connections
-// (net.ipv4.ip_local_port_range begins at 32768). Ports come in groups of four: the simulator of a plant with several devices
-// uses the ports after its first.
+// The same range of ports as in tests/support/ports.c. It lies below 32768, where the system's own range for outgoing
+// connections (net.ipv4.ip_local_port_range) begins. Ports are reserved in groups of four, because the simulator of a plant
+// with several devices also uses the ports after its first one.
 const FIRST = 20000, COUNT = 1500, EACH = 4, LOCKS = FIRST + COUNT * EACH;
 
 function listen(port, host) {
@@ -16,7 +16,8 @@ function listen(port, host) {
     });
 }
 
-// Each group has another port as its lock: the process that listens there owns the group until it ends, in whatever way.
+// Returns the first port of a free group. Each group has a lock: another port on which the owner of the group listens. The lock
+// is free again when the owner's process ends, however it ends.
 export async function freePort() {
     for (let tries = 0; tries < COUNT; tries++) {
         const n = Math.floor(Math.random() * COUNT), port = FIRST + n * EACH, lock = await listen(LOCKS + n, '127.0.0.1');

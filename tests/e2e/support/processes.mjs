@@ -24,7 +24,7 @@ export function family(pid) {
     return out;
 }
 
-// Returns the resident shared memory of processes in MB; memory mapped by several of them counts several times.
+// Returns the resident shared memory of the processes in MB. Memory that several of the processes map is counted once for each.
 export const sharedMb = (pids) => pids.reduce((sum, pid) => {
     try {
         return sum + Number(readFileSync(`/proc/${pid}/status`, 'utf8').match(/^RssShmem:\s+(\d+)/m)[1]) / 1024;

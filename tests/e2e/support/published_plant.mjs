@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant of two boxes whose only source is a broker or a server, and functions that read its tags.
+// A plant of two boxes whose only source is an MQTT broker or an OPC UA server, and functions that read its tags.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -20,8 +20,8 @@ export class PublishedPlant {
     get folder() { return this.plant.folder; }
     get daemon() { return this.plant.daemon; }
 
-    // Writes the plant file and the tag list with the source's keys and the rows. more: further columns for the tag list's
-    // header.
+    // Writes the plant file with the source's settings `keys`, and the tag list with these rows. more: further columns of the
+    // tag list's header line.
     write(keys, rows, more = '') {
         writeFileSync(this.file, `plant: { name: Two boxes }
 assets:
@@ -37,7 +37,7 @@ tags: tags.csv
         writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD + more, ...rows].join('\n')}\n`);
     }
 
-    // Writes and prepares the plant, and starts a daemon that need not reach its server.
+    // Writes and prepares the plant and starts its daemon, without waiting for a connection to the broker or server.
     async start(keys, rows) {
         this.write(keys, rows);
         this.plant.prepare();
@@ -49,7 +49,7 @@ tags: tags.csv
         return this.daemon.line(pattern, ms);
     }
 
-    // Writes and prepares the plant, starts a daemon, and waits until it has subscribed.
+    // Writes and prepares the plant, starts its daemon, and waits until the daemon has subscribed to its values.
     async run(keys, rows, more = '') {
         this.write(keys, rows, more);
         const prepared = this.plant.prepare();
@@ -67,7 +67,7 @@ tags: tags.csv
         return Object.fromEntries((await this.get('/api/v1/tags?count=5000')).tags.map((tag) => [tag.name, tag]));
     }
 
-    // Waits until the tag has these properties, and returns it. seconds: limits only the wait.
+    // Waits until the tag has the properties `wanted`, and returns the tag. seconds: maximum wait; the test fails afterwards.
     async until(name, wanted, seconds = 90) {
         for (const end = performance.now() + seconds * 1000; ; await sleep(20)) {
             const tag = (await this.tags())[name];
@@ -77,7 +77,7 @@ tags: tags.csv
         }
     }
 
-    // Returns a number of /metrics about sources.
+    // Returns the value of the metric plantcast_source_NAME.
     metric(name) { return this.plant.metric(`plantcast_source_${name}`); }
 
     destroy() {

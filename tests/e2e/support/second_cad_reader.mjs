@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Second readers of STEP and IGES (occt-import-js, a newer Open CASCADE in WebAssembly with its own assembly tree), and of FBX,
-// COLLADA and OBJ (loaders of three.js).
+// Other programs' readers, for comparison with Plantcast's import: for STEP and IGES occt-import-js (a newer Open CASCADE in
+// WebAssembly with its own assembly tree), for FBX, COLLADA and OBJ the loaders of three.js.
 import { createRequire } from 'node:module';
 import { extname } from 'node:path';
 import { triangleSums } from './triangle_sums.mjs';
@@ -36,7 +36,8 @@ function sumScene(THREE, scene, metres) {
     return summed(sums, true);
 }
 
-// Returns null if it is not installed, otherwise a function that takes a name and the bytes of a STEP or IGES file.
+// Resolves with a function that reads a STEP or IGES file, given as name and bytes, and returns its area and size; null if
+// occt-import-js is not installed.
 export async function secondCadReader() {
     try {
         const occt = await require('occt-import-js')({ print() {}, printErr() {} });
@@ -46,8 +47,8 @@ export async function secondCadReader() {
     }
 }
 
-// Returns null if it is not installed; otherwise a function that takes a name, the bytes of an OBJ, COLLADA or FBX file, and
-// the unit of OBJ and FBX in metres. COLLADA's loader applies the unit of the file.
+// Resolves with a function that reads an OBJ, COLLADA or FBX file, given as name and bytes, and returns its area and size; null
+// if three.js is not installed. { metres }: unit of an OBJ or FBX file; COLLADA's loader applies the unit that the file states.
 export async function secondMeshReader() {
     let THREE, loaders, DOMParser;
     try {
@@ -60,7 +61,8 @@ export async function secondMeshReader() {
     }
     const [{ FBXLoader }, { ColladaLoader }, { OBJLoader }] = loaders;
     globalThis.DOMParser ??= DOMParser;
-    globalThis.window ??= { innerWidth: 1, innerHeight: 1 }; // the FBX loader needs a window for cameras
+    // three.js's FBX loader reads the size of `window` when it makes cameras, and node has none
+    globalThis.window ??= { innerWidth: 1, innerHeight: 1 };
     return (name, bytes, { metres = 1 } = {}) => {
         const { log, warn, error } = console;
         console.log = console.warn = console.error = () => {}; // silences the loaders

@@ -17,7 +17,8 @@ const product = (at, name) => [`#${at}=PRODUCT('${name}','${name}','',(#2));`, `
     `#${at + 2}=PRODUCT_DEFINITION('','',#${at + 1},#5);`, `#${at + 3}=PRODUCT_DEFINITION_SHAPE('','',#${at + 2});`,
     `#${at + 4}=SHAPE_DEFINITION_REPRESENTATION(#${at + 3},#${at + 5});`];
 
-// A funnel with an angle of 45 degrees between circles of `small` and `large`. Its seam lies opposite its reference direction.
+// A cone (funnel) of 45 degrees between two circles with these radii in millimetres. Its seam lies opposite its reference
+// direction, which Open CASCADE tessellates only as a B-spline surface.
 export const CONE = { small: 21.6535433070866, large: 45.0944881889764 };
 export const cone = (name = 'Funnel') => file([...HEAD, ...product(200, name),
     "#205=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#26,#15),#10);", "#26=SHELL_BASED_SURFACE_MODEL('',(#27));",
@@ -34,8 +35,8 @@ export const cone = (name = 'Funnel') => file([...HEAD, ...product(200, name),
     "#137=CARTESIAN_POINT('',(-74.8031496062992,1.13404413564787E-14,0.));", "#123=DIRECTION('',(-1.,0.,0.));",
     "#124=DIRECTION('',(0.,-1.,1.04744440165294E-14));", `#15000=CONICAL_SURFACE('',#97,${CONE.large},0.785398163397449);`]);
 
-// An assembly of parts 100 mm apart. `files`: the external files of its parts, as the assembly names them; format: the format
-// that it states for them.
+// Returns an assembly of parts placed 100 mm apart, whose shapes are in other files. files: names of these files as the
+// assembly states them; format: the file format that the assembly states for them.
 export const assembly = (files, format = 'STEP AP242') => file([...HEAD, ...product(20, 'Line'),
     "#25=SHAPE_REPRESENTATION('',(#15),#10);", "#30=OBJECT_ROLE('mandatory',$);", "#31=DOCUMENT_TYPE('geometry');",
     ...files.flatMap((name, i) => {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Generates tag lists like those of a plant's control system from its equipment names: tags by ANSI/ISA-5.1-2009 (letters of
-// table 4.1, loop numbers, suffixes) and by equipment, as OPC servers and control systems build them, with spelling mistakes,
-// repeated rows and tags of other plants. The truth is kept separately. This file uses none of the matching code.
+// Generates tag lists like those of a control system from the names of a plant's equipment. Tags are built from
+// ANSI/ISA-5.1-2009 (letters of table 4.1, loop numbers, suffixes) or from the equipment's name, as OPC servers and control
+// systems do, with spelling mistakes, repeated rows and tags of other plants. The true equipment of each tag is returned
+// separately. To be independent, this file uses none of the matching code.
 const VARIABLES = [['T', 'temperature', '°C', [0, 150]], ['P', 'pressure', 'bar(g)', [0, 16]], ['F', 'flow', 'm3/h', [0, 400]],
     ['L', 'level', '%', [0, 100]], ['V', 'vibration', 'mm/s rms', [0, 20]], ['PD', 'differential pressure', 'mbar', [0, 500]],
     ['A', 'analysis', 'ppm', [0, 50]], ['S', 'speed', 'rpm', [0, 3000]]];
@@ -19,14 +20,15 @@ function randomOf(seed) { // the mulberry32 generator
     };
 }
 
-// Returns an operator's name for a piece of equipment: its name without punctuation at its ends; for a family of building
-// services, its first word and number.
+// Returns the name that operators would use for a piece of equipment: its name without punctuation at the ends. For a component
+// of a building model ("M_..."), the name's first words and its number.
 function spoken(id) {
     const family = id.match(/^M_([A-Z][a-z]+(?: [A-Z][a-z]+)*).*:(\d+)$/);
     return family ? `${family[1].replaceAll(' ', '_')}-${family[2]}` : id.replace(/^[^\p{L}\d]+|[^\p{L}\d]+$/gu, '');
 }
 
-// Returns the number that this equipment's loops use: the longest run of digits, the last one of those equally long.
+// Returns the number that the loops (measuring points) of this equipment contain: the longest run of digits in its name, and of
+// several equally long ones the last.
 function numberOf(id) {
     return (id.match(/\d+/g) ?? []).reduce((best, run) => (run.length >= best.length ? run : best), '');
 }
@@ -82,9 +84,9 @@ export function makeTagList(equipment, { seed, count = 5000, foreign = 0.15, rep
                 { variable, end, named: chance(0.6) ? id : null }];
         if (style < 0.6)         // the tag's name is the instrument's letters, then the equipment
             return [`${letters}${pick(['_', '-'])}${slips(name)}${attribute}`, { variable, end, named: chance(0.5) ? id : null }];
-        if (style < 0.8 && number.length > 1) // the equipment's number, and a description that names the equipment
+        if (style < 0.8 && number.length > 1) // letters and the equipment's number; the description may name the equipment
             return [`${letters}${separator()}${number}${suffix}${attribute}`, { variable, end, named: chance(0.85) ? id : null }];
-        if (style < 0.9)         // an instrument number of its own, and a description that names the equipment
+        if (style < 0.9)         // letters and a number unrelated to the equipment; only the description names the equipment
             return [`${letters}-${otherNumber()}${suffix}${attribute}`, { variable, end, named: id }];
         return [`${letters}${separator()}${sequence}${suffix}`,
             { variable, end, named: chance(0.5) ? id : null, path: `Site/${slips(name)}` }];
