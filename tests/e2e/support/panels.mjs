@@ -47,7 +47,7 @@ export async function everyPanel(page, f) {
     await page.locator('#card').waitFor();
     await f('card');
     await page.mouse.click(at[1].x - 6, at[1].y + 30);
-    // clicks a second time if no menu appears, because a card or label may have covered the point at the first click
+    // clicks a second time if the asset's card (#place) does not appear: a card or label may have covered the point
     await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => {
         await page.keyboard.press('Escape');
         await page.mouse.click(at[1].x - 6, at[1].y + 30);
