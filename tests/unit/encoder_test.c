@@ -99,7 +99,7 @@ static struct frame *thin_lines(int w, int h)
     return frame;
 }
 
-/* Returns the mean error of the blue channel on the lines after JPEG, in steps of 1/255. */
+/* Returns the mean error, in steps of 1/255, of the blue channel of the thin lines' pixels after decoding the JPEG. */
 static double lines_off(const struct frame *frame, const uint8_t *bytes, size_t count)
 {
     int w = frame->width_px, h = frame->height_px, lines = 0;
@@ -125,7 +125,8 @@ static size_t head_of(const uint8_t *bytes, size_t count) /* returns the length 
     return at;
 }
 
-/* Preview JPEGs of all streams share the header, and so its tables. From JPEG_READ_QUALITY on, thin lines keep more of their colour. */
+/* All preview JPEGs begin with the same header, which includes the quantisation tables. From JPEG_READ_QUALITY on, thin lines
+   keep more of their colour than with libjpeg-turbo's own tables. */
 TEST(jpeg_keeps_the_colour_of_thin_things)
 {
     struct frame *frame = thin_lines(320, 200);
@@ -188,14 +189,16 @@ TEST(jpeg_sends_only_what_changed)
     decode_parts(change, bgr);
     assert_true(worst_difference(now, bgr, 0) <= 16);
     packet_unref(&change);
-    assert_int_equal(encoder_send(encoder, before, &params), 0); /* nothing is sent: the client already shows this frame */
+    /* the picture has changed back to the one before, which the client already shows again, so nothing is sent */
+    assert_int_equal(encoder_send(encoder, before, &params), 0);
     assert_int_equal(encoder_receive(encoder, &change), -EAGAIN);
     params.key = true;
     assert_int_equal(encoder_send(encoder, before, &params), 0);
     assert_int_equal(encoder_receive(encoder, &change), 0);
     assert_true(change->key);
     packet_unref(&change);
-    now->view.camera.fov_deg = 33; /* another view has no predecessor to compare with */
+    /* a picture of another view cannot be sent as a change of the last one: it must be complete (a key frame) */
+    now->view.camera.fov_deg = 33;
     params.key = false;
     assert_int_equal(encoder_send(encoder, now, &params), 0);
     assert_int_equal(encoder_receive(encoder, &change), 0);

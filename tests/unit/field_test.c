@@ -15,7 +15,7 @@
 struct vertex_truth {
     double value;
     bool no_data, uncertain;
-    /* true: rounding of floats decides whether the vertex has no data or is uncertain, so it is not compared */
+    /* true: rounding of floats may change whether the vertex has data or is uncertain, so these two flags are not compared */
     bool near_tie;
 };
 
@@ -52,7 +52,8 @@ static double truth_radius(const struct synthetic *plant, const struct field_par
     return most;
 }
 
-/* Returns the factor by which a sensor's weight fades towards its reach, relative to the nearest sensor. */
+/* Returns the factor by which a sensor's weight is reduced because the vertex is close to the sensor's reach. The nearest
+   sensor has the factor 1. */
 static double faded(const struct field_params *params, double near_m, double distance_m)
 {
     if (isinf(params->reach_m) || distance_m <= near_m)
@@ -60,7 +61,7 @@ static double faded(const struct field_params *params, double near_m, double dis
     return pow((1 - distance_m / params->reach_m) / (1 - near_m / params->reach_m), 2);
 }
 
-/* Computes the weights of all sensors within reach, or of the nearest one if none is. */
+/* Sets weight[] for all sensors that reach the vertex, or for the nearest one if none does. */
 static void truth_weights(struct vertex_sight *s, size_t count, const struct plant_tag *tags, const struct field_params *params,
                           double near_m, double radius_m)
 {
@@ -179,7 +180,8 @@ static void assert_all_finite(const struct scalars *scalars)
         assert_true(isfinite(scalars->at[j].value));
 }
 
-/* Asserts that the field has the same bits as a newly created one. */
+/* Asserts that this field, which has been updated step by step, has the same bits as a new field computed from the present
+   readings. */
 static void assert_as_fresh(const struct field_rig *rig)
 {
     struct field *fresh = field_create(workers, &rig->plant->scene);
@@ -239,7 +241,7 @@ static void randomize(struct field_rig *rig, uint64_t *random)
     p->power = synthetic_random(random) % 3 ? between(random, 0.5, 6) : 2;
     p->radius_m = synthetic_random(random) % 2 ? 0 : between(random, 2, 20);
     p->reach_m = synthetic_random(random) % 3 ? (double)INFINITY : between(random, 1, 8);
-    size_t mood = synthetic_random(random) % 4; /* how many sensors are Bad: none, some, many, or all but a few */
+    size_t mood = synthetic_random(random) % 4; /* chooses how likely each sensor is Bad: 0, 1/4, 1/2 or 3/4 */
     for (size_t i = 0; i < rig->plant->scene.assets[0].sensor_count; i++) {
         double dice = synthetic_random_unit(random);
         rig->plant->plant.tags[i].strength = dice < 0.5 ? 1 : between(random, 0, 2);
@@ -289,8 +291,8 @@ TEST(test_extreme_parameters)
     rig_finish(&rig);
 }
 
-/* 4,096 sensors with every interpolation. Lost sensors leave no data at their positions; with shepard, each other sensor's
-   position shows its own reading. Other cases are compared with plain loops. */
+/* 4,096 sensors, every seventh one lost, with every interpolation. There must be no data at a lost sensor; with shepard, the
+   other sensors' positions must show their own readings. Other cases are compared with plain loops. */
 TEST(test_4096_sensors)
 {
     uint64_t random = sweep_seed();
@@ -366,7 +368,8 @@ TEST(test_losing_the_hottest_is_not_painted_over)
             size_t nearest = 0;
             for (size_t i = 1; i < 5; i++) {
                 float least_m = asset_distance_m(&rig.plant->file.view, nearest, j), m = asset_distance_m(&rig.plant->file.view, i, j);
-                /* sensor 2 is lost: a vertex equally near to another sensor takes that sensor's value */
+                /* the nearest sensor decides; if sensor 2, which is lost, and another one are equally near, the other one does
+                   */
                 if (m < least_m || (m == least_m && nearest == 2))
                     nearest = i;
             }
@@ -481,12 +484,13 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
     set(&rig, 0, 40, QUALITY_GOOD);
     set(&rig, 1, 75, QUALITY_GOOD);
     set(&rig, 2, 30, QUALITY_GOOD);
-    /* the asset shows the reading farthest from the middle of its range (0 to 100, as no limits are set): 75 */
+    /* of three readings (40, 75, 30), the asset shows the one farthest from the middle of the range 0 to 100: 75 */
     assert_even(&rig, 75);
     set(&rig, 2, 5, QUALITY_GOOD);
     assert_even(&rig, 5);
     rig.plant->plant.tags[0].alarms.limits[LIMIT_H] = 35;
-    assert_even(&rig, 40); /* the asset shows the only reading that exceeds a limit of its own tag */
+    /* now 40 exceeds its tag's new limit H of 35: the asset shows the reading beyond a limit, whatever the others are */
+    assert_even(&rig, 40);
     assert_as_fresh(&rig);
     set(&rig, 0, 40, QUALITY_BAD_NO_COMMUNICATION);
     assert_even(&rig, 5);
@@ -505,7 +509,7 @@ TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
     set(&with, 2, 99, QUALITY_GOOD);
     without.plant = synthetic_create(.vertices = 700, .sensors = 3);
     without.field = field_create(workers, &without.plant->scene);
-    without.plant->plant.tags[2].group = -1; /* reference: tag 2 belongs to no group, as if its sensor did not exist */
+    without.plant->plant.tags[2].group = -1; /* in the plant for comparison, tag 2 is in no group, so its sensor does not count */
     const struct scalars *got = show(&with), *want = show(&without);
     assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
     assert_false(field_is_assumed(with.field, 0, &with.params));
@@ -531,7 +535,7 @@ TEST(test_over_range_passes_shepard_and_not_paper)
     rig_finish(&rig);
 }
 
-/* Rounding must not push a plant whose readings all equal MAX beyond MAX. */
+/* If all readings equal the range's maximum, the field must be exactly that, in spite of rounding, and not beyond the range. */
 TEST(test_equal_readings_make_exactly_that)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = sweep_seed()));
@@ -585,14 +589,16 @@ TEST(test_half_the_weight_uncertain)
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
-        for (size_t j = 0; j < 3; j++) { /* vertices nearer to the good sensor, half-way between the two, nearer to the uncertain one */
+        /* three vertices: nearer to the good sensor, half-way between both, nearer to the uncertain one */
+        for (size_t j = 0; j < 3; j++) {
             synthetic_set_distance(rig.plant, 0, 10 + j, 1 + (float)j);
             synthetic_set_distance(rig.plant, 1, 10 + j, 3 - (float)j);
         }
         set(&rig, 0, 10, QUALITY_GOOD);
         set(&rig, 1, 20, QUALITY_UNCERTAIN_LAST_USABLE);
         const struct scalars *scalars = show(&rig);
-        assert_in_range(scalars->at[10].uncertain, 1, 127); /* `uncertain` is graded, so that the rim can lie between vertices */
+        /* `uncertain` is a share, 0 to 255, so that the border of uncertainty can be drawn between vertices */
+        assert_in_range(scalars->at[10].uncertain, 1, 127);
         assert_int_equal(scalars->at[11].uncertain, 128);
         assert_in_range(scalars->at[12].uncertain, 129, 254);
         assert_int_equal(scalars->at[11].no_data, 0);
@@ -626,7 +632,7 @@ TEST(test_a_sensor_out_of_reach_does_not_make_its_place_lost)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (size_t j = 0; j < 300; j++)
-        /* sensor 0 is Bad, and no path leads to it from these vertices because it is on another part */
+        /* sensor 0 is Bad and, as if on another part, at an infinite distance from all vertices */
         synthetic_set_distance(rig.plant, 0, j, INFINITY);
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 1, 40, QUALITY_GOOD);
@@ -650,15 +656,18 @@ TEST(test_reach_ends_the_field)
     const struct scalars *scalars = show(&rig);
     for (size_t k = 0; k < 4; k++) {
         assert_int_equal(scalars->at[20 + k].no_data, k < 2 ? 0 : 255);
-        assert_true(scalars->at[20 + k].value == 30); /* for interpolation, values continue beyond the edge of the data */
+        /* beyond the reach a vertex has no data, but still a value, because drawing interpolates values between vertices across
+           the border */
+        assert_true(scalars->at[20 + k].value == 30);
     }
-    assert_int_equal(scalars->at[21].lacking, 127); /* the rim lies 2 m away, wherever the vertices are */
+    /* the border of the data, at `lacking` = 127.5, lies half-way between these vertices, at the reach of 2 m */
+    assert_int_equal(scalars->at[21].lacking, 127);
     assert_int_equal(scalars->at[22].lacking, 128);
     assert_true(scalars->at[20].lacking < 127 && scalars->at[23].lacking > 128);
     rig_finish(&rig);
 }
 
-/* A sensor's weight fades to zero at its reach, so that no edge shows where the sensor no longer contributes. */
+/* A sensor's weight decreases to zero at its reach, so that the field has no visible edge there. */
 TEST(test_a_sensor_fades_towards_its_reach)
 {
     for (int paper = 0; paper < 2; paper++) {
@@ -669,16 +678,21 @@ TEST(test_a_sensor_fades_towards_its_reach)
         rig.params.reach_m = 4;
         set(&rig, 0, 20, QUALITY_GOOD);
         set(&rig, 1, 80, QUALITY_GOOD);
-        for (size_t k = 0; k < 200; k++) { /* the second sensor's reach ends at vertex 150 of this row */
+        /* vertices 20 to 219 are 2 m from sensor 0 and 2.5 m to 4.5 m from sensor 1, whose reach of 4 m ends at the 150th of
+           them */
+        for (size_t k = 0; k < 200; k++) {
             synthetic_set_distance(rig.plant, 0, 20 + k, 2);
             synthetic_set_distance(rig.plant, 1, 20 + k, 2.5f + 0.01f * (float)k);
         }
         synthetic_set_distance(rig.plant, 0, 20, 4);
-        synthetic_set_distance(rig.plant, 1, 20, 4);      /* exactly at the reach of both sensors: the value mixes both readings */
-        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* fading does not show at a vertex reached by only one sensor */
+        /* a vertex exactly at the reach of both sensors: its value is the mean of both readings */
+        synthetic_set_distance(rig.plant, 1, 20, 4);
+        /* a vertex just within reach of sensor 0 only: it shows that sensor's reading, unreduced */
+        synthetic_set_distance(rig.plant, 0, 21, 3.999f);
         synthetic_set_distance(rig.plant, 1, 21, 4.001f);
         const struct scalar *at = show(&rig)->at + 20;
-        /* at 3 m the second sensor has half of the weight that remains beside the nearest one */
+        /* weight of sensor 1, relative to sensor 0, at 3 m, where half of its reach beyond the nearest sensor's distance is
+           left */
         double weight = (paper ? exp(-1 / 8.0) : pow(2 / 3.0, 2)) * pow(0.5, 2);
         double part = weight / (1 + weight);
         assert_true(fabs((double)at[50].value - (20 + 60 * part)) < 1e-4);
@@ -733,7 +747,7 @@ TEST(test_an_asset_without_sensors_of_the_group_has_no_field)
     rig_finish(&rig);
 }
 
-/* --- no drift of the sums accumulates ------------------------------------------------------------------------------------- */
+/* --- incremental updates leave no errors in the sums ---------------------------------------------------------------------- */
 
 TEST(test_an_hour_of_flicker_leaves_no_drift)
 {
@@ -752,8 +766,8 @@ TEST(test_an_hour_of_flicker_leaves_no_drift)
     rig_finish(&rig);
 }
 
-/* A loose wire makes single sensors come and go at any moment while the readings of all others change: the sums must keep
-   nothing of a removed sensor. */
+/* As with loose wires, single sensors become Bad and good again at any moment while all readings change. Nothing of a sensor
+   that is gone may remain in the sums. */
 TEST(test_flicker_at_any_moment_leaves_no_drift)
 {
     static const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_BAD_COMMUNICATION_ERROR, QUALITY_UNCERTAIN_LAST_USABLE,
@@ -811,15 +825,15 @@ TEST(test_an_hour_of_changes_leaves_no_drift)
     rig_finish(&rig);
 }
 
-/* Steps of one sensor that are large, but just small enough to be added incrementally, leave rounding errors in the sums. Later
-   small steps are added too and do not remove the errors. Only the full sum over all sensors, made after some thousand
-   additions, gives the bits of a new field. */
+/* Changes of one reading that are large, but small enough to be added to the sums, leave rounding errors there. Later small
+   changes are added, too, and keep these errors. After some thousand additions the sums are computed anew, and the field has
+   the same bits as a new one again. */
 TEST(test_sums_are_made_anew_now_and_then)
 {
     uint64_t random = sweep_seed();
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12, .seed = random));
     int tick = 0, most = 10000;
-    for (size_t i = 0; i < 12; i++) /* the readings are near 0, where even the smallest rounding error shows in a float */
+    for (size_t i = 0; i < 12; i++) /* readings near 0, so that even the smallest rounding error changes a float */
         set(&rig, i, 0.01 * (double)i, QUALITY_GOOD);
     show(&rig);
     for (int large = 0; large < 2000; large++) {
@@ -888,7 +902,8 @@ TEST(test_version_grows_with_real_changes_only)
     show(&rig);
     assert_true(scalars->version > version);
     assert_int_equal(scalars->flags_version, flags);
-    assert_true(fabs(scalars->travel - travel - 2.5) < 1e-3); /* the change is largest where the sensor is */
+    /* `travel` grows by the change of 2.5 that the sensor's own vertex shows, the largest one */
+    assert_true(fabs(scalars->travel - travel - 2.5) < 1e-3);
     version = scalars->version;
     set(&rig, 1, (double)before + 2.5, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
     show(&rig);
@@ -897,7 +912,8 @@ TEST(test_version_grows_with_real_changes_only)
     rig.params.interpolation = INTERPOLATION_PAPER;
     set(&rig, 1, 300, QUALITY_GOOD);
     uint64_t paper = show(&rig)->version;
-    assert_true(paper > version); /* versions increase even when different parameters are shown: all scalars share one counter */
+    /* the scalars of other parameters have a higher version, too, because all scalars take theirs from one counter */
+    assert_true(paper > version);
     set(&rig, 1, 400, QUALITY_GOOD);
     assert_int_equal(show(&rig)->version, paper); /* both are clamped to MAX */
     rig_finish(&rig);
@@ -953,7 +969,8 @@ TEST(test_instances_share_their_weights)
         bytes[1 + (round > 0)] = field_bytes(rig.field);
     }
     size_t columns = (size_t)3 * 256 * 16 * sizeof(float), state_bytes = (bytes[2] - columns - bytes[0]) / 9;
-    /* a sensor's weights at all vertices (a column) are cached once for all ten instances, from their second use on */
+    /* when a column (a sensor's weights at all vertices) has been used twice, it is cached, once for all ten instances of the
+       asset file */
     assert_int_equal(bytes[1], bytes[2]);
     assert_true(state_bytes < bytes[0] && state_bytes >= 700 * 16);
     for (int asset = 0; asset < 10; asset++)
@@ -969,7 +986,7 @@ static size_t bytes_allocated(void)
 
 TEST(test_dragging_stays_under_the_bound)
 {
-    const size_t slack = 256 << 10; /* bytes for layouts and for temporary memory during a call */
+    const size_t slack = 256 << 10; /* allowance in bytes for tables and for temporary memory during a call */
     struct field_rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
     field_set_cache_limit(rig.field, bound);
@@ -1040,7 +1057,8 @@ TEST(test_as_many_columns_as_fit_are_kept)
     rig_finish(&rig);
 }
 
-/* Two sessions look at all assets in turn, with room for less than one asset: pointers returned within one round stay valid. */
+/* Two sessions with different parameters request all assets in turn, although the cache has less room than one asset needs:
+   pointers returned to one session must stay valid until it has got all assets. */
 TEST(test_scalars_of_the_same_parameters_stay)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
@@ -1058,8 +1076,8 @@ TEST(test_scalars_of_the_same_parameters_stay)
     rig_finish(&rig);
 }
 
-/* Fast path: with few sensors and cached weights, one pass sums everything. It gives the same bits and reports the same changes
-   as the general path. */
+/* With few sensors and cached weights, one pass computes all sums (the fast path). It must give the same bits and report the
+   same changes as the general path. */
 TEST(test_few_sensors_are_summed_in_one_go)
 {
     enum { VERTICES = 1100 };
@@ -1079,8 +1097,8 @@ TEST(test_few_sensors_are_summed_in_one_go)
                     most = fmax(most, (double)fabsf(now->at[v].value - before[v]));
                     before[v] = now->at[v].value;
                 }
-                /* `travel` grows by the largest change of any vertex, also in mode paper, where a single sensor's value may be clamped
-                   twice */
+                /* `travel` must grow by the largest change of any vertex, also with mode paper, which clamps a value twice if
+                   only one sensor reaches the vertex */
                 assert_true(fabs(now->travel - travel - most) < 1e-9);
                 travel = now->travel;
                 uint64_t version = now->version;
@@ -1130,7 +1148,8 @@ static void check_many_at_once(size_t sensors)
             const struct scalars *want = field_scalars_of(alone, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
             const struct scalars *got = field_scalars_of(rig.field, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
             assert_int_equal(got->asset, assets[i]);
-            for (size_t v = 0; v < counts[i]; v++) { /* sums dropped and computed again are rounded differently */
+            /* values may differ by rounding, because some sums were dropped and computed again */
+            for (size_t v = 0; v < counts[i]; v++) {
                 assert_true(fabsf(got->at[v].value - want->at[v].value) < 1e-4f);
                 assert_true(got->at[v].no_data == want->at[v].no_data && got->at[v].uncertain == want->at[v].uncertain &&
                             got->at[v].lacking == want->at[v].lacking && got->at[v].no_limits == want->at[v].no_limits);
@@ -1143,11 +1162,12 @@ static void check_many_at_once(size_t sensors)
 
 TEST(test_many_at_once_are_as_one_by_one)
 {
-    check_many_at_once(5); /* few sensors: sums are recomputed each time */
+    check_many_at_once(5); /* 5 sensors: so few that sums are not kept but computed each time; 12: sums are kept */
     check_many_at_once(12);
 }
 
-/* Assets of which only the first vertices are drawn: the cache has room for the weights of those vertices, so it keeps them. */
+/* Far assets, of which only the first vertices are drawn: the cache, too small for all weights, must keep the weights of these
+   vertices. */
 static void check_far_assets(size_t sensors)
 {
     enum { ASSETS = 40, VERTICES = 20000, DRAWN = 300 };
@@ -1214,9 +1234,10 @@ TEST(test_a_prefix_costs_less)
     uint64_t version = scalars->version, grown = scalars->grown;
     field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 512);
     assert_int_equal(scalars->version, version);
-    show(&rig); /* the asset is seen from near, with all its vertices */
+    show(&rig); /* a client sees the asset from near and needs all vertices */
     assert_true(scalars->ready == 20000 && scalars->version > version && scalars->grown > grown && scalars->flags_version > version);
-    for (int tick = 0; tick < 3; tick++) { /* no client needs the other vertices: after a while only the first 500 are kept up to date */
+    /* then only the first 500 are requested: after a while, the others are no longer kept up to date */
+    for (int tick = 0; tick < 3; tick++) {
         set(&rig, 2, 10 + tick, QUALITY_GOOD);
         field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
     }
@@ -1262,7 +1283,7 @@ TEST(test_in_pieces_it_is_the_same)
         set(&rig, 8, 5, round % 2 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
         while (!field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000)) {
             if (pieces++ == 2)
-                /* this reading comes too late for the pass that is being computed in pieces; the next pass must show it */
+                /* a reading that changes after the computation has begun must not show in it, but in the next one */
                 set(&rig, 3, first + 1, QUALITY_GOOD);
         }
         assert_in_range(pieces, 3, 100);
@@ -1285,7 +1306,8 @@ TEST(test_what_is_under_way_may_be_dropped)
         field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000);
     }
     assert_as_fresh(&rig);
-    field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000); /* leaves a computation unfinished when the field is destroyed */
+    /* destroying a field must release a computation that was not finished */
+    field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000);
     rig_finish(&rig);
 }
 
@@ -1340,7 +1362,7 @@ TEST(test_distance_from_one_sensor)
     rig.params.show = straight.show = SHOW_DISTANCE;
     rig.params.sensor = straight.sensor = 4;
     straight.distance = DISTANCE_EUCLIDEAN;
-    /* sensor 4 is on the other asset, so no path along this asset's surface leads to it */
+    /* distances from sensor 4 are refused for asset 0: the sensor is on asset 1, and no path along surfaces leads there */
     assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
     const struct scalars *way = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
     const struct scalars *line = field_scalars(rig.field, 1, &straight, rig.plant->snapshot);
@@ -1403,7 +1425,7 @@ TEST(test_difference_is_that_of_two_fields)
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (size_t i = 0; i < 12; i++)
-            /* readings beyond the colour scale's range, which interpolation paper clamps before computing the difference */
+            /* some readings lie beyond the range: mode paper clamps both values before it subtracts them */
             set(&rig, i, between(&random, -30, 130), QUALITY_GOOD);
         rig.params.baseline = baselines_set(baselines, "then", rig.plant->snapshot);
         assert_int_equal(show(&rig)->at[500].value, 0);
@@ -1434,11 +1456,13 @@ TEST(test_difference_needs_both)
     set(&rig, 2, 60, QUALITY_GOOD);
     set(&rig, 3, 60, QUALITY_BAD_SENSOR_FAILURE);
     const struct scalars *scalars = show(&rig);
-    /* no difference: sensor 1 was Bad in the baseline, and sensor 3 is Bad now */
+    /* no data at sensors 1 and 3, since one of the two readings is missing: sensor 1 was Bad in the baseline, and sensor 3 is
+       Bad now */
     assert_true(scalars->at[1].no_data && scalars->at[3].no_data);
     assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* sensor 2 was Uncertain then */
-    assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that is back does not count as a change */
-    /* sessions share baselines: the new readings also replace the baseline that this session shows */
+    /* sensor 0 has the same value in both, so the difference is 0, although other sensors have changed from Bad to Good */
+    assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);
+    /* a baseline has a name and is shared: setting it again replaces it for all sessions, also for this one */
     baselines_set(baselines, "then", rig.plant->snapshot);
     scalars = show(&rig);
     assert_true(!scalars->at[1].no_data && scalars->at[1].value == 0 && scalars->at[3].no_data);

@@ -160,8 +160,8 @@ static void add_box(struct toy *toy, const char *id, const double size_m[3], con
     toy_add(toy, id, &shape, at_m, NULL, 0);
 }
 
-/* Asserts that the initial view of a loaded plant is filled by its assets without the strays, and that `outside` assets are
-   reported as outside. */
+/* Asserts that the home view of a plant fills the image with its assets except the strays (objects far from all others), and
+   that the number of assets reported as outside is `outside`. */
 static void expect_framed(struct toy *toy, int outside)
 {
     struct camera camera;
@@ -183,7 +183,9 @@ static void expect_framed(struct toy *toy, int outside)
 
 TEST(a_stray_piece_is_left_out)
 {
-    static const double sizes[] = { 0.001, 0.1, 1 }; /* objects of up to a third of the whole size count as stray if extremely far away */
+    /* side of the stray box in metres; its distance, millions of metres, makes it a stray even if it is as large as the other
+       assets */
+    static const double sizes[] = { 0.001, 0.1, 1 };
     for (int i = 0; i < 3; i++) {
         struct toy *toy = toy_create();
         double size = sizes[i];
@@ -224,7 +226,7 @@ TEST(small_and_long_ones_fill_the_picture)
     }
 }
 
-/* A stack on its base, with units far apart, and a plate with little on it: nothing counts as a stray, not even the ground. */
+/* None of these is a stray: a high thin stack beside a plant, units far apart, a large ground plate with little on it. */
 TEST(what_belongs_together_stays)
 {
     struct toy *toy = toy_create();
@@ -246,7 +248,8 @@ TEST(what_belongs_together_stays)
     expect_framed(toy, 0);
 }
 
-/* The far plane does not cut off a stray box 300 m away, and a box 5,000 km away must not make the near plane cut into the plant. */
+/* A stray box 300 m away must not be cut off by the far plane. One 5,000 km away is cut off, because the near plane would
+   otherwise have to cut into the plant to keep depth precise. */
 TEST(depth_holds_strays_as_far_as_it_resolves_the_plant)
 {
     static const double strays_m[] = { 300, 5e6 };

@@ -29,11 +29,11 @@ static const char plant_text[] = "plant: { name: Stock test }\n"
                                  "tags: tags.csv\n";
 static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
 
-/* Prepared plants that several tests start from or compare with, each made once: one with first_tags, and for each other tag
-   list one without a cache. */
+/* Results of plantcast-prep that several tests use, each made once: a folder prepared with first_tags, and, for each other tag
+   list, what a run without a cache gives. */
 static struct {
     struct prep_case *c; /* the plant of all tests */
-    json_t *first;       /* report of the asset that was prepared into FOLDER/first */
+    json_t *first;       /* report on the asset, from the run that made FOLDER/first */
     struct {
         char *tags, *bytes;
         size_t size;
@@ -97,7 +97,8 @@ static int set_up(void **state)
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, set_up, NULL)
 
-/* Prepares with these tags into FOLDER/`into`. Returns the asset's report; *model_read receives whether the model was read. */
+/* Runs plantcast-prep with these tags; its output goes to FOLDER/`into`. Returns the report on the asset; *model_read: whether
+   the run had to read the model. */
 static json_t *prepare(struct prep_case *c, const char *tags, const char *into, bool *model_read)
 {
     char *arguments = test_printf("$PLANT --report json --output $FOLDER/%s", into);
@@ -114,7 +115,7 @@ static char *path_of(const struct prep_case *c, const char *folder, const json_t
     return mem_printf("%s/%s/%s", c->folder, folder, json_string_value(json_object_get(asset, "file")));
 }
 
-/* Restores FOLDER/kept to its state after a first run with first_tags. Returns the asset's report. */
+/* Makes FOLDER/kept a copy of what a first run with first_tags gives. Returns the report on the asset. */
 static json_t *prepare_first(struct prep_case *c)
 {
     bool model_read;
@@ -163,7 +164,8 @@ static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t 
     mem_free(path);
 }
 
-/* While each group had one sensor, distances were unused and unchecked; they must be checked once they matter. */
+/* While a group has a single sensor, distances do not matter and are not checked against the heat method. Once a second sensor
+   is added, they must be checked. */
 CASE(what_was_not_checked_is_checked_once_it_shows)
 {
     static const char *const tags[] = { "a,,,,t,A,,1.3,0,0\nc,,,,p,A,,0,1,0.3\n",
@@ -194,7 +196,7 @@ CASE(a_changed_sensor_costs_its_own_distances)
         { "b,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },                       /* removed */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },  /* added */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 4, false },  /* of another group */
-        /* no tag was on node TT-2 before, so the model must be read for the node's position */
+        /* the tag refers to the node TT-2 by name; no earlier tag did, so the model must be read for the node's position */
         { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },
         { "d,,,,t,A,TT-1,,,\nc,,,,t,A,TT-2,,,\ne,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0.01\n", 3, false }, /* in another order */
     };
@@ -229,7 +231,8 @@ static void damage(const char *path, bool cut)
     size_t size;
     char *bytes = text_read_file(path, (size_t)1 << 30, &size);
     assert_non_null(bytes);
-    /* damages every part of the cached mesh, and the distances of every column, which begin after 32 bytes */
+    /* changes a byte in each eighth of the file, which damages each part of a cached mesh, and the distances of each cached
+       sensor (its record has 32 bytes before them) */
     for (size_t i = size / 8 + 40; i < size; i += size / 8)
         bytes[i] ^= 4;
     assert_int_equal(atomic_file_put(path, bytes, cut ? size / 3 : size), 0);
@@ -258,7 +261,7 @@ CASE(what_is_damaged_is_made_anew)
     }
 }
 
-/* Changes the version of a cache file, the last character of its magic. */
+/* Makes a cache file look like one of an older version: the last of the 8 bytes at its beginning is the version. */
 static void make_older(const char *path)
 {
     int fd = open(path, O_RDWR);
@@ -309,7 +312,8 @@ static ino_t file_number(const char *path)
     return st.st_ino;
 }
 
-/* The positions of sample points are taken from the cache, which is rewritten only if it lacked many of them. */
+/* A sensor's nearest sample points are taken from a cache file. It is rewritten only if many were missing in it or it was
+   damaged. */
 CASE(points_are_found_once)
 {
     static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
@@ -320,7 +324,7 @@ CASE(points_are_found_once)
         char *tags = test_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
         if (i)
             damage(spots, i == 2);
-        ino_t before = file_number(spots); /* inode of the existing file while another one is written */
+        ino_t before = file_number(spots); /* inode of the cache file: it stays the same unless the file is replaced by a new one */
         json_t *asset = prepare(c, tags, "kept", &model_read);
         assert_false(model_read);
         if (i)
@@ -333,8 +337,8 @@ CASE(points_are_found_once)
 
 /* --- killed midway ------------------------------------------------------------------------------------------------------------ */
 
-/* Prepares into FOLDER/kept with a file size limit of `bytes`. A larger write kills the process or, with `told`, fails with an
-   error. Returns the exit status. */
+/* Runs plantcast-prep into FOLDER/kept with a limit on the size of files it writes. A longer write kills it by SIGXFSZ; with
+   `told`, the write fails with an error instead. Returns the exit status. */
 static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, bool told)
 {
     char *program = prep_case_program(), *folder = temp_path(c->folder, "kept"), *said = temp_path(c->folder, "said");
@@ -370,15 +374,15 @@ static size_t bytes_of(const char *path)
     return (size_t)st.st_size;
 }
 
-/* Killed while writing a column or the file: the old content stays, even for processes that have it mapped, and the next run
-   gives the result of a full build. */
+/* The program is killed while it writes a cached sensor or the asset file. The old asset file must stay, also for processes
+   that have mapped it, and the next run must give the same as a full build. */
 CASE(killed_midway_it_goes_on)
 {
     bool model_read;
     json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns"), *folder = temp_path(c->folder, "kept"), why[200];
-    /* file size limits: inside the record of the fifth sensor, which begins up to 1 kB after the end of the file; and in the
-       middle of the asset file */
+    /* two limits on the size of files: one within the new record in the cache of distances, which begins up to 1 kB after the
+       present end of that file; one in the middle of the asset file */
     const size_t limits[] = { bytes_of(columns) + 1024 + 100, bytes_of(before) / 2 };
     struct folder_file mapped;
     struct asset_view view;
@@ -472,7 +476,7 @@ struct prepared {
     struct folder_file file;
     struct trimesh mesh; /* mesh of the finest level */
     struct bvh *bvh;
-    float *values; /* field values at the asset's vertices, for some readings */
+    float *values; /* one field value for each vertex, computed from made-up readings of all sensors */
 };
 
 static float value_at(const struct asset_view *view, uint32_t vertex)
@@ -522,7 +526,7 @@ static int by_size(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Compares the field of `at` at the corners of `other`'s triangles with the field of `other` there. */
+/* Compares two preparations: at corners of the triangles of `other`, the field of `at` must be nearly that of `other`. */
 static void assert_shows(const struct prepared *at, const struct prepared *other, const char *name)
 {
     size_t count = other->mesh.tri_count;
@@ -555,7 +559,8 @@ static void assert_on_vertices(const struct prepared *at)
     }
 }
 
-/* Asserts that preparing `tags` again, in another folder or over a damaged cache, gives the same field as `moved`, without findings. */
+/* Runs plantcast-prep with `tags` without the cache (in an empty folder, or with a damaged cache). Asserts that the result's
+   field equals that of `moved`. */
 static void assert_shows_as_anew(struct prep_case *c, const struct prepared *moved, const char *tags, const char *into)
 {
     struct prepared anew;
@@ -585,7 +590,9 @@ CASE(one_of_many_sensors_is_split_for_alone)
     int first_found = 0;
     for (int move = 0; move < moves; move++) {
         char *tags = many_tags(move);
-        if (move == 1) { /* a run is killed while it writes, before the second move of a sensor; that must not change the result */
+        /* before the second move, a run is killed while it writes its cache of measured triangles; the next run must give the
+           same result */
+        if (move == 1) {
             char *findings = kept_file(c, ".splitting");
             prepare_killed_at(c, tags, bytes_of(findings) / 2);
             mem_free(findings);
@@ -595,11 +602,11 @@ CASE(one_of_many_sensors_is_split_for_alone)
         print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
         first_found = move == 0 ? measured + kept : first_found;
         assert_true(measured > 0);
-        if (move > 0) /* levels of detail rejected by an earlier run are not tried again, so fewer measurements are needed */
+        if (move > 0) /* triangles measured by an earlier run are not measured again */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
-        /* after the last move of the sensor (the second one with PLANTCAST_LONG=1, else the first), the errors of cached
-           measurements have added up: the field must still equal a new one */
+        /* after the last move (the second one in long runs, otherwise the first), errors from cached measurements would have
+           added up: the field must still equal one prepared without them */
         if (move == moves - 1) {
             open_prepared(&moved, c, "kept", found);
             assert_on_vertices(&moved);

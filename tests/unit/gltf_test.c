@@ -10,7 +10,8 @@
 
 #define CASE(name) TEST_ON(struct gltf_case *l, name, gltf_case_set_up, gltf_case_tear_down)
 
-/* All models here share one binary chunk. Each member's comment begins with its offset, which the accessors below use. */
+/* Binary data that all models of this test share. The number in each member's comment is its offset in bytes, to which the
+   accessors below refer. */
 struct bin {
     float square[4][3];      /* offset 0: in the x-y plane, corners (0,0) (1,0) (0,1) (1,1) */
     uint16_t list16[6];      /* 48: two triangles */
@@ -157,7 +158,8 @@ CASE(nodes_are_put_in_place)
 #define TURNED(rotation)                                                                                                                   \
     HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"valve\",\"mesh\":0,\"rotation\":" rotation "}]," MESH(SQUARE) ACCESSORS "}"
 
-/* A quaternion of any length rotates like its unit quaternion, and is counted; a zero quaternion does not rotate. */
+/* A node's rotation may be a quaternion of any length: it rotates like the unit quaternion and is counted in scaled_rotations.
+   One of length 0 is refused. */
 CASE(rotations_have_a_length)
 {
     good(l, TURNED("[0,0,0.7071,0.7071]"));
@@ -403,10 +405,11 @@ CASE(a_name_that_is_there_several_times_is_refused)
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
-    params.nodes = "south"; /* only one of the three nodes named "pump" is in this asset, so the name alone selects it */
+    params.nodes = "south"; /* of the nodes named "pump", only the one below "south" belongs to this asset, so its name is unambiguous */
     assert_true(geometry_node_place(&l->model, &params, "pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
-    assert_true(geometry_node_place(&l->model, &params, "south/", place, why)); /* the pattern names a node without a name */
+    /* the pattern "south/" with an empty name matches the node without a name */
+    assert_true(geometry_node_place(&l->model, &params, "south/", place, why));
     assert_float_equal(place[0], 30.5, 1e-9);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "north\n#5\n!#1", .unit_m = 1, .up = AXIS_Z });
     assert_int_equal(g.primitive_count, 2);
@@ -471,7 +474,8 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
     }
 }
 
-/* Returns whether the triangle's normals agree with its winding. Smoothed normals may lean over an edge. */
+/* Returns whether the triangle's vertex normals point to the side from which its corners appear counter-clockwise. Smoothed
+   normals at an edge may tilt to the other side a little. */
 static bool faces_outward(const struct geometry *g, uint32_t tri)
 {
     float out[3];

@@ -72,7 +72,8 @@ static bool pass(struct h264_fixture *f, struct frame *frame, int quality, bool 
     assert_int_equal(av_new_packet(in, (int)packet->count), 0);
     memcpy(in->data, packet->bytes, packet->count);
     assert_int_equal(avcodec_send_packet(f->decoder, in), 0);
-    assert_int_equal(avcodec_receive_frame(f->decoder, f->picture), 0); /* the frame comes out at once: the encoder buffers none */
+    /* the decoder returns the frame for its own packet, so the encoder has not held it back */
+    assert_int_equal(avcodec_receive_frame(f->decoder, f->picture), 0);
     av_packet_free(&in);
     f->key = packet->key;
     f->bytes = packet->count;
@@ -86,7 +87,7 @@ static bool pass(struct h264_fixture *f, struct frame *frame, int quality, bool 
     return true;
 }
 
-/* Returns the largest error of any channel in the middle of the patches. */
+/* Returns the largest error of any channel among the middle pixels of the patches. */
 static int worst(const struct h264_fixture *f, const struct frame *frame)
 {
     int most = 0, w = frame->width_px, h = frame->height_px;
@@ -169,7 +170,8 @@ CASE(equal_pictures_are_not_sent_and_little_costs_little)
     frame_unref(&near);
 }
 
-/* A slowly changing reading changes each frame by less than one quantisation step; the picture must still follow. */
+/* The picture changes so slowly that each frame differs from the last one by less than a quantisation step. The decoded picture
+   must not fall behind. */
 CASE(what_changes_slowly_arrives)
 {
     struct frame *before = NULL;
@@ -198,7 +200,8 @@ CASE(quality_can_change_between_pictures)
     assert_true(bytes[1] > 2 * bytes[0] && bytes[1] > 2 * bytes[2]);
 }
 
-/* Grey low-contrast shapes on grey, like a building from afar; `turn`: how far the camera has moved. */
+/* Makes a picture of grey shapes of low contrast on grey, like a building from afar. `turn` shifts them, as a moving camera
+   does; nearer rows more. */
 static struct frame *building(int w, int h, int turn)
 {
     struct frame *frame = frame_create(NULL, w, h);
@@ -222,7 +225,8 @@ static double mean_off(const struct h264_fixture *f, const struct frame *frame)
     return sum / (double)pixels;
 }
 
-/* At any quality, a frame shows objects at their current positions and leaves no trace at earlier ones. */
+/* While the camera moves, each decoded frame must show the shapes where they are now, without traces where they were, at any
+   quality. */
 CASE(what_moves_leaves_nothing_behind)
 {
     static const int qualities[] = { 78, 42, 30, 25 };
@@ -247,7 +251,8 @@ CASE(what_moves_leaves_nothing_behind)
 CASE(encoders_that_do_not_work_here_are_known)
 {
     assert_true(encoder_works(f->log, "h264", ENCODER_H264_LIBRARY));
-    assert_false(encoder_works(f->log, "h264", "mjpeg")); /* libavcodec has this encoder, but it does not produce H.264 */
+    /* libavcodec has an encoder "mjpeg", but it does not make H.264, so it must be rejected */
+    assert_false(encoder_works(f->log, "h264", "mjpeg"));
     assert_false(encoder_works(f->log, "h264", "h264_nothing"));
     assert_true(encoder_is_stream("h264") && !encoder_is_stream("jpeg"));
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The history loader thread: its snapshots equal what was recorded, and only a client's newest request counts. */
+/* The thread that loads snapshots of the past: they must equal what was recorded. If a client makes several requests, only the
+   newest is answered. */
 #include "service/history_loader.h"
 
 #include "tests/support/test.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Month files and their reader: recorded points are returned across month borders, as rollups, at one instant, from damaged
-   files, and when the disk is full. */
+/* The history's month files and their reader: recorded points must come back unchanged, across the borders of months, as
+   rollups (summaries of time intervals), as readings at one instant, from damaged files and after the disk was full. */
 #include "tests/support/test.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -28,7 +28,7 @@ static const int64_t NOVEMBER = INT64_C(1793491200) * US_PER_S; /* 2026-11-01T00
 struct history_setup {
     char *folder;
     struct log *log;
-    struct plant *plant; /* two analogue tags with tolerances 0.4 and 1, and a switch */
+    struct plant *plant; /* plant with three tags: two analogue ones, recorded with tolerances of 0.4 and 1, and a switch */
     struct history_tag *tags;
     struct history_reader *reader;
 };
@@ -78,7 +78,8 @@ static uint32_t quality_at(int tag, int64_t second)
     return tag == 1 && second % 9000 > 8000 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD;
 }
 
-/* Records one sample per second as the historian does: swinging-door filters, one transaction per minute, rollups every ten minutes. */
+/* Records one sample per tag and second into a month file as the historian does: only the points that the swinging-door filter
+   keeps, in one transaction per minute, with rollups of ten minutes. */
 static void record(struct history_setup *s, int64_t begin_us, int seconds)
 {
     struct recorder *recorder = recorder_create(s->plant, INT64_MIN);
@@ -173,8 +174,8 @@ CASE(a_value_that_is_not_sent_again_holds)
     }
 }
 
-/* Records samples of TT-1 under a plant's rules for its source and for stale readings. Returns the tag's reading at a time
-   after the first sample. */
+/* Records samples of TT-1, given in `sent`, with the plant's settings for its source and stale time. Returns the reading that
+   the history gives for the time `second` seconds after the first sample. */
 static struct reading recorded_at(struct history_setup *s, const struct history_point *sent, size_t count, int second)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -206,7 +207,8 @@ static void send_by(struct history_setup *s, const char *kind, enum mqtt_payload
     s->plant->tags[0].validity.stale_s = stale_s;
 }
 
-/* `Stale s` of a tag allows ten minutes without a sample: pictures showed the old value during this time. */
+/* Samples ten minutes apart, where the stale time allows that: live pictures showed the old value until the new one arrived, so
+   the history must not draw a sloping line between them. */
 CASE(a_line_does_not_slope_over_a_long_silence)
 {
     static const struct {
@@ -227,7 +229,8 @@ CASE(a_line_does_not_slope_over_a_long_silence)
     assert_float_equal(recorded_at(s, sent, 2, 300).value, 50, 1e-9);
 }
 
-/* A sample that arrives before the historian notices that the previous one was stale. */
+/* If a gap is so short that the next sample arrives before the historian noticed the stale reading, the time after the stale
+   limit must be unknown all the same. */
 CASE(a_gap_is_unknown_however_short)
 {
     const struct history_point sent[] = { { NOVEMBER, 10, 0 }, { NOVEMBER + 6 * S, 20, 0 }, { NOVEMBER + 9 * S, 30, 0 } };
@@ -238,7 +241,7 @@ CASE(a_gap_is_unknown_however_short)
     assert_float_equal(recorded_at(s, sent, 3, 7).value, 20 + 10 / 3.0, 1e-9);
 }
 
-/* A spike of one second and a gap are visible in queries of every length. */
+/* However long the queried time, a spike of one second and the total duration of gaps must show in the result. */
 CASE(long_times_keep_spikes_and_gaps)
 {
     struct history_series series;
@@ -252,7 +255,7 @@ CASE(long_times_keep_spikes_and_gaps)
                 high = fmax(high, bucket->high);
                 low = fmin(low, bucket->low);
                 bad_us += tag == 1 ? (double)bucket->bad_us : 0;
-                /* a Bad reading lasts until the next bucket */
+                /* a Bad reading lasts until the next bucket that has data, so the time without buckets counts, too */
                 if (tag == 1 && quality_is_bad(bucket->quality) && i + 1 < series.buckets.count)
                     bad_us += (double)(bucket[1].t_us - bucket->t_us - series.bucket_us);
                 assert_true(i == 0 || bucket->t_us > series.buckets.at[i - 1].t_us);
@@ -309,7 +312,8 @@ static void import_points(struct history_setup *s, int tag, const struct history
     }
 }
 
-/* TT-1 and the switch have points only in July and November, and TT-1 one more in January; TT-2 has points in all months. */
+/* TT-1 has points in July, November and January, the switch in July and November, TT-2 in all months: queries for the months
+   between must find the points before and after. */
 CASE(points_that_are_months_apart_are_found)
 {
     const int64_t day = 86400 * S, july = NOVEMBER - 120 * day, january = NOVEMBER + 65 * day;
@@ -337,7 +341,7 @@ CASE(points_that_are_months_apart_are_found)
         assert_true(series.points.at[0].t_us <= NOVEMBER + i * day);
         assert_true(i >= 65 || series.points.at[series.points.count - 1].t_us > NOVEMBER + (i + 1) * day);
         history_series_finish(&series);
-        /* the line between the buckets before and after */
+        /* as intervals, the query gives the bucket before the range and the one after it, between which the line runs */
         assert_int_equal(history_intervals(s->reader, "TT-1", NOVEMBER + i * day, NOVEMBER + (i + 1) * day, 24, &series), 0);
         assert_int_equal(series.buckets.count, i < 65 ? 2 + (i == -120) : 1);
         history_series_finish(&series);
@@ -366,7 +370,7 @@ CASE(time_zones_do_not_touch_what_is_recorded)
 {
     const char *const zones[] = { "Pacific/Kiritimati", "Europe/Berlin", "America/Adak", "UTC" }, *before = getenv("TZ");
     char *kept = before ? mem_strdup(before) : NULL;
-    const int64_t autumn = NOVEMBER - (6 * 86400 + 82800) * S; /* 2026-10-25T01:00Z: in Berlin 3:00 becomes 2:00 */
+    const int64_t autumn = NOVEMBER - (6 * 86400 + 82800) * S; /* 2026-10-25T01:00Z: in Berlin the clock is set back from 3:00 to 2:00 */
     const int64_t begins[] = { autumn - 1800 * S, NOVEMBER - 1800 * S };
     size_t count;
     for (size_t b = 0; b < 2; b++)
@@ -392,7 +396,7 @@ CASE(time_zones_do_not_touch_what_is_recorded)
             struct history_series series;
             set_zone(zones[zone]);
             assert_int_equal(history_series(s->reader, "TT-1", begins[b], begins[b] + 3599 * S, 1000000, &series), 0);
-            /* includes the last point before the range and the first point after it, if they exist */
+            /* the series may begin with the last point before the range and end with the first one after it */
             const struct history_point *at = series.points.at;
             at += at->t_us < begins[b];
             assert_true(series.points.at + series.points.count - at >= 3600);
@@ -422,7 +426,8 @@ static bool same(double a, double b)
     return memcmp(&a, &b, sizeof(a)) == 0 || (isnan(a) && isnan(b));
 }
 
-/* Compares a tag's points with `truth`, where quality 1 marks a second without a point. */
+/* Asserts that the history has exactly the tag's points of `truth`, an array with an entry for each second; quality 1 marks a
+   second without a point. */
 static void assert_points(struct history_setup *s, int tag, const struct history_point *truth)
 {
     struct history_series series;
@@ -441,9 +446,9 @@ static void assert_points(struct history_setup *s, int tag, const struct history
     history_series_finish(&series);
 }
 
-/* Values and qualities of every kind come back bit by bit, even if times repeat or go backwards, whether stored per second or
-   in blocks, and through handles that close and open the file at any moment. A newer point replaces an older one with the same
-   time. */
+/* Random values and qualities must come back with the same bits, even if times repeat or go backwards, whether they are stored
+   as rows or in compressed blocks, and even if the file is closed and reopened at any moment. A newer point replaces an older
+   one with the same time. */
 CASE(every_point_comes_back_bit_by_bit)
 {
     struct history_point truth[TAGS][ODD_SECONDS];
@@ -456,7 +461,7 @@ CASE(every_point_comes_back_bit_by_bit)
         struct history_row rows[TAGS];
         size_t count = 0;
         for (int tag = 0; tag < TAGS; tag++) {
-            /* some points are older than the ones before, as after the clock was set back */
+            /* one sample in 20 has an earlier time, as after the clock was set back */
             int at = rand() % 20 == 0 ? rand() % (second + 1) : second;
             uint32_t quality = rand() % 8 ? QUALITY_GOOD : 0x80000000U + (unsigned)rand();
             struct history_point point = { NOVEMBER + at * S + at % 7, odd_value(), quality };
@@ -481,7 +486,8 @@ CASE(every_point_comes_back_bit_by_bit)
     month_file_close(&file);
 }
 
-/* Importing points older than the existing ones updates the rollups as if they had been recorded in order. */
+/* Points imported before existing ones change the rollups: these must be as if all points had been recorded in order of time.
+   */
 CASE(an_import_is_rolled_up_again)
 {
     enum { COUNT = 20000 };
@@ -514,7 +520,7 @@ static sqlite3 *open_database(const char *path)
     return db;
 }
 
-/* Integrates the line through a tag's points from begin_us to end_us, minute by minute. */
+/* Computes what a rollup of begin_us to end_us must contain, by adding up the line through the points minute by minute. */
 static void sum_up(const struct history_point *points, int count, bool step, int64_t begin_us, int64_t end_us, struct history_bucket *out)
 {
     double sum = 0;
@@ -533,8 +539,8 @@ static void sum_up(const struct history_point *points, int count, bool step, int
     out->mean = sum / (double)(out->good_us / (60 * S));
 }
 
-/* Points at bucket boundaries, as in imported tables: the value of a switch, and a value before a change of quality, hold until
-   the next point. */
+/* Points exactly at boundaries of buckets, as imported tables have them: the value of a switch, and a value before a change of
+   quality, hold until the next point. Rollups must agree. */
 CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
 {
     enum { COUNT = 4 };
@@ -567,7 +573,7 @@ CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
                 sum_up(truth[tag], COUNT, series.step, got->t_us, got->t_us + series.bucket_us, &wanted);
                 assert_int_equal(got->good_us, wanted.good_us);
                 assert_int_equal(got->bad_us, wanted.bad_us);
-                /* files of earlier versions lose a change of quality at a bucket boundary */
+                /* `earlier`: a file as older versions wrote it, whose rollups lack a change of quality at a boundary */
                 assert_true(wanted.good_us == 0 || (earlier && tag == 1) || fabs(got->mean - wanted.mean) < 1e-9);
             }
             history_series_finish(&series);
@@ -601,8 +607,8 @@ CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
     mem_free(points);
 }
 
-/* Adds to *out the part of the line from point a to point b that lies between begin_us and end_us. If b is NULL, the line ends
-   with the data. */
+/* Adds the line from point a to point b, as far as it lies between begin_us and end_us, to the rollup *out. b NULL: a is the
+   last point, where the line ends. */
 static void add_line(const struct history_point *a, const struct history_point *b, bool step, int64_t begin_us, int64_t end_us,
                      struct history_bucket *out)
 {
@@ -627,7 +633,8 @@ static void add_line(const struct history_point *a, const struct history_point *
     out->good_us += end_us - begin_us;
 }
 
-/* Returns the value with which the line continues at time t_us; NaN: none. `before`: the value with which it arrives there. */
+/* Returns the line's value at t_us, or NaN if there is no line. At a jump, returns the value after it or, with `before`, the
+   value before it. */
 static double line_at(const struct history_point *points, int count, bool step, int64_t t_us, bool before)
 {
     for (int i = 0; i + 1 < count; i++) {
@@ -645,7 +652,8 @@ static void assert_close(double got, double wanted)
         fail_msg("%.9g instead of %.9g", got, wanted);
 }
 
-/* Compares intervals with the line through the points, integrated here. */
+/* Compares the intervals that a query returned for from_us to to_us with those computed here from the line through the points.
+   */
 static void assert_intervals(const struct history_series *series, const struct history_point *points, int count, int64_t from_us,
                              int64_t to_us)
 {
@@ -658,7 +666,7 @@ static void assert_intervals(const struct history_series *series, const struct h
             continue;
         while (k < got->count && got->at[k].t_us < begin_us)
             k++;
-        assert_true(k < got->count && got->at[k].t_us == begin_us); /* each interval that contains a point is in the result */
+        assert_true(k < got->count && got->at[k].t_us == begin_us); /* the result must contain every interval with a point in it */
     }
     if (points[0].t_us <= from_us)
         assert_true(got->count && got->at[0].t_us <= from_us);
@@ -703,7 +711,8 @@ static int make_points(struct history_point *points, int most, bool step)
     return count;
 }
 
-/* Writes the points of each month; the newest ones as a historian leaves them before moving them to blocks. */
+/* Writes the points to the files of their months. In the last month a quarter of them is written as single rows, as the
+   historian leaves new points until it packs them into blocks. */
 static void write_points(struct history_setup *s, int tag, const struct history_point *points, int count)
 {
     for (int i = 0, end; i < count; i = end) {
@@ -719,7 +728,8 @@ static void write_points(struct history_setup *s, int tag, const struct history_
     }
 }
 
-/* Intervals of any length over any time, with few or many points, equal those of the whole line, also at month borders. */
+/* Queries for intervals of random length over random times must equal those computed from the whole line, with few or many
+   points, also across the borders of months. */
 CASE(intervals_are_those_of_the_line)
 {
     enum { MOST = 3000 };
@@ -774,7 +784,7 @@ CASE(few_points_of_a_long_time_come_as_points)
     mem_free(points);
 }
 
-/* No line spans the time between two runs. */
+/* After a restart, no line connects the last point of the run before with the first point of the new one. */
 CASE(a_restart_leaves_a_gap)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -794,7 +804,8 @@ CASE(a_restart_leaves_a_gap)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
 }
 
-/* In October recording paused for ten seconds, and again across the end of the month; in November the clock was set forward. */
+/* Gaps noted in month files must be reported in order of time and, where they overlap, as one: two in October, of which the
+   longer extends into November, and one of a clock that was set forward. */
 CASE(gaps_are_told_in_order_and_joined)
 {
     struct history_gaps gaps;
@@ -854,7 +865,7 @@ CASE(damage_inside_is_noticed)
     fseek(file, 0, SEEK_END);
     long pages = ftell(file) / 4096;
     assert_true(pages > 20);
-    /* damages all pages except the first, which hold the roots of tables: damage there is noticed earlier */
+    /* leaves the first 12 pages intact: they hold the roots of tables, where damage would be noticed when the file is opened */
     for (long page = 12; page < pages; page++) {
         fseek(file, page * 4096, SEEK_SET);
         assert_int_equal(fwrite(rubbish, sizeof(rubbish), 1, file), 1);
@@ -941,7 +952,7 @@ CASE(an_older_version_is_read_and_brought_up)
     assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 5 * S, snapshot), 0);
     assert_true(snapshot->readings[0].value == 20);
     assert_rows(db, "PRAGMA user_version", "1; ");
-    /* a fault of the old version: its view returned the newest point twice */
+    /* in files of version 1, the view `history` returns the newest point twice: 6 rows for 5 points */
     assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "6; ");
     struct month_file *file = open_file(s, NOVEMBER);
     assert_rows(db, "PRAGMA user_version", "3; ");
@@ -1084,7 +1095,8 @@ CASE(a_month_that_is_too_large_loses_its_beginning)
         apply_for_some_minutes(s, LIMIT, from_us);
     }
     int64_t large = size_of_month(s, NOVEMBER);
-    record_a_lot(s, from_us); /* new points reuse the space freed by the deletion */
+    /* new points use the space within the file that deleting the oldest ones has freed, so the file hardly grows */
+    record_a_lot(s, from_us);
     assert_true(size_of_month(s, NOVEMBER) < large + LIMIT);
     apply_for_some_minutes(s, LIMIT, from_us);
     check_what_is_left(s, from_us + (LOT - 1) * US_PER_S);
@@ -1102,7 +1114,9 @@ CASE(a_month_that_is_over_shrinks)
     assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
     month_file_close(&file);
     assert_true(size_of_month(s, NOVEMBER) > LIMIT);
-    for (int64_t limit = LIMIT; limit > LIMIT / 4; limit /= 2) { /* at first only unused space in the file is released */
+    /* halves the limit repeatedly: the file must shrink below each one, first by giving up unused space, then by deleting
+       points */
+    for (int64_t limit = LIMIT; limit > LIMIT / 4; limit /= 2) {
         apply_for_some_minutes(s, limit, december_us);
         int64_t left = size_of_month(s, NOVEMBER);
         printf("# %.1f MB\n", (double)left / 1e6);
@@ -1110,7 +1124,8 @@ CASE(a_month_that_is_over_shrinks)
     }
 }
 
-/* From a day of history on, the estimate shows how long keep_gb suffices; with less, it shows nothing. */
+/* keep_gb limits the history's size. The estimate of how many days fit is given once there is a day of history; before, it is
+   infinite. */
 CASE(the_days_that_fit_are_estimated)
 {
     record_a_lot(s, NOVEMBER);
@@ -1170,7 +1185,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     retention_apply(s->log, s->folder, &limits, march_us, &unsent);
     assert_int_equal(unsent, 0);
     mem_free(month_list(s->folder, &count));
-    assert_int_equal(count, 2); /* the month whose points had all been sent was deleted */
+    assert_int_equal(count, 2); /* one of the three months was deleted: all its points had been sent to the other database */
     /* an oversized month file loses its oldest points; unsent ones among them are counted */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
     assert_int_equal(waiting, 20000);
@@ -1182,13 +1197,13 @@ CASE(months_wait_for_what_is_to_be_sent)
     printf("# %lld of 20000 points went unsent\n", (long long)lost);
     assert_in_range(lost, 1000, 19000);
     assert_int_equal(waiting_in(s, november + 1), 20000 - lost);
-    /* with a limit of 1 byte everything is deleted */
+    /* a limit of 1 byte deletes everything up to the present month */
     limits.bytes = 1;
     retention_apply(s->log, s->folder, &limits, march_us, &unsent);
     assert_int_equal(unsent, 20000 - lost);
     mem_free(month_list(s->folder, &count));
     assert_int_equal(count, 1);
-    /* without a database in the plant file, nothing is kept for sending */
+    /* the plant file names no database, so points that wait to be sent do not protect a month from deletion */
     record_to_send(s, NOVEMBER, 100);
     retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 30 }, march_us, &unsent);
     assert_int_equal(unsent, 0);
@@ -1196,7 +1211,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     assert_int_equal(count, 1);
 }
 
-/* An unreadable month may hold unsent points, so it is not deleted because of its age. */
+/* A month file that cannot be read may hold unsent points, so it is not deleted for its age. */
 CASE(months_that_cannot_be_read_are_not_too_old)
 {
     int64_t march_us = month_begin_us(month_of(NOVEMBER) + 4), unsent;
@@ -1218,8 +1233,8 @@ CASE(months_that_cannot_be_read_are_not_too_old)
     assert_int_equal(count, 1);
 }
 
-/* Unsent points are converted too, even by a process that sends nothing: an import, or a daemon whose plant file no longer
-   names a database. */
+/* When a tag's unit changes, points waiting to be sent are converted, too, also by processes that send nothing: an import, or a
+   daemon whose plant file names no database any more. */
 CASE(what_waits_is_converted_with_the_rest)
 {
     int error;
@@ -1245,7 +1260,8 @@ CASE(what_waits_is_converted_with_the_rest)
 
 /* --- changes of unit that cannot be converted --------------------------------------------------------------------------------- */
 
-/* Writes points to November's file like the historian of a plant in which TT-1 has this unit. sends: also to the outbox */
+/* Writes `count` points, one per second, to the month file, as the historian does while TT-1 has this unit. sends: also to the
+   outbox for another database */
 static void write_in_unit(struct history_setup *s, const char *unit, int64_t t_us, double value, int count, bool sends)
 {
     int error;
@@ -1261,7 +1277,8 @@ static void write_in_unit(struct history_setup *s, const char *unit, int64_t t_u
     month_file_close(&file);
 }
 
-/* Reads TT-1 like a plant in which TT-1 has this unit. Returns the lines of the log; free with mem_free(). */
+/* Reads TT-1's series while the plant says that TT-1 has this unit. Returns the lines logged meanwhile; free with mem_free().
+   */
 static char *read_in_unit(struct history_setup *s, const char *unit, int64_t to_us, int max_points, struct history_series *series)
 {
     mem_free(s->plant->tags[0].unit);
@@ -1294,7 +1311,7 @@ CASE(points_of_another_quantity_are_left_out)
         const char *before = changes[c][0], *after = changes[c][1];
         struct history_series series;
         write_in_unit(s, before, NOVEMBER, 100, 3, true);
-        /* the plant now has the new unit, but the file has points only in the old one */
+        /* the plant says the new unit, but all recorded points are in the old one, so none is returned */
         char *said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
         assert_int_equal(series.points.count, 0);
         char *line = test_printf("TT-1: 3 points in '%s' are left out, because '%s' cannot be converted to '%s'", before, before, after);
@@ -1303,7 +1320,7 @@ CASE(points_of_another_quantity_are_left_out)
         assert_null(strstr(first + 1, line)); /* the second query says nothing */
         mem_free(said);
         history_series_finish(&series);
-        /* now this month's file has points in both units */
+        /* writes a point in the new unit: the file now has points in both */
         write_in_unit(s, after, NOVEMBER + 10 * S, 20, 1, true);
         said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
         assert_non_null(strstr(said, line));
@@ -1319,7 +1336,7 @@ CASE(points_of_another_quantity_are_left_out)
         struct snapshot *snapshot = test_snapshot(1);
         assert_int_equal(history_at(s->reader, &tag, NOVEMBER + 5 * S, snapshot), 0);
         assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
-        /* the database has a row for each unit of a tag */
+        /* the outbox lists the tag twice, once for each unit */
         struct month_outbox_batch batch = { 0 };
         int error;
         struct month_outbox *outbox = month_outbox_open(s->log, s->folder, month_of(NOVEMBER), &error);
@@ -1329,11 +1346,12 @@ CASE(points_of_another_quantity_are_left_out)
             assert_string_equal(batch.tags[i].name, "TT-1");
             assert_string_equal(batch.tags[i].unit, changes[c][batch.tags[i].id == batch.rows[4].tag]);
         }
-        /* five rows: the points of both units, and one without a value that ends the line of the first unit */
+        /* three points in the old unit, a point without a value that ends their line, and one point in the new unit */
         assert_int_equal(batch.row_count, 5);
         month_outbox_batch_finish(&batch);
         month_outbox_close(&outbox);
-        /* the change is undone: the first points are shown again, and no line spans the time between */
+        /* The plant has the old unit again: its points are returned, and a point without a value separates those before the
+           change from the new one. */
         write_in_unit(s, before, NOVEMBER + 20 * S, 110, 1, false);
         mem_free(read_in_unit(s, before, NOVEMBER + 100 * S, 1000, &series));
         assert_int_equal(series.points.count, 5);

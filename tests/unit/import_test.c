@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Import of series from CSV files: both layouts, all errors, and that an export can be imported again. */
+/* Import of series from CSV files in both layouts (one row per value, or one column per tag); all errors; and import of an
+   exported file. */
 #include "tests/support/test.h"
 
 #include "base/text/text.h"
@@ -106,7 +107,7 @@ CASE(long_rows_are_taken)
     assert_int_equal(s->counts.tags, 2);
     struct history_series series = read_series(s, "h", "FT-1");
     assert_int_equal(series.points.count, 5); /* five points, including one without a value, after which the line ends */
-    /* the two rows are an hour apart: in that night their local time occurs twice */
+    /* both rows have the same local time, which occurs twice in that night, so they are an hour apart */
     assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S);
     assert_true(series.points.at[1].value == 2.5);
     assert_true(isnan(series.points.at[2].value) && series.points.at[2].quality == QUALITY_BAD_COMMUNICATION_ERROR);
@@ -227,7 +228,7 @@ CASE(a_gap_is_no_data)
     assert_true(read_at(s, "h", 0, -1 * DAY_US + 5 * US_PER_S).value == 100);
 }
 
-/* The only interval between two samples may itself be a gap. */
+/* A series may have only two samples, far apart: no line connects them. */
 CASE(two_samples_alone_are_no_line)
 {
     assert_true(import(s, "alone", "Time,FT-1\n0,1\n172800,2\n", OCTOBER_25 - 2 * DAY_US, US_PER_S));
@@ -273,8 +274,8 @@ CASE(a_gap_is_no_data_in_rollups)
     history_reader_destroy(&reader);
 }
 
-/* The longest gap comes from --longest-gap, else from the tag's Stale s, else from the sample spacing. A Stale s shorter than
-   the spacing is ignored. */
+/* The largest distance of two samples that a line may connect: --longest-gap if given, else the tag's Stale s, else derived
+   from the usual spacing of samples. A Stale s shorter than that spacing is ignored. */
 CASE(the_longest_gap_can_be_stated)
 {
     static const char series[] = "Time,FT-1\n0,1\n10,1\n20,1\n30,1\n90,2\n100,2\n";
@@ -350,8 +351,8 @@ CASE(the_last_of_equal_times_counts)
     history_series_finish(&series);
 }
 
-/* However the files of one series are ordered, importing them leaves gaps only where data is missing. A later import with a
-   longer gap limit closes earlier gaps. */
+/* A series in several files may be imported in any order: gaps remain only where data is missing. Importing again with a larger
+   --longest-gap closes gaps of the first import. */
 CASE(imports_that_follow_each_other_join)
 {
     static const char parts[3][80] = { "Time,FT-1\n0,0\n10,1\n20,2\n", "Time,FT-1\n30,3\n40,4\n50,5\n", "Time,FT-1\n60,6\n70,7\n80,8\n" };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepared interpolations from the plant file to the drawn field: what is written, refused, added up and left unknown. */
+/* Interpolations that plantcast-prep prepares (harmonic, fin, gp), from the plant file to the field's values: what is prepared,
+   which settings are refused, how changed readings are added, and where the field is unknown. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -18,7 +19,7 @@
 
 #define STRIP_M 10.0
 #define WIDTH_M 0.1
-#define SENSORS 12 /* more sensors than the field sums in one pass */
+#define SENSORS 12 /* more sensors than the fast path sums in one pass */
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, prep_case_set_up, prep_case_tear_down)
 
@@ -131,13 +132,14 @@ CASE(test_harmonic_is_straight_and_follows_readings)
     for (size_t i = 0; i < SENSORS; i++)
         assert_true(fabs((double)look(&u, place_of(i))->value - 10.0 * (double)i) < 0.05);
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 35) < 0.5);
-    u.snapshot->readings[4].value = 90; /* a changed reading adds its change times the weights of that sensor only */
+    /* sensor 4's reading is raised: near the sensor the field rises by that change times the sensor's weight */
+    u.snapshot->readings[4].value = 90;
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 60) < 0.5);
     assert_true(fabs((double)look(&u, place_of(4))->value - 90) < 0.1);
     finish(&u);
 }
 
-/* Readings changed one by one leave the same field as all readings set at once. */
+/* Readings changed one by one, some lost and back, must leave the same field as the same readings set at once. */
 CASE(test_steps_and_lost_sensors_agree_with_all_anew)
 {
     struct plant_in_use u, fresh;
@@ -169,10 +171,12 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_int_equal(look(&u, place_of(4))->no_data, 255);
-    /* sensor 4 is lost: outside the discs that the sensors cover, the field is linear from sensor 3 to sensor 5 */
+    /* sensor 4 is lost: from the edge of the disc that sensor 3 covers to that of sensor 5, the field is linear */
     assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4);
     assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
-    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* the Uncertain tag contributes half of the value at the lost sensor's position */
+    /* halfway to sensor 3, sensor 5 has half of the weight of the lost one, so its uncertain reading makes the value uncertain
+       */
+    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN;
     assert_true(look(&u, place_of(4) - 0.3)->uncertain > 127);
     u.snapshot->readings[5].quality = QUALITY_GOOD;
     u.params.fill = FILL_NEIGHBOURS;
@@ -183,7 +187,9 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     finish(&u);
 }
 
-/* The decay length is sqrt(k t / h) = 0.236 m: points more than 2.3 decay lengths from the last sensor are unknown. */
+/* Along the strip, a fin's temperature decays within sqrt(k t / h) = 0.236 m (conductivity, thickness, heat transfer). The
+   field is unknown more than 2.3 times that away from the last sensor, where less than a tenth of the sensor's difference from
+   the ambient value is left. */
 CASE(test_fin_knows_how_far_it_sees)
 {
     struct plant_in_use u;
@@ -193,7 +199,7 @@ CASE(test_fin_knows_how_far_it_sees)
     for (double x = 0.1; x < 3 * decay_m; x += 0.1) {
         const struct scalar *at = look(&u, place_of(1) + x);
         double expected = 20 + 80 * exp(-fmax(x - 0.0957, 0) / decay_m);
-        /* tolerance: the field is read at a vertex up to 5 cm away from x */
+        /* tolerance of 2.5, because look() reads the nearest vertex, up to 5 cm from x */
         assert_true(fabs((double)at->value - expected) < 2.5);
         if (fabs(x - 0.0957 - decay_m * log(10)) > 0.1)
             assert_int_equal(at->no_data, x - 0.0957 < decay_m * log(10) ? 0 : 255);
@@ -204,14 +210,16 @@ CASE(test_fin_knows_how_far_it_sees)
     assert_int_equal(u.params.interpolation, INTERPOLATION_SHEPARD); /* harmonic is not prepared */
     assert_null(field_params_wrong(u.plant, &u.params));
     u.params.interpolation = INTERPOLATION_FIN;
-    u.params.show = SHOW_DIFFERENCE; /* without a baseline there is no difference, and the ambient value must not be added */
+    /* a difference from a baseline that does not exist has no data; in particular, the ambient value does not count as one */
+    u.params.show = SHOW_DIFFERENCE;
     u.params.baseline = 1;
     assert_true(look(&u, place_of(1))->no_data == 255);
     finish(&u);
 }
 
-/* Beyond the last sensor a fin decays as exp(-x / d), so the value half-way between two points is their geometric mean.
-   Triangles of 0.1 m are too long for d = 0.236 m, so picks report their error and are marked. */
+/* Beyond the last sensor a fin's values decay as exp(-x / d), so the true value half-way between two points is their geometric
+   mean, while triangles interpolate linearly. With triangles of 0.1 m and d = 0.236 m the error matters: picks must state it
+   and be marked as inexact. */
 CASE(test_picks_of_fin_tell_their_error)
 {
     struct plant_in_use u;
@@ -247,15 +255,15 @@ CASE(test_picks_of_fin_tell_their_error)
     assert_true(look(&u, place_of(1) + 0.3)->uncertain == 0);
     assert_true(u.scalars->drawn_error == 0);
     finish(&u);
-    /* d = 0.075 m: the field is inexact in most triangles */
+    /* with a tenth of the thickness, d is 0.075 m: the field is inexact in most triangles */
     begin(&u, c, ", thickness_m: 0.001", ", interpolation: fin, ambient: 20, disc_m: 0.1", SENSORS);
     look(&u, 0);
     assert_true(u.scalars->drawn_error > 1);
     finish(&u);
 }
 
-/* Errors in distances along the surface change a field with a high power. Picks state the resulting error where two sensors
-   have similar weights. */
+/* With a high power, small errors of distances along the surface change the field where two sensors have similar weights. Picks
+   must state the resulting error there. */
 CASE(test_errors_of_distances_are_stated_for_high_powers)
 {
     for (double power = 4; power <= 16; power *= 2) {
@@ -287,8 +295,8 @@ CASE(test_errors_of_distances_are_stated_for_high_powers)
     }
 }
 
-/* Half-way between two sensors with similar readings, a third one far away has no weight. A pick there is not uncertain,
-   although the plant's readings differ much. Pictures mark the place, because their marks do not depend on single readings. */
+/* Half-way between sensors that read 20 and 21, a third one far away, which reads 100, has no weight: a pick there must not
+   report an error. Pictures do mark the place, because their marks cannot depend on single readings. */
 CASE(test_picks_look_at_the_readings_that_matter)
 {
     struct plant_in_use u;
@@ -318,7 +326,8 @@ CASE(test_picks_look_at_the_readings_that_matter)
     finish(&u);
 }
 
-/* Distances by the paper's heat method agree with ours on a strip as wide as the distance from a sensor to its edge. */
+/* Distances computed by the paper's heat method agree with exact ones within 6 cm on a strip whose width is that of its cells.
+   */
 CASE(test_distances_by_heat)
 {
     struct plant_in_use u;
@@ -337,7 +346,7 @@ CASE(test_distances_by_heat)
             assert_true(pass || fabs((double)ours[i] - fabs(x_m - place_of(1))) < 0.12);
         }
         u.params.distance = DISTANCE_HEAT;
-        bool differs = false; /* some distances must differ, which shows that the other method ran */
+        bool differs = false; /* some values must differ between the two, which proves that the heat distances were used */
         for (int i = 0; i < 64; i++)
             differs = differs || look(&u, STRIP_M * i / 63)->value != ours[i];
         assert_true(differs);
@@ -407,7 +416,7 @@ static void expect_along(const struct direction *found, double x, double y)
                 fabs((double)found->along[2]) < 1e-6);
 }
 
-/* Directions are averaged by 1 / D^2; the result is unknown where no direction results. */
+/* At a point, the sensors' directions are averaged with weights 1 / D^2; the direction is unknown where they cancel out. */
 CASE(test_directions)
 {
     struct plant_in_use u;
@@ -428,7 +437,7 @@ CASE(test_directions)
     found = points_at(&u, 5);
     expect_along(&found, 1, 0);
     say(&u, "U", 1, 0), say(&u, "U", 2, 0);
-    say(&u, "T", 0, 0), say(&u, "T", 3, 0); /* both sensors read speed 0, and a flow of speed 0 has no direction */
+    say(&u, "T", 0, 0), say(&u, "T", 3, 0); /* the sensors at both ends read speed 0 and so count as without direction */
     found = points_at(&u, 5);
     assert_false(found.known); /* half-way between two opposite directions */
     found = points_at(&u, 4.5);
@@ -440,7 +449,7 @@ CASE(test_directions)
     assert_false(points_at(&u, 4.5).known);
     assert_true(points_at(&u, 5.5).known);
     lost->quality = QUALITY_GOOD;
-    say(&u, "V", 1, 0.1), say(&u, "W", 1, 5); /* a vector that stands upright on the strip */
+    say(&u, "V", 1, 0.1), say(&u, "W", 1, 5); /* this vector is perpendicular to the strip, so it has no direction along the surface */
     assert_false(points_at(&u, 4.5).known);
     finish(&u);
     write_directions(c, true);
@@ -459,7 +468,8 @@ CASE(test_directions)
 
 #define GP_KEYS ", interpolation: gp, gp: { range_m: 3, noise: 0.5, deviation: 30 }, disc_m: 0.1"
 
-/* The gp field matches the sensors' readings and follows a changed one. Without a lost sensor it equals the field of the others. */
+/* The gp field (Gaussian process) shows each sensor's reading at the sensor and follows when one changes. If a sensor is lost,
+   it is as if computed from the others only. */
 CASE(test_gp_meets_readings_and_lets_lost_ones_go)
 {
     struct plant_in_use u;
@@ -472,13 +482,15 @@ CASE(test_gp_meets_readings_and_lets_lost_ones_go)
     u.params.fill = FILL_NEIGHBOURS;
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_true(fabs((double)look(&u, place_of(4))->value - 40) < 3);
-    /* each vertex's weights sum to 1, so the weights also serve the operator's view (positions between alarm limits) */
+    /* with gp, each vertex's weights sum to 1, so gp can also show the operator's view, which averages positions between alarm
+       limits */
     u.params.show = SHOW_OPERATOR;
     assert_null(field_params_wrong(u.plant, &u.params));
     finish(&u);
 }
 
-/* Uncertainty does not depend on the readings, grows where a sensor is lost, and never exceeds the prior. */
+/* The uncertainty that gp states depends on which sensors are good, not on what they read. It grows near a lost sensor and
+   never exceeds the deviation given in the plant file (the prior). */
 CASE(test_uncertainty_depends_on_who_is_good)
 {
     struct plant_in_use u;
@@ -503,7 +515,7 @@ CASE(test_uncertainty_depends_on_who_is_good)
     finish(&u);
 }
 
-/* The field is unknown where sensors reduce the prior's variance by less than a tenth. */
+/* The gp field is unknown where the sensors reduce the variance of the prior by less than a tenth. */
 CASE(test_gp_knows_how_far_it_sees)
 {
     struct plant_in_use u;
@@ -544,7 +556,8 @@ CASE(test_what_others_say_is_kept_for_a_second)
     finish(&u);
 }
 
-/* The prediction of a sensor from the others does not depend on that sensor's own reading or quality, even when others are lost. */
+/* What the other sensors predict for a sensor must not depend on its own reading or quality, also while one of the others is
+   lost. */
 CASE(test_others_do_not_hear_a_sensor_itself)
 {
     static const char *const keys[] = { GP_KEYS, ", prepare: [harmonic], disc_m: 0.1", ", prepare: [fin], ambient: 20, disc_m: 0.1", "" };
@@ -573,7 +586,7 @@ CASE(test_others_do_not_hear_a_sensor_itself)
     }
 }
 
-/* Two neighbours 0.8 m away, two 1.6 m away and so on, weighted by 1 / D^2. */
+/* Without a prepared interpolation, a sensor is predicted from all others, 0.8 m, 1.6 m and more away, weighted by 1 / D^2. */
 CASE(test_others_by_distance)
 {
     struct plant_in_use u;
@@ -588,7 +601,8 @@ CASE(test_others_by_distance)
     finish(&u);
 }
 
-/* The detectable size of a hot spot is a twentieth of the range at a good sensor, and e^2 times that at a distance of two spot sizes. */
+/* Blind spots: the map shows the height of the smallest hot spot, in degrees, that sensors would notice. It is a twentieth of
+   the range (5) at a good sensor and grows with distance, by e^2 at two spot sizes. */
 CASE(test_blind_places)
 {
     struct plant_in_use u;
@@ -603,13 +617,13 @@ CASE(test_blind_places)
     const struct scalar *lost = look(&u, place_of(4));
     assert_true(fabs(log((double)lost->value / 5) - 8) < 1.2); /* four sizes from both neighbours */
     assert_int_equal(lost->no_data, 0);
-    u.params.reach_m = 0.1; /* the group's reach has no effect */
+    u.params.reach_m = 0.1; /* the group's reach, which limits the field, does not limit this map */
     assert_int_equal(look(&u, place_of(4))->no_data, 0);
     finish(&u);
 }
 
-/* The gp field is unknown far from its two sensors, but the map of blind spots is known even there. Where sensor positions are
-   unknown, so are both. */
+/* Far from its two sensors the gp field has no data, but the map of blind spots has. Where no sensor's position is known,
+   neither has. */
 CASE(test_blind_places_are_told_where_gp_knows_nothing)
 {
     struct plant_in_use u;
@@ -631,8 +645,8 @@ CASE(test_blind_places_are_told_where_gp_knows_nothing)
     finish(&u);
 }
 
-/* On a strip with two sensors at one end, the first suggestion lies in the wholly blind part, and each further one gains less.
-   A brute-force search of all positions finds none that gains noticeably more than the first suggestion. */
+/* A strip with two sensors at one end: the first suggested new sensor must lie in the part that no sensor sees, and each
+   further one must gain less. A brute-force search must find no position that gains noticeably more than the first. */
 CASE(test_suggestions_gain_less_and_less)
 {
     struct plant_in_use u;
@@ -696,7 +710,8 @@ CASE(test_gp_bad_input)
     }
     assert_true(fabs((double)look(&u, place_of(1))->value - 80) < 2);
     finish(&u);
-    write_plant(c, "", ", prepare: [gp], gp: { range_m: 90000, noise: 0 }", 3); /* a prepared file for other parameters is not used */
+    /* weights prepared with other parameters of gp must not be used */
+    write_plant(c, "", ", prepare: [gp], gp: { range_m: 90000, noise: 0 }", 3);
     assert_false(use(&u, c));
 }
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles that stand across a thin part count as interior, unless they alone connect visible triangles. */
+/* Which triangles lie inside a body: those that stand across a thin part do, unless visible triangles are connected only
+   through them. */
 #include "surface/repair/interior.h"
 
 #include "tests/support/test.h"
 
-/* A ring of four quadrangles. One stands across a thin part: without it the others stay connected, so it is interior. Two face
-   each other: each alone connects parts that would otherwise be separate, so both are visible. */
+/* A ring of four quadrangles, one or two of which stand across a thin part. One alone counts as interior, because the other
+   three stay connected without it. Two opposite ones count as visible, because without them the others would fall into two
+   pieces. */
 TEST(what_alone_joins_is_seen)
 {
     enum { AROUND = 4 };

@@ -39,7 +39,8 @@ static void write_rows(struct journal_setup *s)
     mem_free(entries);
 }
 
-/* Writes rows, many of them with the same time as in an alarm flood, and leaves some gaps. */
+/* Fills the journal with random rows, many of them at the same instant as in an alarm flood, then deletes some so that row
+   numbers have gaps. */
 static void begin(struct journal_setup *s)
 {
     bool renewed;

@@ -20,7 +20,7 @@ static struct label_box box_of(const json_t *array)
     return (struct label_box){ at(array, 0), at(array, 1), at(array, 2) - at(array, 0), at(array, 3) - at(array, 1) };
 }
 
-/* Gives each label group the size that the test vector states, whatever its members. */
+/* Callback that measures call-outs: returns the size that the test vector gives for all of them. */
 static void measure(void *arg, const int *members, size_t count, double size[2])
 {
     const json_t *list = arg;
@@ -55,7 +55,8 @@ static void check_labels(const char *name, const json_t *vector)
                                .measure = measure,
                                .arg = json_object_get(vector, "callout") };
     const json_t *slots = json_object_get(vector, "slots"), *callouts = json_object_get(vector, "callouts");
-    const json_t *leads_of = json_object_get(vector, "leads"); /* for each item: 1 if a leader line connects it with its call-out */
+    /* expected result by item: 1 if a leader line connects the item with its call-out */
+    const json_t *leads_of = json_object_get(vector, "leads");
     labels_place(items, count, &area, places);
     for (size_t i = 0; i < count; i++) {
         if (places[i].slot != (int)at(slots, i))
@@ -93,7 +94,7 @@ static void check_markers(const char *name, const json_t *vector)
     mem_free(drawn);
 }
 
-/* Checks all test vectors of a folder, at least `least`. */
+/* Calls check() with each test vector (JSON file) of a folder. Fails if there are fewer than `least`. */
 static void check_vectors(const char *path, void (*check)(const char *name, const json_t *vector), int least)
 {
     int count = 0;

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Level-of-detail selection: the coarsest level whose error at the asset's nearest point is below the limit; and the limit
-   itself, which is lower when the frame has room for more triangles. */
+/* Selection of levels of detail: the coarsest one whose error, seen at the asset's nearest point, is below a limit in pixels;
+   and the limit itself, which is lower if the frame can draw more triangles. */
 #include "tests/support/test.h"
 
 #include "render/plan/lod_selection.h"
 #include "render/gl/gpu_scene.h"
 
-/* Returns the level chosen for a box of 2 m whose near side is away_m from the camera; its levels have errors of 0, 1, 10 and 100 mm. */
+/* Returns the level chosen for a box of 2 m, away_m from the camera, if errors up to error_px pixels are allowed. Its levels 0
+   to 3 have errors of 0, 1, 10 and 100 mm. */
 static size_t chosen_within(double error_px, double away_m, double pixel_per_radian)
 {
     struct model_level levels[4] = { { .error_m = 0 }, { .error_m = 0.001f }, { .error_m = 0.01f }, { .error_m = 0.1f } };
@@ -33,7 +34,7 @@ TEST(levels_change_within_a_pixel)
     assert_int_equal(chosen(9, 1000), 1);
     assert_int_equal(chosen(20, 1000), 2);
     assert_int_equal(chosen(200, 1000), 3);
-    assert_int_equal(chosen(200, 10000), 2);            /* an image with ten times as many pixels per radian */
+    assert_int_equal(chosen(200, 10000), 2);            /* ten times as many pixels per radian make errors ten times as large */
     assert_int_equal(chosen_within(0.5, 1.5, 1000), 0); /* 0.67 pixels are too much */
     assert_int_equal(chosen_within(0.7, 1.5, 1000), 1);
     for (double away_m = 0.01; away_m < 1000; away_m *= 1.1) {
@@ -42,8 +43,8 @@ TEST(levels_change_within_a_pixel)
     }
 }
 
-/* Returns the error limit for `assets` boxes 10 m away. Their levels have 1,000,000, 300,000, 100,000 and 30,000 triangles
-   divided by `fewer`, and errors of 0, 2, 4 and 8 mm; 1 mm is 0.1 pixels. */
+/* Returns the error limit in pixels for a plant of `assets` equal boxes 10 m away. Each has levels of 1,000,000, 300,000,
+   100,000 and 30,000 triangles, divided by `fewer`, with errors of 0, 2, 4 and 8 mm. In this picture 1 mm is 0.1 pixels. */
 static double error_among(size_t assets, int fewer, enum tier tier)
 {
     struct model_level levels[4] = { { .triangles = 1000000 / fewer },

@@ -32,7 +32,8 @@ static uint32_t add_vertex(struct geometry *g, double u, double v)
     return i;
 }
 
-/* Adds a part of a torus as one primitive with its own vertices, duplicated where it meets itself or another part. */
+/* Adds the squares `first` to `end` around a torus as one primitive with vertices of its own: where they meet others, positions
+   occur twice. */
 static void add_part(struct geometry *g, uint32_t first, uint32_t end, uint32_t material)
 {
     uint32_t corner = g->vertex_count;
@@ -90,8 +91,8 @@ TEST_WITH(levels_grow_coarser, set_up, tear_down)
     assert_true(s->levels.at[s->levels.count - 1].index_count < 3 * 200);
 }
 
-/* Levels are closely spaced: errors grow by a factor of 1.4, or by two steps of 1.3 if the level between would save hardly any
-   triangles. */
+/* The error of each level is 1.4 times that of the next finer one, or 1.3 times 1.3 if the level between was left out because
+   it would save hardly any triangles. */
 TEST_WITH(levels_lie_close, set_up, tear_down)
 {
     const struct set_of *s = *state;
@@ -121,7 +122,7 @@ TEST_WITH(levels_are_nested, set_up, tear_down)
     mem_free(used);
 }
 
-/* Every edge has two triangles, which traverse it in opposite directions. */
+/* In each level every edge belongs to two triangles, which traverse it in opposite directions: the torus is still closed. */
 TEST_WITH(closed_stays_closed, set_up, tear_down)
 {
     const struct set_of *s = *state;
@@ -146,7 +147,7 @@ TEST_WITH(closed_stays_closed, set_up, tear_down)
     }
 }
 
-/* The border between the materials lies in two planes through the axis. */
+/* The torus's materials meet in two planes through its axis, and in each level their border must still lie there. */
 TEST_WITH(materials_keep_their_border, set_up, tear_down)
 {
     const struct set_of *s = *state;
@@ -221,7 +222,7 @@ TEST_WITH(error_is_a_bound, set_up, tear_down)
     }
 }
 
-enum { LONE = 3 }; /* number of additional vertices that no level uses */
+enum { LONE = 3 }; /* number of vertices added that belong to no triangle */
 
 static void add_lone(struct geometry *g)
 {
@@ -295,7 +296,8 @@ static void add_box(struct geometry *g, double x, double y, double z, double siz
     g->primitives[0].index_count = g->index_count;
 }
 
-/* Returns the smallest error among the levels that have no vertex with x > from_m; INFINITY if every level has one. */
+/* Returns the error of the finest level in which no triangle has a vertex with x > from_m, i.e. the parts beyond are gone;
+   INFINITY if no level is without them. */
 static double error_without(const struct geometry *g, const struct levels *levels, double from_m)
 {
     for (size_t l = 0; l < levels->count; l++) {
@@ -316,7 +318,8 @@ static size_t vertices_above(const struct geometry *g, const struct level *level
     return count;
 }
 
-/* Bolts that protrude 2 cm from a slab of 10 m disappear in levels whose error is at least 2 cm. */
+/* 100 bolts on a slab of 10 m protrude by 2 cm: they must disappear in levels with an error of at least 2 cm, and not in finer
+   ones. */
 TEST(bolts_go_where_they_hardly_stand_out)
 {
     struct geometry g;
@@ -335,8 +338,8 @@ TEST(bolts_go_where_they_hardly_stand_out)
     geometry_finish(&g);
 }
 
-/* Nuts protrude 2 cm from a slab below a torus that has a level for every error: no level whose error exceeds 2 cm by a tenth
-   still contains nuts. */
+/* Nuts on a slab protrude by 2 cm. A torus above gives the asset levels of every error, and levels with more than 2.2 cm must
+   not contain nuts. */
 TEST(nuts_go_once_they_stand_out_by_less)
 {
     struct geometry g;
@@ -362,7 +365,8 @@ TEST(nuts_go_once_they_stand_out_by_less)
     geometry_finish(&g);
 }
 
-/* A lone block of 5 cm, 20 m away, disappears in levels whose error is at least its size. A grating of bars that small must stay. */
+/* A small block of 5 cm, 20 m from the rest, disappears in levels whose error is at least its size. Many bars of that size,
+   side by side as a grating, must stay. */
 TEST(what_is_alone_and_small_goes_but_no_crowd)
 {
     struct geometry g;
@@ -392,7 +396,7 @@ TEST(what_is_alone_and_small_goes_but_no_crowd)
     geometry_finish(&g);
 }
 
-/* Counts corners whose vertex normal faces away from the triangle: such a corner is lit as if it were on the other side. */
+/* Counts corners of triangles whose vertex normal points to the triangle's back: they would be lit from the wrong side. */
 static size_t looking_away(const struct geometry *g, const struct level *level)
 {
     size_t count = 0;

@@ -13,7 +13,9 @@
 
 #define SOURCES 6
 #define MODELS "../shared/data/models/"
-#define LONGEST 2.0   /* longest allowed edge, in spacings of the sample points; a longer edge spans faces that were cut on two sides */
+/* longest edge allowed in the resampled surface, in multiples of the samples' spacing; twice, for edges across faces that were
+   cut on two sides */
+#define LONGEST 2.0
 #define ROUNDING 1e-5 /* of the straight line: floats */
 
 static size_t draw(size_t count)
@@ -21,7 +23,8 @@ static size_t draw(size_t count)
     return (size_t)(cad_random(&chance) * (double)count);
 }
 
-/* Joining moves a point by at most the tolerance. Each source is one vertex, found at its moved position. */
+/* For each source, checks the distances to all vertices against the straight line. Joining parts may move a point by at most
+   the tolerance, so the line is measured from the vertex's moved position. */
 static void check_sources(const char *name, const struct surface *surface, const float (*positions_m)[3], size_t vertex_count,
                           const double (*sources_m)[3], int count)
 {
@@ -46,7 +49,7 @@ static void check_sources(const char *name, const struct surface *surface, const
     mem_free(found);
 }
 
-/* Samples cover the surface: no edge is much longer than the spacing. */
+/* Asserts that sample points cover the whole surface: no edge of the resampled mesh is much longer than the spacing. */
 static void check_edges(const char *name, const struct surface *surface)
 {
     struct surface_debug_mesh look;
@@ -113,7 +116,8 @@ TEST(shapes)
     check_shape("rod", &cad, CAD_FAULTS);
 }
 
-/* Two layers of crossing rods that touch. Their area suggests 15,000 samples, but one layer alone needs more. */
+/* A grating: two layers of crossing rods that touch. From the area, 15,000 sample points would suffice, but thin rods need
+   more. */
 TEST(a_grating_of_rods)
 {
     struct cad cad = { 0 };
@@ -171,8 +175,8 @@ static void check_model(const char *path, const char *const *parts, const double
     model_source_finish(&source);
 }
 
-/* A corner of the first support frame: a tenth of the distances from it were too short, by up to 0.2 m of 1.1 m, when long rods
-   had no samples. */
+/* Part of a real support frame. When long rods had no sample points, a tenth of the distances from this corner were shorter
+   than the straight line, by up to 0.2 m of 1.1 m. */
 TEST(supports)
 {
     static const char *const parts[] = { "/PS/WD1/0003", "/PS/WD1/0022", "/PS/WD1/0036", NULL };

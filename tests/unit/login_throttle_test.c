@@ -34,13 +34,14 @@ CASE(ten_wrong_tokens_within_a_minute_slow_an_address)
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 54 * S), LOGIN_WRONG_SLOWS);
     assert_int_equal(login_throttle_slowed(throttle, 54 * S), 1);
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 55 * S), LOGIN_HELD);
-    /* while slowed, a valid token gets the same answer as a wrong one */
+    /* while an address is slowed, most attempts are not judged at all: a valid token gets the same answer as a wrong one */
     assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 58 * S), LOGIN_HELD);
-    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 59 * S), LOGIN_WRONG); /* one attempt per five seconds is judged */
+    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 59 * S), LOGIN_WRONG); /* every five seconds one attempt is judged */
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 60 * S), LOGIN_HELD);
     assert_int_equal(login_throttle_judge(throttle, THERE, NULL, 60 * S), LOGIN_WRONG);
     assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 64 * S), LOGIN_GOOD_NEW);
-    assert_int_equal(login_throttle_slowed(throttle, 118 * S), 1); /* slowed until one minute after the last wrong token */
+    /* the address stays slowed until a minute after its last wrong token, at 59 s */
+    assert_int_equal(login_throttle_slowed(throttle, 118 * S), 1);
     assert_int_equal(login_throttle_slowed(throttle, 119 * S), 0);
     assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 119 * S), LOGIN_WRONG);
 }

@@ -53,7 +53,8 @@ TEST_FIXTURE(struct match_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct match_fixture *f, name, set_up, tear_down)
 
-/* Asserts the match of one tag. asset: NULL if none. why: text that the stated reason must contain. */
+/* Matches one tag, with this name and description, to the plant's equipment. Asserts the status, the asset (NULL: none) and
+   that the reason given contains `why`. */
 static void expect(struct match_fixture *f, const char *name, const char *description, enum match_status status, const char *asset,
                    const char *why)
 {
@@ -96,7 +97,8 @@ CASE(test_by_number)
     expect(f, "TT-101", "pump bearing temperature", MATCH_SURE, "P-101", "");
     expect(f, "TT-101", "Outlet of E-101", MATCH_SURE, "E-101", "the description names E-101; loop 101");
     expect(f, "TT-330", "Outlet of E-101", MATCH_LIKELY, "20-V-330", ", but the description names E-101");
-    /* the equipment number decides, not the instrument number, and that equipment does not exist */
+    /* ART1705BA is an equipment number that the plant lacks, so the tag matches nothing, although its instrument number 330
+       would match 20-V-330 */
     expect(f, "ART1705BA_TT330", "", MATCH_NONE, NULL, "");
 }
 
@@ -147,7 +149,8 @@ TEST(test_isa_names)
     }
 }
 
-/* The quantity comes from the unit, then the description, then words in the name, then letters; a guess never contradicts the unit. */
+/* A tag's quantity is derived from its unit or, in this order, from its description, words in its name, letters in its name. A
+   guess that contradicts the unit is dropped. */
 TEST(test_quantities)
 {
     static const struct {

@@ -12,8 +12,8 @@ TEST(the_default_suits_the_machine)
     assert_true(bytes > 0 && bytes <= (size_t)2 << 30);
 }
 
-/* Small blocks are freed but some between them are kept: free memory below a kept block, which free() alone does not return to
-   the system. */
+/* Frees many small blocks, but not all: free() alone would keep the free memory between the remaining ones, and trimming must
+   return it to the system. */
 TEST(what_is_freed_goes_back)
 {
     static void *pieces[PIECES];

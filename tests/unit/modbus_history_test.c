@@ -21,7 +21,9 @@ enum { SPEED = 60, TICK_MS = 50, SHORT_S = 8, OUTAGE_MS = 1500, SPIKE_MS = 400, 
 static const char plant_path[] = "tests/plants/cookie_line.yaml", map_path[] = "tests/plants/cookie_line.map";
 static const char data_path[] = "../shared/data/sensors/cookie_factory/telemetry.csv";
 
-struct register_rows { /* rows of values: of a device's registers, or of the readings that the store received from them */
+/* a growing array of values with time and quality: what a device's registers held, or the readings that the store got from them
+   */
+struct register_rows {
     struct register_row {
         int64_t mono_ns, utc_ns;
         double value;
@@ -77,7 +79,8 @@ static void *device_main(void *arg)
     return NULL;
 }
 
-/* Asserts that each reading in the store is the newest register value before it, or one that changed during the request. */
+/* Asserts that each good reading in the store has a value that the register held when it was read: the newest one then, or one
+   that changed during the request. */
 static void check_wire(const struct modbus_replay *r, size_t tag)
 {
     const struct register_rows *held = &r->held[tag], *told = &r->told[tag];
@@ -104,7 +107,7 @@ static void check_wire(const struct modbus_replay *r, size_t tag)
     assert_true(good > 20);
 }
 
-/* Returns the value of the history's line at t_us; *quality receives the quality of the point that applies then. */
+/* Returns the value that the history's line has at t_us; *quality: the quality of the last point before. */
 static double line_at(const struct history_series *series, int64_t t_us, uint32_t *quality)
 {
     const struct history_points *points = &series->points;
@@ -118,7 +121,8 @@ static double line_at(const struct history_series *series, int64_t t_us, uint32_
     return a->value + (b->value - a->value) * (double)(t_us - a->t_us) / (double)(b->t_us - a->t_us);
 }
 
-/* Asserts that the history is within the tag's deviation of every reading in the store, and has the same quality. */
+/* Compares each reading of the store with the history at its time: the value must be within the tag's deviation, and the
+   quality must be the same. */
 static void check_history(const struct modbus_replay *r, struct history_reader *reader, const struct history_tag *tag, size_t index,
                           double *worst)
 {
@@ -144,7 +148,8 @@ static void check_history(const struct modbus_replay *r, struct history_reader *
         assert_true(fabs(value - told->at[i].value) <= tag->within * 1.0001 + 1e-6);
     }
     assert_true(gap);
-    assert_true(index != r->mapped[0] || fabs(most - 1000) <= tag->within); /* the recorded spike has its full height */
+    /* the history has the spike that this test put into the first tag, with its full height of 1000 */
+    assert_true(index != r->mapped[0] || fabs(most - 1000) <= tag->within);
     history_series_finish(&series);
 }
 

@@ -172,7 +172,7 @@ TEST(a_probe_shows_every_type_and_order)
     char *folder = temp_folder(), *path = program("plantcast");
     pid_t pid = simulate(folder, port);
     char *command = test_printf("%s tags --probe 127.0.0.1:%d hr:2 2>&1", path, port), *out = ask_until_answered(command);
-    /* the device has only two registers from here: both are shown */
+    /* two registers are left from this address to the device's last one: the command shows both, but no 64-bit value */
     assert_non_null(strstr(out, "registers 4000 C2ED\nbits 15-0 0100 0000 0000 0000"));
     assert_non_null(strstr(out, "               -118.625 "));
     assert_null(strstr(out, "float64"));

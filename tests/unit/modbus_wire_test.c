@@ -51,7 +51,7 @@ CASE(a_serial_line_is_read)
     check_rtu(s, DEVICE_LINE);
 }
 
-/* RTU frames have no transaction number, so a late answer looks like the answer to the next request. */
+/* RTU frames have no transaction number: the source must not take a late answer for that of its next request. */
 static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
 {
     modbus_case_add_registers(s, 1);
@@ -86,7 +86,8 @@ CASE(late_replies_do_not_poison_a_serial_line)
     check_late_rtu(s, DEVICE_LINE);
 }
 
-/* A serial device server sends the answer to an abandoned request over the next connection, on which another block has been requested. */
+/* After a timeout the source connects again and requests another block. A serial device server then sends the answer to the
+   first request over the new connection: it must not be taken for the new block. */
 CASE(late_replies_do_not_poison_the_next_connection)
 {
     modbus_case_add_registers(s, 1);
@@ -113,8 +114,8 @@ CASE(late_replies_do_not_poison_the_next_connection)
         modbus_case_expect(s, tag, QUALITY_GOOD, 8);
 }
 
-/* A device becomes so slow that every answer comes after the timeout: its values are lost, and no answer is taken for that of
-   another request. */
+/* A device whose answers all come after the timeout: its tags become Bad, and no answer is taken for that of another request.
+   */
 static void check_always_late(struct modbus_case *s, enum device_wire wire)
 {
     modbus_case_add_registers(s, 1);
@@ -243,7 +244,8 @@ CASE(busy_is_asked_again_soon)
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
 }
 
-/* Asserts that no value is taken from a hostile answer, and that values return when the device behaves again. */
+/* The device answers wrongly in one `manner`: no value may be taken from such answers, and readings return when the device
+   behaves well again. */
 static void check_hostile(struct modbus_case *s, enum device_wire wire, int manner)
 {
     modbus_case_add_registers(s, 20);
@@ -263,7 +265,7 @@ static void check_hostile(struct modbus_case *s, enum device_wire wire, int mann
     assert_true(modbus_case_look(s, 20)->value == 500);
 }
 
-/* Tests one kind of wrong answer. length: the wrong length that answers state in their header, if manner is DEVICE_MEASURED. */
+/* Defines a test of one kind of wrong answer. length: for DEVICE_MEASURED, the wrong length that the answers' header states. */
 #define HOSTILE(name, wire, manner, length)                                                                                                \
     CASE(name)                                                                                                                             \
     {                                                                                                                                      \

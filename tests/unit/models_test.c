@@ -5,8 +5,9 @@
 
 #include "tests/support/prep_case.h"
 
-/* Known facts about the models. triangles: number in the model's own description; without_area: number of degenerate ones; -1:
-   not stated. pieces: separate surfaces after preparing; 0: several, because the model itself is in pieces. */
+/* Facts known about real models. triangles: number stated with the model; without_area: number of triangles without an area,
+   -1: not stated; pieces: number of separate surfaces that preparation must leave, 0: several, because the model itself has
+   gaps. */
 static const struct known_model {
     const char *plant, *asset;
     int triangles, without_area, pieces;
@@ -58,14 +59,16 @@ static void check_asset(const json_t *asset, const char *plant)
     const json_t *sensors = json_object_get(asset, "sensors");
     bool surface = !json_is_null(json_object_get(asset, "surface"));
     const char *state = json_string_value(json_object_get(asset, "state"));
-    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02; /* sensors in thermowells of pumps lie up to 12 mm above the surface */
+    /* allowed distance of a sensor from the surface: in this plant, sensors in thermowells of pumps are up to 12 mm above it */
+    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02;
     assert_true(!strcmp(state, "built") || !strcmp(state, "shared"));
     assert_true(surface == (json_array_size(sensors) > 0));
     assert_true(of(asset, "vertices") == of(asset, "model_vertices") + of(asset, "vertices_added"));
     check_levels(asset);
     if (surface)
         check_surface(asset);
-    /* the sensors of these plants were placed on vertices, and a hidden vertex does not lie on the asset's surface */
+    /* the sensors were placed on vertices of the models; a vertex that is hidden inside a body has no place on the surface, so
+       a small distance must remain */
     for (size_t s = 0; s < json_array_size(sensors); s++)
         assert_true(of(json_array_get(sensors, s), "surface_distance_m") < off_m);
     print_message("# %-26s %-9s %6.0f triangles, split %6.0f; ", plant, json_string_value(json_object_get(asset, "id")),
@@ -124,15 +127,15 @@ static void plant_in_five_parts(void **state)
 {
     json_t *report = prepare(*state, "plm_plant_5parts");
     assert_int_equal((int)prep_case_number(report, "models.0.skipped_lines"), 1);
-    /* the model's flanges are thinner than the tolerance, but stay connected */
+    /* part 1, with flanges thinner than the tolerance for joining, must be one connected surface */
     assert_int_equal((int)prep_case_number(report, "assets.1.surface.components_after"), 1);
 }
 
 static void plant_with_its_tree(void **state)
 {
     json_t *report = prepare(*state, "plm_plant_hierarchy");
-    /* In V-1105 distances jump at walls, and thin triangles adjoin other triangles: subdividing either would gain nothing, so
-       it must not happen. */
+    /* V-1105 has distances that jump at walls, and thin triangles attached to the middle of others. Subdividing triangles there
+       would not make the field more exact, so few may be subdivided. */
     assert_true(prep_case_number(report, "assets.0.levels.0.limited_by_triangles") < 10);
     assert_true(prep_case_number(report, "assets.0.levels.0.triangles") < 40000);
 }
@@ -143,7 +146,7 @@ static void weather_deck(void **state)
     assert_true(prep_case_number(report, "assets.3.surface.components_after") > 50); /* supports stand apart */
 }
 
-/* In this model, by far the largest, each face of every elbow and tee exists twice. */
+/* The largest model: each face of its elbows and tees occurs twice, and these copies must be found. */
 static void building_services(void **state)
 {
     json_t *report = prepare(*state, "duplex_mep");

@@ -169,7 +169,7 @@ TEST(values_are_found_by_path)
     check(&named, &(struct expected){ "{\"d\": [1, 2]}", "d[0]", MQTT_FOUND, 1, 0, 0 });
 }
 
-/* Each path must select exactly one value; otherwise no value is taken. The tag is T1. */
+/* A path must select exactly one value, and one that does not belong to another tag; otherwise none is taken. The tag is T1. */
 TEST(a_value_of_another_member_is_never_taken)
 {
     static const char T2[] = "{\"values\": [{\"id\": \"A.T2\", \"v\": 22}]}";
@@ -190,7 +190,7 @@ TEST(a_value_of_another_member_is_never_taken)
         { T2, "values[?id=='A.T'].v", MQTT_ABSENT, 0, 0, 0 },
         { T2, "values[?id=='A.T2'].w", MQTT_ABSENT, 0, 0, 0 },
         { T2, "values[?id=='A.T2']", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 },
-        /* the path selects by position, and the item's id ends in T1, the tag's name, so the value is accepted */
+        /* values[0] selects by position, but its id "A.T1" ends in the tag's name, so the value is accepted */
         { BOTH, "values[0].v", MQTT_FOUND, 21, 0, 0 },
         { BOTH, "values[1].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
         { BOTH, "values[?@.id=='A.T1'].v", MQTT_FOUND, 21, 0, 0 },
@@ -212,13 +212,14 @@ TEST(a_value_of_another_member_is_never_taken)
         { "{\"a\": [5]}", "a", MQTT_WRONG, 0, QUALITY_BAD_CONFIGURATION, 0 },
         { "{\"a\": [5]}", "a[-2]", MQTT_ABSENT, 0, 0, 0 },
         { "{\"a\": [5, 6]}", "a[?@==6]", MQTT_FOUND, 6, 0, 0 },
-        { "[{\"n\": 21.5}]", "[0].n", MQTT_FOUND, 21.5, 0, 0 }, /* the path selects by position, so no name is checked */
+        /* [0] selects by position, and the item has no other member that could name another tag */
+        { "[{\"n\": 21.5}]", "[0].n", MQTT_FOUND, 21.5, 0, 0 },
         { "[{\"n\": 21.5, \"id\": \"A.T9\"}]", "[0].n", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
         { "[{\"n\": 21.5, \"v\": 3}]", "[0].v", MQTT_WRONG, 0, QUALITY_BAD_NO_MATCH, 0 },
         { "{\"a\": {\"0\": 5}}", "a[0]", MQTT_ABSENT, 0, 0, 0 },
         { "{\"a\": {\"0\": 5}}", "a['0']", MQTT_FOUND, 5, 0, 0 },
         { "{\"a\": [{\"id\": \"T1\", \"v\": null}]}", "a[?id=='T1'].v", MQTT_FOUND, 0, QUALITY_BAD_SENSOR_FAILURE, 0 },
-        /* an item without a name is identified by its position */
+        /* this item has no member that names it, so selecting it by position is accepted */
         { "{\"a\": [{\"v\": 3, \"unit\": \"K\"}]}", "a[0].v", MQTT_FOUND, 3, 0, 0 },
         { "{\"\u00b0'C\": 2}", "['\\u00b0\\'C']", MQTT_FOUND, 2, 0, 0 },
     };

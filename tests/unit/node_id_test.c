@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A core's seat (its unique id): kept across restarts, never shared, and not copied with its folder. */
+/* The seat of a core: a unique id stored in its folder. It must survive restarts, must never be used by two cores at once, and
+   must not be used by a copy of the folder. */
 #include "tests/support/test.h"
 #include <unistd.h>
 

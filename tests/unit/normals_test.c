@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Normals at points where many faces meet: equal to the plain sum over all pairs, computed in a time that grows little faster
-   than the number of faces. */
+/* Vertex normals where many faces meet at a point: they must equal the sum over all faces within the crease angle, and
+   computing them for twice as many faces may take hardly more than twice as long. */
 #include "tests/support/test.h"
 #include <time.h>
 
@@ -78,8 +78,8 @@ static void assert_plain_sum(const struct fan *fan)
         face_of(fan, t, faces[t], &angles[t]);
     for (size_t t = 0; t < fan->count; t++) {
         double sum[3] = { 0 };
-        /* true: the angle to another face is so close to the crease angle that rounding decides whether the two share a normal,
-           so the sum is not compared */
+        /* true: the angle between two faces is so close to the crease angle that rounding decides whether they share a normal;
+           this face is then not compared */
         bool close = false;
         for (size_t o = 0; o < fan->count; o++) {
             double cosine = faces[t][0] * faces[o][0] + faces[t][1] * faces[o][1] + faces[t][2] * faces[o][2];

@@ -23,16 +23,17 @@
     "tags: tags.csv\n"
 
 enum {
-    LEVELS_S = 15,    /* seconds; by then, tasks of milliseconds are done and tasks of minutes are not */
+    /* limit in seconds for building levels of detail: reached only if a step that should take milliseconds takes minutes */
+    LEVELS_S = 15,
     WELL_BEGUN_S = 3, /* seconds of processor time, more than reading a model takes */
     ENDS_S = 30,      /* seconds; the program promises 5, but a machine may be busy */
 };
 
-/* Kinds of stray triangles at the origin of a model whose plate is far away. */
+/* kinds of stray triangle that a test adds at the origin, far away from the plate */
 enum expected_stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
 
-/* Adds a node with one stray triangle: a degenerate one at the origin, a needle from the plate to the origin, or a small one at
-   the origin. */
+/* Adds a node with one stray triangle: STRAY_VERTEX: all corners at the origin; STRAY_NEEDLE: a long thin one from the plate to
+   the origin; STRAY_TRIANGLE: a small one at the origin. */
 static void add_stray(struct model_maker *maker, enum expected_stray stray, const double at_m[3])
 {
     static const uint32_t corners[3] = { 0, 1, 2 };
@@ -132,7 +133,7 @@ CASE(where_a_survey_has_it_distances_are_as_at_the_origin)
     }
 }
 
-/* Returns the row whose vertex is at place_m on the plate. */
+/* Returns the distances stored for the vertex at place_m (within 2 cm), or NULL if there is no such vertex. */
 static const struct distance_row *row_at(const struct distance_row *rows, size_t count, const double place_m[3])
 {
     for (size_t k = 0; k < count; k++)
@@ -243,7 +244,8 @@ static double seconds_of(pid_t child)
     return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
 }
 
-/* Two million triangles take longer than the program may take to finish after a signal. */
+/* plantcast-prep gets a signal while it prepares two million triangles, which takes much longer than the time in which it must
+   end. */
 CASE(what_is_told_to_end_ends)
 {
     static const int signals[] = { SIGTERM, SIGINT };

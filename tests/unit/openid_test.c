@@ -115,7 +115,8 @@ CASE(test_signatures)
     expect(f, sign(f->key, "RS256", "k1", CLAIMS), "n1", NULL, NULL);
     expect(f, sign(f->key, "PS256", "k1", CLAIMS), "n1", "s1", NULL);
     expect(f, sign(f->key, "RS256", NULL, CLAIMS), "n1", NULL, NULL);
-    /* an unknown key leads to one more request for the keys; a wrong signature by a known key does not */
+    /* a token signed with an unknown key is reported as ID_TOKEN_NO_KEY, so that the caller requests the keys again; a wrong
+       signature by a known key is not */
     assert_int_equal(expect(f, sign(f->other, "RS256", "k2", CLAIMS), "n1", NULL, "does not publish"), ID_TOKEN_NO_KEY);
     assert_int_equal(expect(f, sign(f->other, "RS256", "k1", CLAIMS), "n1", NULL, "signature of the ID token is invalid"), ID_TOKEN_BAD);
     /* rotated */
@@ -141,7 +142,8 @@ CASE(test_signatures)
     cjose_jwk_release(curve);
 }
 
-/* {"alg":"none"}, and a signature that uses the well-known public key as an HMAC secret. */
+/* Two known forgeries are refused: a token with {"alg":"none"} and no signature, and one signed by HMAC with the public key as
+   the secret. */
 CASE(test_algorithms)
 {
     static const char none[] = "eyJhbGciOiJub25lIn0.";
@@ -197,7 +199,8 @@ CASE(test_claims)
     expect(f, sign(f->key, "RS256", "k1", "{\"iss\":\"https://id.example\",\"iss\":\"https://id.example\"}"), "n1", NULL, "not JSON");
 }
 
-/* A core accepts the tokens of its renderers' users for the whole duration of a login, which may exceed a day. */
+/* A renderer's users may stay logged in longer than a day, and a core must accept their ID tokens that long: up to patience_s
+   after the token was issued. */
 CASE(test_older_tokens)
 {
     struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .sub = "s1", .now_s = NOW_S + 2 * 24 * 3600 };

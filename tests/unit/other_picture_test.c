@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers of another plant's server: headers with the age of its readings, and complete PNG files. */
+/* Parsing of what another plant's server sends: HTTP headers, one of which gives the age of its readings, and PNG files, which
+   must be complete. */
 #include "views/other_picture.h"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the fuzzer of outlines and random mutations of them. */
+/* Replays the inputs in tests/fuzz/outline, and random mutations of them, through the fuzzer for polygon outlines. */
 #include "tests/fuzz/outline_fuzz.c"
 
 #include "tests/support/test.h"

@@ -69,7 +69,7 @@ TEST(a_picture_cut_short_is_not_waited_for)
     pacer_asked(&pacer);
     pacer_sent(&pacer, 1000, &note, MS);
     pacer_gave_up(&pacer);
-    /* the frame was given up, but its remaining bytes must be sent before another is requested */
+    /* the frame was given up while being sent: no other one may be requested before its remaining bytes are gone */
     assert_false(pacer_may_ask(&pacer, 2 * MS));
     assert_int_equal(pacer_state(&pacer, 2100 * MS), PACER_STALLS);
     pacer_wrote(&pacer, true, 2200 * MS);
@@ -122,11 +122,11 @@ TEST(silence_is_a_stall_and_then_the_end)
     assert_int_equal(pacer_state(&pacer, 3615000 * MS), PACER_FLOWS);
 }
 
-/* A simulated network with one queue, and a client that decodes frames one after another. */
+/* a simulated network that sends one message after the other, and a client that decodes one frame after the other */
 struct pacer_world {
     double bytes_per_s;
     int64_t rtt_ns, decode_ns;
-    double pixels; /* pixels per frame, which determine the simulated decoding time and the size in bytes */
+    double pixels; /* pixels per frame at full size; the simulation derives the size in bytes and the decoding time from them */
     int64_t now_ns, link_free_ns, decoder_free_ns;
     int64_t draw_ns;       /* time that the simulated server takes to draw a frame; 0: 20 ms */
     int64_t busy_until_ns; /* until this time the simulated client is busy with other work and acknowledges nothing */
@@ -223,10 +223,11 @@ TEST(a_slow_network_gets_small_pictures_in_time)
     run_world(&world, &pacer, 60);
     assert_true(world.oldest_ns < 600 * MS);
     assert_true(rate(&world) > 3);
-    assert_true(pacer.ladder.size == 0); /* the decoder is not the bottleneck, so the size stays */
+    assert_true(pacer.ladder.size == 0); /* the network, not the decoder, is slow, so frames keep their full number of pixels */
 }
 
-/* A client that reprojects gets fewer and better pictures. */
+/* A client that reprojects (moves the last picture until the next arrives) needs fewer pictures, so it gets fewer and better
+   ones. */
 TEST(a_client_that_reprojects_gets_better_pictures)
 {
     double rates[2], bytes[2];
@@ -280,7 +281,8 @@ static void run_busy(struct pacer_world *world, struct pacer *pacer, int64_t bus
     run_world(world, pacer, seconds);
 }
 
-/* A page that loads its modules on a busy machine: the pacer must not take the network or the decoder for slow. */
+/* A client that acknowledges late because its page is busy loading modules: the pacer must not conclude that its network or
+   decoder is slow and reduce the quality. */
 TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 {
     struct pacer pacer = fresh();
@@ -339,7 +341,8 @@ TEST(who_see_the_same_take_one_step)
     struct quality_ladder ladder = { .step = 1 }, seen = { 0 };
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 1, 0, 1 }), -1);
     int common = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
-    assert_int_equal(common, 1); /* 10 of 100 clients are on slower quality steps; they must not pull down the step that all share */
+    /* 90 of 100 clients use the two best steps: the common step must be among these, whatever the other 10 use */
+    assert_int_equal(common, 1);
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
                      QUALITY_LADDER_STEPS - 1);
     seen.unit_bytes = 90e3; /* bytes per frame: too many for 500 clients but not for 100 */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists of near sensors (render/soft/pixel_lists.h): values at random positions in random squares, compared with plain sums in
-   double precision, and flags, compared with pixel_field_at(). */
+/* The software renderer's lists of sensors near a square of pixels (render/soft/pixel_lists.h): for random squares, the values
+   computed with them are compared with plain sums over all sensors, and the flags with pixel_field_at(). */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -37,7 +37,7 @@ static double distance_of(const struct pixel_sensor *sensor, const float at_m[3]
     return fmax(sqrt(square), 1e-15);
 }
 
-/* Returns the logarithm of a weight; -INFINITY: none. */
+/* Returns the logarithm of the sensor's weight at this distance; -INFINITY: its weight is 0. */
 static double log_weight(const struct pixel_field *field, const struct pixel_sensor *sensor, double distance)
 {
     double reach = field->reach_m < INFINITY ? 2 * log(fmax(0, 1 - distance / (double)field->reach_m)) : 0;
@@ -90,7 +90,7 @@ static void make_field(struct pixel_field *field, int count, bool paper, bool od
                                          .state = PIXEL_CONFIGURED | PIXEL_USABLE };
         for (int c = 0; c < 3; c++)
             sensor->place_m[c] = (float)(c == 2 ? between(0, 1) < 0.5 ? 0 : between(0, 0.3) : between(0, 4));
-        if (odd && i % 7 == 3) /* some sensors are at the same position as the previous one, or a micrometre away */
+        if (odd && i % 7 == 3) /* puts this sensor exactly at the previous one's position or, for every second, a micrometre away */
             memcpy(sensor->place_m, sensor[-1].place_m, sizeof(sensor->place_m));
         if (odd && i % 14 == 3)
             sensor->place_m[0] += 1e-6f;
@@ -101,7 +101,8 @@ static void make_field(struct pixel_field *field, int count, bool paper, bool od
     }
 }
 
-/* Makes a square of pixel cells on a tilted plane, with `side` x `side` of them in use; some cells also show a surface behind the plane. */
+/* Makes the cells (pixels with positions) of a square of side x side pixels on a tilted plane, without some; some cells also
+   show a second surface behind the plane. */
 static size_t make_cells(struct pixel_cell *cells, int side, double size_m, const double corner_m[3], const double slope[2])
 {
     size_t count = 0;

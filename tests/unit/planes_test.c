@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chroma subsampling: coloured edges keep their colours, and grey stays grey. */
+/* Conversion of pictures to luma and subsampled chroma planes: thin coloured lines and edges keep their colours, and grey stays
+   grey. */
 #include "encode/planes.h"
 
 #include "tests/support/test.h"
@@ -37,7 +38,7 @@ static void paint(struct frame_bytes *picture, int x, int y, const uint8_t bgr[3
     memcpy(picture->bgrx + ((size_t)y * (size_t)picture->planes.width_px + (size_t)x) * 4, bgr, 3);
 }
 
-/* Converts a picture to planes. step: number of bands converted at once. */
+/* Converts the picture; step: number of bands of rows for each call, as when threads share the work. */
 static void make(struct frame_bytes *picture, size_t step)
 {
     size_t bands = planes_bands(picture->planes.height_px);
@@ -77,7 +78,7 @@ TEST(thin_lines_keep_their_colour)
         }
 }
 
-/* Where two colours meet, neither spreads beyond the block that contains both. */
+/* At an edge between two colours, only the 2 x 2 pixel blocks across the edge may mix them. */
 TEST(colours_beside_each_other_stay)
 {
     static const uint8_t amber[3] = { 85, 155, 233 };
@@ -93,7 +94,7 @@ TEST(colours_beside_each_other_stay)
     picture_finish(&picture);
 }
 
-/* Reference: luma, and chroma without correction, as libyuv computes them. */
+/* Computes the planes by libyuv, without our correction of chroma, for comparison. */
 static void plain(const struct frame_bytes *of, uint8_t *bytes)
 {
     const struct yuv_planes *p = &of->planes;

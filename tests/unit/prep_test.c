@@ -16,7 +16,8 @@
 #include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
 
-/* A plate of 2 m x 1 m in 40 x 20 squares, and an instrument node next to it. */
+/* The tests' model: a plate of 2 m x 1 m in 40 x 20 squares, used by several nodes, and an instrument node TT-2 without
+   triangles. */
 #define ACROSS 40u
 #define UP 20u
 
@@ -36,7 +37,8 @@ static const char tags_text[] = "T1,400001,Float,plc,temperature,A,,0,0,0\n"
                                 "T4,400007,Float,plc,temperature,B,TT-2,,,\n"
                                 "T5,400009,Float,plc,temperature,C,,1,0.5,0.4\n";
 
-/* In the new revision, the second plate has moved, a third plate is added, and the nodes and meshes are in another order. */
+/* Node lists of the model: first_nodes; next_nodes, a revision in which plate-2 has moved, a plate is added and the order
+   differs; moved_node, in which TT-2 has moved instead. */
 static const char first_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"name\":\"plate-1\",\"mesh\":0},{\"name\":\"plate-2\","
                                   "\"mesh\":0,\"translation\":[0,5,0]},{\"name\":\"TT-2\",\"translation\":[2,1,0]}],";
 static const char next_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"name\":\"TT-2\",\"translation\":[2,1,0]},"
@@ -184,7 +186,8 @@ CASE(only_what_changed_is_made_anew)
     char *old = file_of(s, 0);
     prep_case_tags(s, "T1,400001,Float,plc,temperature,A,,0.5,0,0\nT5,400009,Float,plc,temperature,C,,1,0.5,0.4\n");
     assert_states(s, "built", "built", "unchanged");
-    assert_int_not_equal(access(old, F_OK), 0); /* no asset uses the old file any more */
+    /* the tag list changed A's file and no asset uses the old one any more: it must be deleted */
+    assert_int_not_equal(access(old, F_OK), 0);
     mem_free(old);
 }
 
@@ -210,7 +213,8 @@ static size_t triangles_of_first(struct prep_case *s)
     return indices / 3;
 }
 
-/* Subdivision depends on the field, so a change of the reach requires a new file; a change of a limit does not affect the field. */
+/* A group's reach changes the field and so the subdivision: the asset needs a new file. An alarm limit does not, so the file
+   stays. */
 CASE(another_reach_is_another_file)
 {
     assert_states(s, "built", "shared", "built");
@@ -343,7 +347,8 @@ CASE(textures_are_read)
     sheet_finish(&sheet);
 }
 
-/* With shepard and a single sensor the field is constant, so no triangles are subdivided. */
+/* With shepard, a single sensor gives a constant field, so no triangles are subdivided. With `interpolation: paper` or
+   `singles: cut` they are. */
 CASE(a_field_that_is_constant_needs_no_triangles)
 {
     struct prep_case *c = s;
@@ -360,17 +365,18 @@ CASE(a_field_that_is_constant_needs_no_triangles)
         json_t *report = prep_case_json(&c->out);
         triangles[more] = prep_case_number(report, "assets.0.levels.0.triangles");
         const json_t *surface = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "surface");
-        for (int n = 0; n < 2; n++) /* the report has the results of a second distance method only if the field depends on distances */
+        /* the surface's check by the heat method is reported only if distances matter, i.e. not for a constant field */
+        for (int n = 0; n < 2; n++)
             assert_int_equal(json_is_null(json_object_get(surface, n ? "heat_disagreement" : "time_m2")), more == 0);
     }
     assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */
-    /* paper's field peaks at the sensor, so triangles are subdivided there */
+    /* with the interpolation paper the field peaks at the sensor, so triangles are subdivided there */
     assert_true(triangles[1] > triangles[0] + 8);
     assert_true(triangles[2] == triangles[1]);
 }
 
-/* A sensor with an assumed position represents its whole asset and needs neither a surface nor subdivision. As soon as one
-   sensor's position is known, both are needed. */
+/* A sensor whose position is only assumed stands for its whole asset: no surface is prepared for distances, and nothing is
+   subdivided. As soon as one sensor on the asset has a known position, both are needed. */
 CASE(assumed_places_need_no_surface)
 {
     struct prep_case *c = s;
@@ -417,7 +423,8 @@ CASE(a_new_revision_costs_what_it_changes)
     assert_states(s, "unchanged", "shared", "built"); /* the second plate is elsewhere */
     assert_states(s, "unchanged", "shared", "unchanged");
     write_model(s, moved_node);
-    assert_states(s, "built", "shared", "unchanged"); /* a sensor that belongs to A and B is on this asset */
+    /* the node TT-2, which gives the position of a sensor of B, has moved; A shares B's file, so it is built again */
+    assert_states(s, "built", "shared", "unchanged");
     write_model(s, next_nodes);
     assert_states(s, "built", "shared", "unchanged");
 }
@@ -437,7 +444,8 @@ CASE(what_is_wrong_is_said_with_its_place)
     prep_case_says(&s->err, "no node's name matches 'tank*'");
     prep_case_says(&s->err, "plant.yaml:7: error: asset E:");
     prep_case_says(&s->err, "truncated GLB: 4 bytes");
-    struct text manifest = { 0 }; /* the manifest offers the other assets and names the missing ones */
+    /* the manifest lists the valid assets with their files, and states for the others why they are missing */
+    struct text manifest = { 0 };
     prep_case_read(s, "plant.prepared/manifest.json", &manifest);
     json_t *root = prep_case_json(&manifest);
     for (size_t i = 0; i < 5; i++)

@@ -21,8 +21,8 @@ static void corner(const struct scene_asset *asset, uint32_t vertex, double out[
         out[i] = (double)asset->file->view.positions_m[vertex][i] + asset->placement[12 + i];
 }
 
-/* Reference: solves origin + t direction = a + u ab + v ac by Cramer's rule. Returns true with *t and *facing if the ray hits
-   the triangle. */
+/* Reference for one triangle: solves origin + t direction = a + u (b - a) + v (c - a) by Cramer's rule. Returns whether the ray
+   hits, with the distance *t and *facing, whose sign tells which side it hits. */
 static bool slow_triangle(const struct ray *ray, const double a[3], const double b[3], const double c[3], double *t, double *facing)
 {
     double m[3][4], ab[3], ac[3];
@@ -67,7 +67,8 @@ static double slow_raycast(const struct visibility *visibility, const struct ray
     return best;
 }
 
-/* Returns how many closed bodies contain the ray's point at `from`: number of exits after it minus number of entries after it. */
+/* Returns how many closed bodies contain the ray's point at distance `from`: for each hit farther away, an exit counts 1 and an
+   entry -1. */
 static int slow_bodies(const struct visibility *visibility, const struct ray *ray, double from)
 {
     int bodies = 0;
@@ -90,7 +91,8 @@ static int slow_bodies(const struct visibility *visibility, const struct ray *ra
     return bodies;
 }
 
-/* A section plane caps the bodies that it cuts: a ray that passes the plane inside a body must hit a cap. Returns false if it hits none. */
+/* Where a section plane cuts a body, a cap closes it. Asserts that the ray hits a cap exactly if it enters the visible part
+   inside a body, and at the right point. Returns whether it does. */
 static bool agrees_on_cap(const struct visibility *visibility, const struct ray *ray, const struct raycast_hit *hit)
 {
     double low = ray->low, high = ray->high, facing = 0;

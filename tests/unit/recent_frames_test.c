@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recent-frame cache: which of the last frames can serve a request that follows shortly. */
+/* The cache of recent frames: which of the last frames may answer a request for the same view that follows a moment later. */
 #include "service/recent_frames.h"
 
 #include "tests/support/test.h"
@@ -13,7 +13,7 @@ static struct view view_of(int number)
     return (struct view){ .width_px = 64, .height_px = 36, .camera = { .fov_deg = 30 + number } };
 }
 
-/* Adds a frame whose readings were taken at read_ns. */
+/* Adds a frame of the view `view_number`, with a content hash, whose readings were taken at read_ns. */
 static void draw(struct recent_frames *recent, int view_number, uint64_t content, int64_t read_ns)
 {
     struct frame *frame = frame_create(NULL, 64, 36);
@@ -28,7 +28,7 @@ TEST(a_view_is_found_while_nothing_newer_was_said_of_its_readings)
     struct recent_frames recent = { 0 };
     struct view view = view_of(1), other = view_of(2);
     draw(&recent, 1, 7, NOW_NS);
-    view.camera_seq = 99; /* a different camera number must not matter: views are compared by what they show */
+    view.camera_seq = 99; /* the client's number of the camera differs, but the view shows the same, so the frame is found */
     assert_true(recent_frames_find_view(&recent, &view, NOW_NS - 50 * MS, NOW_NS + 20 * MS)->content == 7);
     assert_non_null(recent_frames_find_view(&recent, &view, NOW_NS, NOW_NS + 20 * MS));
     assert_null(recent_frames_find_view(&recent, &view, NOW_NS + 10 * MS, NOW_NS + 20 * MS));

@@ -7,7 +7,8 @@
 #define GAP_M 0.0002f
 #define TOLERANCE_M 0.001
 
-enum { QUADS = 6, BELOW = 2 }; /* two faces of the lower sheet and four of the sheet on top of it */
+/* BELOW: number of faces (quadrangles) of the lower sheet; the other four form a second sheet that lies on top of it */
+enum { QUADS = 6, BELOW = 2 };
 
 static size_t open_edges(const struct trimesh *mesh)
 {
@@ -25,7 +26,7 @@ static size_t open_edges(const struct trimesh *mesh)
     return open;
 }
 
-/* Returns whether a vertex of the lower sheet also belongs to the upper sheet. */
+/* Returns whether closing cracks has joined the two sheets: whether any vertex belongs to faces of both. */
 static bool sheets_share(const struct trimesh *mesh)
 {
     bool share = false;
@@ -36,8 +37,8 @@ static bool sheets_share(const struct trimesh *mesh)
     return share;
 }
 
-/* The lower sheet has a crack along y whose left side is at x = 0. In the upper sheet two cracks cross, and two of the four
-   corners at the crossing lie exactly on that side. */
+/* The lower sheet has a crack along y, with its left side at x = 0. In the upper sheet two cracks cross, and two of the four
+   corners at the crossing touch the lower crack's left side. Each sheet must be closed by itself. */
 TEST(a_gap_is_not_set_into_one_that_it_runs_over)
 {
     static const float corners[QUADS][8] = {
@@ -66,8 +67,8 @@ TEST(a_gap_is_not_set_into_one_that_it_runs_over)
     trimesh_finish(&mesh);
 }
 
-/* Two faces at a crack along x = 0, and two faces on top of the left ones with the same shape, all cut along the crack: left
-   must close with right, not with the faces on top. */
+/* Two faces on both sides of a crack along x = 0, and two faces of the same shape exactly on top of them. Each must be joined
+   with the face across the crack, not with the one that lies on it. */
 TEST(a_gap_is_closed_across_not_with_what_lies_on_it)
 {
     static const float corners[4][8] = {
@@ -86,7 +87,7 @@ TEST(a_gap_is_closed_across_not_with_what_lies_on_it)
         for (int i = 0; i < 8; i++)
             positions[4 * q + (uint32_t)i / 2][i % 2] = corners[q][i];
         for (int i = 0; i < 4 && q >= 2; i++)
-            /* raises the upper sheet so little above the lower one that the two still count as an exact fit */
+            /* the upper faces lie 5 micrometres higher: so close that they could be taken for an exact fit */
             positions[4 * q + (uint32_t)i][2] = (float)(0.005 * TOLERANCE_M);
         for (int i = 0; i < 6; i++)
             triangles[6 * q + (uint32_t)i] = 4 * q + turned[q / 2][i];

@@ -23,8 +23,8 @@ static const char tags_rows[] = "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5
                                 "T-APART,400003,Float,plc,temperature,APART,,10.5,0.5,1.5\n"
                                 "T-INSIDE,400005,Float,plc,temperature,INSIDE,,22,2,4.02\n";
 
-/* Models: two boxes of 1 m, 0.2 mm apart; two boxes 0.5 m apart, one with a duplicate face, a degenerate face, lines and
-   points; a small box inside a large one; and one box without a sensor. */
+/* Prepares models for four assets. GAP: two boxes of 1 m, 0.2 mm apart; APART: two boxes 0.5 m apart, one with a duplicate
+   face, a degenerate face, lines and points; INSIDE: a small box in a large one; and one box without a sensor. */
 static int set_up(void **state)
 {
     static const float twice[3][3] = { { 10, 0, 0 }, { 10, 1, 0 }, { 11, 0, 0 } },
@@ -72,7 +72,8 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         { "assets.0.surface.samples", 5000, 100000 },
         { "assets.0.surface.hidden_vertices", 0, 0 },
         { "assets.0.surface.unreachable_vertices", 0, 0 },
-        { "assets.0.surface.k", 0, 0 }, /* no edge is open, so nothing is joined */
+        /* k, the number of joined points that are compared, is 0: the boxes have no open edges, so nothing has to be joined */
+        { "assets.0.surface.k", 0, 0 },
         { "assets.0.skipped_lines", 0, 0 },
         { "assets.0.sensors.0.surface_distance_m", 0, 1e-6 },
         { "assets.1.model_triangles", 25, 25 },
@@ -84,7 +85,8 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         { "assets.1.surface.components_after", 2, 2 },
         { "assets.1.surface.bridges", 0, 0 },
         { "assets.1.surface.longest_bridge_m", 0, 0 },
-        { "assets.1.surface.unreachable_vertices", 24, 24 }, /* unreachable vertices: the other box, three per corner */
+        /* the 24 vertices of the second box (three at each corner) cannot be reached from the sensor on the first */
+        { "assets.1.surface.unreachable_vertices", 24, 24 },
         { "assets.1.sensors.0.surface_distance_m", 0.5 - 1e-6, 0.5 + 1e-6 },
         { "assets.1.sensors.0.limit_m", 0.122, 0.123 }, /* 5 % of the diagonal, hypot(2, 1, 1) m */
         { "assets.2.surface.components_before", 2, 2 },
@@ -103,7 +105,7 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         if (!(found >= expected[i].least && found <= expected[i].most))
             fail_msg("%s is %.9g, expected %g to %g", expected[i].path, found, expected[i].least, expected[i].most);
     }
-    for (int asset = 0; asset < 4; asset++) { /* numbers in the asset file must agree with the levels of detail in the report */
+    for (int asset = 0; asset < 4; asset++) { /* for each asset, the totals of the asset file agree with those of its finest level */
         char path[60];
         snprintf(path, sizeof(path), "assets.%d.levels.0.triangles", asset);
         double split = prep_case_number(report, path);
@@ -137,7 +139,7 @@ TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
     prep_case_says(&c->out, "Boxes: 4 assets, ");
 }
 
-/* An asset that was built earlier is reported as if it had just been built, except for the time. */
+/* The report on an asset that needed no work repeats what its last build reported, except for the time taken. */
 TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;
@@ -163,7 +165,8 @@ TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
     assert_null(strstr(c->out.at, "Surfaces")); /* no asset was built */
     prep_case_says(&c->out, "4 unchanged");
     prep_case_tags(c, "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5,1\n");
-    prep_case_expect(c, "$PLANT", 0); /* files and reports of assets that are no longer in the plant are deleted */
+    /* now only the asset GAP has a sensor: asset files that are not used any more are deleted, and their reports, too */
+    prep_case_expect(c, "$PLANT", 0);
     char *command = test_printf("test $(ls '%s/plant.prepared' | grep -c report.json) = $(ls '%s/plant.prepared' | grep -c 'asset$')",
                                c->folder, c->folder);
     assert_int_equal(system(command), 0);
@@ -217,7 +220,8 @@ TEST(the_time_left_follows_the_work)
     progress_begin(&progress, out, 10, 4, 0);
     assert_true(progress_left_s(&progress, s) < 0);
     for (int i = 0; i < 3; i++)
-        /* the work of three of the six assets is known, so the progress line expects 1,200 in all, assuming that the others take as much */
+        /* announces the work of three of the six assets: 400, 100 and 100. The others are expected to need as much, so 1,200 in
+           all. */
         progress_expect(&progress, i == 0 ? 400 : 100);
     progress_step(&progress, 400, 4 * s);
     assert_float_equal(progress_left_s(&progress, 4 * s), 8, 1e-9);
@@ -225,7 +229,7 @@ TEST(the_time_left_follows_the_work)
     assert_float_equal(progress_left_s(&progress, 5 * s), 7, 1e-9);
     progress_step(&progress, 100, 6 * s);
     for (int i = 0; i < 3; i++)
-        progress_expect(&progress, 1); /* the other three assets turn out to take little work, so the remaining time shrinks */
+        progress_expect(&progress, 1); /* the other three assets announce little work, so the estimated remaining time becomes short */
     assert_float_equal(progress_left_s(&progress, 6 * s), 0.03, 1e-9);
     progress_end(&progress);
     fclose(out);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Preparation of a facility is interrupted in every possible way and then resumed. */
+/* plantcast-prep is interrupted while it prepares a large facility (signals, kill -9 at any moment) and run again: it must
+   continue with what was done. */
 #include "tests/support/test.h"
 #include <dirent.h>
 #include <errno.h>
@@ -32,7 +33,7 @@ static int set_up(void **state)
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, set_up, prep_case_tear_down)
 
-/* Returns the number of files in the prepared folder with this suffix. */
+/* Returns how many files in facility.prepared have a name that ends in `ending`. */
 static size_t count_files(const struct prep_case *c, const char *ending)
 {
     char *folder = temp_path(c->folder, "facility.prepared");

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rollups compared with a plain sum over very short steps; names and borders of months. */
+/* Rollups (summaries of the line through recorded points over a time interval) compared with plain sums over microseconds;
+   names and borders of month files. */
 #include "tests/support/test.h"
 
 #include "history/month.h"
@@ -15,7 +16,7 @@ static const struct history_point *at(const struct history_point *points, int co
     return &points[i];
 }
 
-/* Computes a bucket by adding up microsecond by microsecond. */
+/* Computes what the rollup of LENGTH microseconds from begin_us must contain, microsecond by microsecond. */
 static void slow_truth(const struct history_point *points, int count, bool step, int64_t begin_us, struct history_bucket *out)
 {
     double sum = 0;
@@ -107,7 +108,8 @@ TEST(merged_buckets_are_longer_ones)
     assert_true(none.low == 0 && none.high == 9 && none.mean == 4);
 }
 
-/* The line from 0 at 100 s to 30 at 400 s is bridged from 200 s to 300 s. */
+/* rollup_bridge() adds the line from bucket a's last value, 0 at 100 s, to bucket b's first value, 30 at 400 s, for the time
+   from 200 s to 300 s. */
 TEST(a_bridge_is_a_straight_line)
 {
     struct history_bucket a = { .t_us = 90 * US_PER_S, .last = 0 }, b = { .t_us = 400 * US_PER_S, .first = 30 };

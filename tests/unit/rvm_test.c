@@ -141,7 +141,7 @@ static double volume_m3(const struct cad_node *node)
     return sum / 6;
 }
 
-/* Asserts that each normal points to the side from which its triangle appears counter-clockwise. */
+/* Asserts that the normals of each triangle's corners point to the side from which the corners appear counter-clockwise. */
 static void check_normals(const struct cad_node *node)
 {
     for (size_t i = 0; i < node->triangle_count; i++) {
@@ -233,7 +233,8 @@ static size_t open_edges(const struct cad_model *model)
     return open;
 }
 
-/* A pipe, an elbow rotated within a slanted plane, a pipe, a reducer, and a pipe closed by a dish. */
+/* A pipe run in a slanted plane: pipe, elbow, pipe, reducer, and a pipe closed by a dish. Joined together, they must form a
+   closed body. */
 TEST(test_a_pipe_run_is_closed)
 {
     struct text file = { 0 };
@@ -376,8 +377,8 @@ TEST(test_a_long_name_stays_whole)
     text_finish(&name);
 }
 
-/* Files truncated at each byte, and files with one of the first 4,096 bytes set to 255, are either read completely or refused
-   with the byte position. */
+/* Damaged RVM files: cut off at each byte, or with one of the first 4,096 bytes set to 255. Each must be read completely or
+   refused with the position of the faulty byte. */
 TEST(test_broken_files_are_refused_at_a_byte)
 {
     struct text file = { 0 };

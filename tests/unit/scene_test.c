@@ -37,8 +37,8 @@ struct scene_fixture {
     struct log *log;
 };
 
-/* Writes an asset with a triangle and two sensors, at (1, 2, 3) and at node TI-2 in (4, 2, 0) of the asset frame; its origin is (1, 1,
-   1). */
+/* Writes an asset file with a triangle and two sensors: one at (sensor_x_m, 2, 3), one at `node`, which is at (4, 2, 0). The
+   asset file's origin is (1, 1, 1). */
 static void write_asset(const struct scene_fixture *f, const char *name, double sensor_x_m, const char *node, uint32_t sensor_count)
 {
     const float positions[3][3] = { { -1, 0, 0 }, { 3, 0, 0 }, { 0, 1, 2 } }, normals[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
@@ -166,8 +166,8 @@ CASE(everything_is_in_its_place)
     assert_null(scene);
 }
 
-/* Asserts that creating the scene fails and that the log contains `words` and `hint`. Meanwhile redirects stderr, where the log
-   goes, to a file. */
+/* Asserts that scene_create() fails, and that the log then contains `words` and `hint`, the advice what to do. The log goes to
+   stderr, which is redirected to a file meanwhile. */
 static void assert_refused_from(struct scene_fixture *f, const char *prepared, const char *words, const char *hint)
 {
     char *path = temp_path(f->folder, "log.txt");
@@ -175,7 +175,7 @@ static void assert_refused_from(struct scene_fixture *f, const char *prepared, c
     fflush(stderr);
     int kept = dup(STDERR_FILENO);
     assert_non_null(freopen(path, "w", stderr));
-    struct log *log = test_log(); /* a new log, so that no message is suppressed as a repetition */
+    struct log *log = test_log(); /* a new log, because a log suppresses messages that it has printed before */
     struct scene *scene = scene_create(log, f->plant, prepared);
     fflush(stderr);
     dup2(kept, STDERR_FILENO);
@@ -207,7 +207,8 @@ CASE(a_service_prepares_by_itself)
 
 CASE(other_sensors_are_refused)
 {
-    write_asset(f, "1.asset", 1.00005, "TI-2", 2); /* moves a sensor by half of the tolerance */
+    /* the sensor in the file is 0.05 mm from the tag list's position, half of the tolerance: accepted */
+    write_asset(f, "1.asset", 1.00005, "TI-2", 2);
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     scene_destroy(&scene);
@@ -292,7 +293,9 @@ CASE(a_missing_asset_does_not_keep_the_others_away)
     assert_string_equal(scene->assets[1].missing, "no node's name matches 'B'");
     assert_int_equal(scene->assets[1].sensor_count, 0);
     assert_true(scene->assets[0].sensor_count > 0);
-    for (int axis = 0; axis < 3; axis++) { /* B stood at (10, 20, 30), which the plant's bounds no longer include */
+    /* the plant's bounds no longer include (10, 20, 30), where the missing asset B would be; B itself gets the plant's bounds
+       */
+    for (int axis = 0; axis < 3; axis++) {
         assert_true(scene->bounds_max_m[axis] < 9);
         assert_true(scene->assets[1].bounds_max_m[axis] == scene->bounds_max_m[axis]);
     }
@@ -312,7 +315,8 @@ CASE(home_is_the_view_of_the_plant)
     scene_home(scene, 1.5, &camera);
     assert_true(camera_valid(&camera));
     assert_true(scene->extreme_count >= 4);
-    /* scene->extremes_m: outermost points of the assets, within the plant's bounds and nearly at them */
+    /* scene->extremes_m, the outermost points of the assets by direction, must lie within the plant's bounds and come close to
+       each side */
     for (int i = 0; i < 3; i++) {
         double least = INFINITY, most = -INFINITY, slack = 0.15 * (scene->bounds_max_m[i] - scene->bounds_min_m[i]) + 1e-6;
         for (size_t n = 0; n < scene->extreme_count; n++) {
@@ -322,7 +326,7 @@ CASE(home_is_the_view_of_the_plant)
         assert_true(least >= scene->bounds_min_m[i] - 1e-4 && most <= scene->bounds_max_m[i] + 1e-4);
         assert_true(least <= scene->bounds_min_m[i] + slack && most >= scene->bounds_max_m[i] - slack);
     }
-    for (int i = 0; i < 3; i++) /* the camera is to the west of, south of and above the plant */
+    for (int i = 0; i < 3; i++) /* by default the camera looks from the south-west and from above */
         assert_true(i < 2 ? camera.eye_m[i] < scene->bounds_min_m[i] : camera.eye_m[i] > scene->bounds_max_m[i]);
     scene_destroy(&scene);
     plant_destroy(&f->plant);

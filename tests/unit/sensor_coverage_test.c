@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensor coverage of a plate with distances and areas that can be computed by hand, compared with a plain sum over its vertices. */
+/* Sensor coverage (how far the points of an asset are from sensors) of a plate, compared with values computed by hand and with
+   a plain sum over vertices. */
 #include "placing/sensor_coverage.h"
 
 #include "tests/support/test.h"
@@ -38,7 +39,8 @@ static struct sensor_coverage find(const struct toy *toy, double reach_m, double
     return gaps;
 }
 
-/* Returns the share of the plate's area for which f holds; each vertex counts for its part of the area. */
+/* Returns the share of the plate's area where f(nearest sensor, limit_m) holds. Each vertex of the grid stands for the area
+   around it. */
 static double share_of(bool (*f)(const double nearest[2], double limit_m), double limit_m)
 {
     double hit = 0, all = 0;
@@ -46,11 +48,13 @@ static double share_of(bool (*f)(const double nearest[2], double limit_m), doubl
         for (int j = 0; j <= CELLS; j++) {
             double x = side_m * i / CELLS, y = side_m * j / CELLS, nearest[2] = { INFINITY, 0 };
             int inside = (i > 0 && i < CELLS) + (j > 0 && j < CELLS);
-            /* area of the vertex in triangles of the plate's grid: a corner vertex has one or two triangles, 1.5 on average */
+            /* area around the vertex, in sixths of a grid square: 6 inside, 3 at an edge, 1.5 at a corner (on average, as a
+               square's diagonal may or may not end there) */
             double triangles = inside ? 3 * inside : 1.5;
             for (int s = 0; s < SENSORS; s++) {
                 double m = hypot(x - sensors[s][0], y - sensors[s][1]);
-                /* if two sensors are equally near, the later one wins: the last one has a good reading, which takes precedence */
+                /* nearest[]: distance and number of the nearest sensor; of two equally near ones the later counts, because the
+                   last one is the good one */
                 if (m <= nearest[0]) {
                     nearest[0] = m;
                     nearest[1] = s;
@@ -76,15 +80,16 @@ TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
 {
     struct sensor_coverage gaps = find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 1, 1, 1 });
     assert_int_equal(gaps.sensors, SENSORS);
-    /* the point (1, 4) is the farthest from any sensor: the first is its nearest, and the third is hardly farther away */
+    /* the farthest point of the plate from any sensor is (1, 4): its nearest is the first sensor, but the third is hardly
+       farther away */
     assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6);
     assert_true(fabs(gaps.farthest_at_m[0] - 101) < 1e-5 && fabs(gaps.farthest_at_m[1] - 4) < 1e-5);
     assert_true(fabs(gaps.farthest_at_m[2] - 7) < 1e-5);
-    /* the gap between the first two sensors: 1.1 m apart through the plate, but 4 m along its surface */
+    /* Walking along the surface from one sensor to the next, the longest distance is 4 m, between the first two sensors. */
     assert_true(fabs(gaps.next_m - 4) < 1e-6);
     assert_int_equal(gaps.next_tags[0], 0);
     assert_int_equal(gaps.next_tags[1], 1);
-    /* far_m, the distance from which a point counts as far from sensors, is by default a fifth of the asset's size */
+    /* a point counts as far from sensors from far_m on; default: a fifth of the asset's size (here its diagonal) */
     assert_true(fabs(gaps.far_m - side_m * sqrt(2) / 5) < 1e-6);
     assert_true(gaps.lost_share == 0);
 }
@@ -114,9 +119,9 @@ TEST_WITH(test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
     trial.sensors[0].vertex = CELLS * (CELLS + 1);
     trial.sensors[0].place_m[0] = 100;
     assert_true(sensor_coverage_find(&order, &gaps));
-    /* the farthest point is the corner that the moved sensor left */
+    /* sensor 0 has been moved, so the corner where it was is now the farthest point */
     assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5);
-    trial.sensors[0].asset = 1; /* the trial moves sensor 0 to the other asset, which has no sensor of its own */
+    trial.sensors[0].asset = 1; /* the trial puts sensor 0 onto the other asset, which otherwise has no sensor */
     order.asset = 1;
     trial.sensors[0].vertex = 0;
     memset(trial.sensors[0].surface_m, 0, sizeof(trial.sensors[0].surface_m));

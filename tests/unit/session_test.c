@@ -22,7 +22,7 @@ static void say(struct session_case *f, const char *text)
     session_on_message(f->session, text, strlen(text), f->now_ns, f->now_ns);
 }
 
-/* Returns the next text message as JSON, or NULL if none is due. */
+/* Returns the session's next text message to the client, or NULL if it has none to send now. */
 static json_t *hear(struct session_case *f)
 {
     struct text text = { 0 };
@@ -62,8 +62,8 @@ static void greet(struct session_case *f)
     expect(f, "welcome status tags ");
 }
 
-/* Takes the session's next request in the role of the render service. Returns false if there is none, or if the render service
-   would decline it. */
+/* Takes the session's next request for a frame, like the render service. Returns false if there is none, or if the session only
+   wants a frame that replaces another one. */
 static bool ask(struct session_case *f, struct frame_request *request)
 {
     if (!session_next_request(f->session, f->now_ns, request) || request->only_replace)
@@ -116,7 +116,7 @@ static void ack(struct session_case *f, uint32_t seq)
     say(f, text);
 }
 
-/* Draws and sends the requested frame; it is acknowledged after way_ns. */
+/* Answers the request with a frame of `bytes` bytes and sends it; the client's acknowledgement arrives way_ns later. */
 static void carry(struct session_case *f, const struct frame_request *request, size_t bytes, int64_t way_ns)
 {
     struct encoded_frame *encoded = empty_picture(f, request);
@@ -143,8 +143,8 @@ static struct frame_request show(struct session_case *f)
     return request;
 }
 
-/* New readings arrive while a refined frame is shown. quick: whether the render thread can recolour it in time, rather than
-   drawing a preview. */
+/* New readings arrive: takes the session's request, draws and acknowledges the frame. quick: the render thread can recolour the
+   refined frame in time; otherwise it draws the preview that the request allows instead. Returns the request. */
 static struct frame_request show_data(struct session_case *f, bool quick)
 {
     struct frame_request request = { 0 };
@@ -164,7 +164,8 @@ static struct depth_grid *grid_of(int width_px)
     return depth_grid_create(cells, &(struct depth_lens){ .factor = 1, .step = 0.01f }, width_px, 8);
 }
 
-/* Requests, draws, sends and acknowledges a frame with these grids, which stay the test's. */
+/* Answers the request with a frame and these depth grids, sends and acknowledges it. Returns whether the session sends the
+   grids. The caller keeps its references to them. */
 static enum session_depth show_depth(struct session_case *f, const struct frame_request *request, struct depth_grid *grids[2])
 {
     struct encoded_frame *encoded = empty_picture(f, request);
@@ -199,7 +200,8 @@ CASE(depth_is_sent_when_it_changes)
     assert_int_equal(show_depth(f, &request, none), SESSION_DEPTH_NONE);
     assert_int_equal(show_depth(f, &request, split), SESSION_DEPTH_NEW);
     assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NEW);
-    request.depth = false; /* as if the frame was requested without depth, while the session followed another one */
+    /* a frame requested without depth, e.g. because the session followed another one then: no grid is sent with it */
+    request.depth = false;
     assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NONE);
     for (int i = 0; i < 2; i++) {
         depth_grid_unref(&first[i]);
@@ -261,7 +263,8 @@ CASE(refined_frames_are_asked_for_signed)
     f->now_ns += NS_PER_S;
     struct frame_request refined = show(f);
     assert_true(refined.view.tier == TIER_REFINED && refined.record && refined.codec == WIRE_CODEC_PNG && !refined.draft);
-    /* requests the refined frame with new colours as a PNG file to be signed, or else a preview in JPEG like those before */
+    /* readings changed: the session requests a recoloured refined frame as PNG, to be signed, and allows a JPEG preview if that
+       would take long */
     struct frame_request data = show_data(f, true);
     assert_true(data.record && data.codec == WIRE_CODEC_PNG && (!data.or_moving || data.moving_codec == WIRE_CODEC_JPEG));
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
@@ -363,7 +366,7 @@ CASE(rests_once_nothing_waits_for_time)
     uint32_t seq = send_picture(f);
     assert_false(session_rests(f->session, f->now_ns)); /* the frame is under way */
     ack(f, seq);
-    assert_false(session_rests(f->session, f->now_ns)); /* a preview was acknowledged, but its refined frame has not been drawn yet */
+    assert_false(session_rests(f->session, f->now_ns)); /* the preview was acknowledged, but its refined frame is still missing */
     f->now_ns += 250 * MS;
     show(f);
     assert_false(session_rests(f->session, f->now_ns)); /* counts as moving */
@@ -372,7 +375,8 @@ CASE(rests_once_nothing_waits_for_time)
     session_on_data(f->session, f->now_ns);
     assert_false(session_rests(f->session, f->now_ns));
     show(f);
-    assert_false(session_rests(f->session, f->now_ns)); /* the frame was acknowledged, but the readings' values have not been sent yet */
+    /* the frame arrived, but the message with the changed readings has not been sent yet */
+    assert_false(session_rests(f->session, f->now_ns));
     expect(f, "tags ");
     assert_true(session_rests(f->session, f->now_ns));
     session_on_data(f->session, f->now_ns);
@@ -388,7 +392,7 @@ CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
     show(f);
     f->now_ns += 250 * MS;
     show(f);
-    for (int s = 0; s < 60; s++) { /* no new data for a minute, while the client pings */
+    for (int s = 0; s < 60; s++) { /* no reading changes for a minute, and the client only sends pings: the shown frame stays fresh */
         f->now_ns += NS_PER_S;
         say(f, "{\"type\":\"ping\",\"t\":1}");
         expect(f, "pong ");
@@ -397,7 +401,7 @@ CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
     assert_int_equal(session_fresh_ns(f->session), f->now_ns);
     int64_t then_ns = f->now_ns;
     f->now_ns += 100 * MS;
-    session_on_data(f->session, f->now_ns); /* from now on new readings outdate the shown frame, although it was drawn a minute ago */
+    session_on_data(f->session, f->now_ns); /* new readings: the shown frame was true until the last tick, and is outdated from then on */
     session_on_tick(f->session, f->now_ns);
     assert_int_equal(session_fresh_ns(f->session), then_ns);
     f->now_ns += NS_PER_S;
@@ -412,7 +416,8 @@ CASE(newest_camera_wins_and_the_last_state_arrives)
     struct frame_request request;
     greet(f);
     show(f);
-    for (uint32_t seq = 1; seq <= 50; seq++) { /* without acknowledgements two frames are sent and then none */
+    /* moves the camera 50 times but acknowledges nothing: after two frames the session must stop requesting */
+    for (uint32_t seq = 1; seq <= 50; seq++) {
         char text[128];
         snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%u,-9,4],\"target\":[0,0,1]}", seq, seq + 5);
         say(f, text);
@@ -632,7 +637,8 @@ CASE(data_on_a_loaded_server_does_not_put_refinement_off_for_ever)
     assert_in_range(refined, 2, 4);
 }
 
-/* A refinement was abandoned because of new readings that change no pixel: the preview on display must still be refined. */
+/* A refinement is abandoned in favour of new readings, but these turn out to change no pixel. The preview on the client's
+   screen must then be refined after all. */
 CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
 {
     struct frame_request refined, data;
@@ -650,8 +656,8 @@ CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
 }
 
-/* The render service answers that the client already has the refined frame, but that frame was lost: after a pause the session
-   requests the whole frame again. */
+/* The render service says that the client has the refined frame already, but the client's copy was lost. After a pause the
+   session must request the complete frame. */
 CASE(a_refined_picture_that_is_lost_is_asked_for_again)
 {
     struct frame_request refined;
@@ -670,7 +676,8 @@ CASE(a_refined_picture_that_is_lost_is_asked_for_again)
     assert_false(ask(f, &refined));
 }
 
-/* The server's load is not known yet: readings must not wait for a refinement that takes a minute. */
+/* The session does not know yet how long refining takes, so it must not let changed readings wait for it: the first refinement
+   takes a minute here. */
 CASE(data_does_not_wait_for_the_first_refined_picture)
 {
     struct frame_request refined, data, preview;
@@ -690,12 +697,12 @@ CASE(data_does_not_wait_for_the_first_refined_picture)
     ack(f, send_picture(f));
     f->now_ns += NS_PER_S;
     session_on_data(f->session, f->now_ns);
-    /* the refined frame is recoloured if that is possible */
+    /* later changes of readings are to be shown by recolouring the refined frame */
     assert_true(ask(f, &data) && data.view.tier == TIER_REFINED && !data.or_moving);
 }
 
-/* A preview requested during a refinement and drawn after it must itself be refined. Tested with delayed readings, and with a
-   client that changes its codec. */
+/* A preview is requested while a refined frame is being drawn, and arrives after it. The session must then request another
+   refined frame. The preview has two causes: delayed readings, and a changed codec. */
 CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
 {
     struct frame_request refined, preview;
@@ -708,7 +715,7 @@ CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
         if (of_codec)
             say(f, "{\"type\":\"codecs\",\"codecs\":[\"png\"]}");
         else
-            show_data(f, false); /* the preview overtakes the refined frame */
+            show_data(f, false); /* show_data() has the readings drawn as a preview, which arrives before the refined frame */
         session_on_data(f->session, f->now_ns += 500 * MS);
         assert_true(ask(f, &preview) && preview.view.tier == TIER_PREVIEW);
         paint(f, &refined, false);
@@ -837,14 +844,15 @@ CASE(hidden_pages_get_nothing)
     assert_true(request.always && request.view.camera_seq == 1);
 }
 
-/* Hiding and showing a view repeatedly costs a new frame each time, so it is admitted like a new session. */
+/* A client that hides and shows its view again and again causes a new frame each time, so from the second time on it must be
+   admitted like a new session. */
 CASE(views_shown_again_and_again_are_admitted_as_new_ones)
 {
     static const char HIDE[] = "{\"type\":\"visible\",\"visible\":false}", SHOW[] = "{\"type\":\"visible\",\"visible\":true}";
     struct frame_request request;
     greet(f);
     show(f);
-    /* pretends that drawing takes all of the time and that readings are delayed, so no new session would be admitted */
+    /* pretends that the render thread is busy all the time and readings are delayed: new sessions are refused */
     for (int i = 0; i < 3; i++)
         f->admission.windows[i] = (struct admission_window){ .drawing_ns = NS_PER_S, .data_wait_ns = 2 * NS_PER_S };
     f->now_ns += NS_PER_S;
@@ -873,7 +881,7 @@ CASE(tags_come_whole_then_by_change_then_nothing)
     assert_int_equal(json_array_size(values), 1);
     assert_int_equal(json_integer_value(json_array_get(row, 0)), 1);
     assert_true(json_number_value(json_array_get(row, 1)) == 3.25);
-    assert_int_equal(json_array_size(row), 2); /* a good reading without an alarm has only two members */
+    assert_int_equal(json_array_size(row), 2); /* a row is [tag, value]: a good reading without an alarm needs no further members */
     assert_int_equal(json_integer_value(json_object_get(tags, "age_ms")), 40);
     f->now_ns += 3600 * NS_PER_S;
     expect(f, "");
@@ -896,7 +904,8 @@ CASE(large_readings_keep_all_digits)
     char *text = reply_api_tags_text(&f->context, 1, 1);
     assert_non_null(strstr(text, "\"value\":12345678.531,"));
     mem_free(text);
-    /* a display whose token is limited to some tags gets a list without the others; numbers in it must keep all their digits */
+    /* session_scope_text() removes tags that a display's token does not cover from a message; the digits of the other numbers
+       must stay as they are */
     f->session->identity.holder.display = 1;
     f->session->scope.tags = mem_array(f->context.plant->tag_count + 1, sizeof(*f->session->scope.tags));
     f->session->scope.tags[1] = true;
@@ -987,7 +996,8 @@ CASE(too_many_messages_are_put_off)
     assert_false(f->session->rate.exceeded);
 }
 
-/* Messages already sent when the session tells the client to stop are read at once, and count against the following seconds. */
+/* When the session tells the client to stop, some messages are already under way. They are read, but count for the following
+   seconds. */
 CASE(messages_beyond_a_second_count_for_the_next)
 {
     const int most = (int)f->quotas.at[QUOTA_MESSAGES], beyond = most / 4, seconds = 12;
@@ -1092,7 +1102,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     session_on_leader(f->session, f->now_ns);
     request = show(f);
     assert_true(request.view.camera.eye_m[0] == 3 && request.view.field.group == leader->view.field.group);
-    /* number of the camera that this client sent last, not the camera of the session that it follows */
+    /* the frame has the number of the camera that this client sent last, not that of the leader's camera, which it shows */
     assert_int_equal(request.view.camera_seq, 1);
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
@@ -1121,7 +1131,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     say(f, "{\"type\":\"follow\",\"session\":null}");
     session_follow(f->session, NULL, f->now_ns);
     hear(f);
-    assert_true(show(f).view.camera.eye_m[0] == 9); /* the session's own view, kept meanwhile */
+    assert_true(show(f).view.camera.eye_m[0] == 9); /* after following, the session shows its own view again, which it has kept */
     session_destroy(&leader);
 }
 

@@ -43,7 +43,7 @@ static void say(struct session_case *f, const char *text)
     session_on_message(f->session, text, strlen(text), f->now_ns, utc_ns(f));
 }
 
-/* Returns the newest due message of this type and drops the others. */
+/* Reads all messages to the client that are due. Returns the last one of this type. */
 static json_t *hear(struct session_case *f, const char *type)
 {
     struct text text = { 0 };
@@ -88,7 +88,7 @@ static void go(struct session_case *f, int64_t ago_s, double speed)
     say(f, text);
 }
 
-/* Returns the instant that the session requests, in seconds before NOW; NAN: none requested. */
+/* Returns the instant of which the session wants a snapshot, in seconds before NOW, or NAN if it wants none. */
 static double wanted(struct session_case *f)
 {
     int64_t at_us;
@@ -112,7 +112,7 @@ CASE(test_an_instant_is_shown_once_it_was_read)
     go(f, 60, 0);
     assert_true(f->session->view.at_us == 0);
     assert_true(wanted(f) == 60);
-    assert_true(isnan(wanted(f))); /* an instant is requested only once */
+    assert_true(isnan(wanted(f))); /* the same instant is not requested again while the snapshot is being loaded */
     bring(f, 60, 5);
     assert_true(session_next_request(f->session, f->now_ns, &request));
     assert_true(request.view.at_us == NOW_US - 60000000 && request.view.field.slot == 1 && request.urgency == URGENCY_INPUT);

@@ -18,7 +18,8 @@ static double random_between(double low, double high)
     return low + (high - low) * (rand() / (double)RAND_MAX);
 }
 
-/* Returns the largest error that the raw type causes: half a raw step, or the precision of a float. */
+/* Returns the error that encoding a value in the tag's raw type may cause: half a raw step for integers, the precision of a
+   float otherwise. */
 static double tolerance(const struct plant_tag *tag, double raw_low, double raw_high)
 {
     double step = tag->signal.type == DATA_FLOAT32   ? fmax(fabs(raw_low), fabs(raw_high)) * 1.2e-7
@@ -34,7 +35,7 @@ static void check_there_and_back(const struct plant_tag *tag, double value, doub
     struct sample sample;
     assert_true(sim_encode(tag, value, words));
     decode_sample(tag, words, &sample);
-    /* square-root scaling: a raw step is a step of the squared value, so small values have a larger error */
+    /* with square-root scaling, raw steps are steps of the value's square, so the error is larger for small values */
     if (tag->scale.kind == SCALING_SQUARE_ROOT) {
         double low = tag->scale.negate ? -tag->scale.scaled_low : tag->scale.scaled_low;
         allowed = allowed * fabs(tag->scale.scaled_high - tag->scale.scaled_low) /
@@ -188,7 +189,8 @@ static const struct process_tag unit[] = {
 };
 enum { TAGS = sizeof(unit) / sizeof(unit[0]), CYCLE_TICKS = 6900 };
 
-/* the values of one simulated tag during a cycle of process upsets: extremes, sum of values without an upset, and largest step */
+/* statistics of one simulated tag over a cycle of process upsets: smallest and largest value, sum and number of values outside
+   upsets, largest step */
 struct course {
     double least, most, calm_sum, jump;
     int calm_count;

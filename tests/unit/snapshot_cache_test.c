@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The snapshot cache: snapshots in use stay, unused ones are eventually evicted, and two snapshots in use never share a slot. */
+/* The cache of snapshots of the past: snapshots in use stay, unused ones are evicted at some time, and two in use never share a
+   slot (the number by which fields refer to a snapshot). */
 #include "value/snapshot_cache.h"
 
 #include "tests/support/test.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoding of the legend strip: what it stores, which errors it corrects, and what it refuses. */
+/* Encoding of the strip of pixels in a picture that stores its legend: which members it stores, which errors it corrects, and
+   which contents it refuses. */
 #include "tests/support/test.h"
 
 #include "protocol/strip_format.h"
@@ -14,7 +15,7 @@ static void expect_same(const struct strip *a, const struct strip *b)
     assert_string_equal(a->unit, b->unit);
 }
 
-/* Fixes the byte format: later versions must be able to read existing pictures. */
+/* The bytes must never change, because later versions must be able to read the strips of existing pictures. */
 TEST(test_bytes)
 {
     static const uint8_t head[] = { 1, 4, 0, 0, 0x48, 0xc1, 0, 0, 0xf0, 0x43, 't', 'e', 'm', 'p' };
@@ -83,5 +84,5 @@ TEST(test_long_names_and_nonsense)
     strip_encode(&odd, code);
     assert_false(strip_decode(code, &strip, &mended)); /* a logarithm of 0 */
     memset(code, 0, sizeof(code));
-    assert_false(strip_decode(code, &strip, &mended)); /* all parity bits are right, but the contents are not those of a legend strip */
+    assert_false(strip_decode(code, &strip, &mended)); /* all zeros satisfy the error-correcting code, but are no valid strip */
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Subdivision: a few huge triangles show the field of a fine mesh, sensors are on vertices, and no cracks open. The reference
-   is the field's formula applied to exact distances, in doubles. */
+/* Subdivision of an asset's triangles for its field: a few huge triangles must show the same field as a fine mesh, sensors must
+   be vertices, and no cracks may open. The expected field is computed in doubles from exact distances. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -14,14 +14,14 @@
 #define PI 3.14159265358979323846
 #define SENSORS 6
 
-struct prepared_body { /* one asset with the sensors of two groups, as this test prepares it */
+struct prepared_body { /* an asset prepared by this test; its sensors belong to two groups */
     struct geometry g;
     struct plant plant;
     struct plant_sensor sensors[SENSORS];
     struct asset_sensor places[SENSORS];
     struct surface *surface;
     struct surface_field field;
-    /* true: the expected values use distances that the solver computes at the point, because the shape's distances have no formula */
+    /* true: for shapes whose distances have no formula, the expected field uses distances solved at the very point */
     bool as_solved;
     struct levels levels;
     float *distances; /* distances of all vertices after subdivision */
@@ -29,7 +29,7 @@ struct prepared_body { /* one asset with the sensors of two groups, as this test
     double (*distance)(const double a[3], const double b[3]); /* formula of the distance along this shape's surface */
     size_t own_triangles;
     double radius_m[2][2]; /* paper's: [group][geodesic] */
-    double reach_m[2];     /* metres by which each group's sensors reach; 0: no limit */
+    double reach_m[2];     /* by group: reach of its sensors in metres; 0: unlimited */
 };
 
 static double random_unit(uint32_t *seed)
@@ -66,7 +66,8 @@ static double along_cylinder(const double a[3], const double b[3])
     return hypot(a[2] - b[2], fmin(turn, 2 * PI - turn));
 }
 
-/* Makes a plate of 6 m x 4 m with 9 triangles: a fan of 7 around an off-centre point; one edge of the fan has an additional vertex. */
+/* Makes a plate of 6 m x 4 m from 9 triangles: a fan of 7 around an off-centre point, one of whose edges has a vertex in the
+   middle, which adds two. */
 static void make_plate(struct prepared_body *body)
 {
     static const double rim[7][2] = { { 0, 0 }, { 6, 0 }, { 6, 2 }, { 6, 4 }, { 3.5, 4 }, { 0, 4 }, { 0, 2.5 } };
@@ -142,8 +143,8 @@ static double nearest(const struct prepared_body *body, int group, const double 
     return near_m;
 }
 
-/* Returns the field (Shepard, or Algorithm 1 of the paper) from distances to sensors that read 0 or 1. Where no sensor reaches,
-   returns the nearest sensor's value. */
+/* Returns the field's value from distances to sensors that read 0 or 1 (bits of `readings`). paper: Algorithm 1 of the paper,
+   otherwise Shepard. Where no sensor reaches, only the nearest one counts. */
 static double field(const struct prepared_body *body, int group, bool paper, const double *distance_m, double radius_m, unsigned readings)
 {
     double value = 0, weight = 0, near_m = nearest(body, group, distance_m), reach_m = body->plant.groups[group].reach_m;
@@ -192,7 +193,8 @@ static double largest(const struct prepared_body *body, int group, bool geodesic
     return most;
 }
 
-/* Reads the distance columns as the asset file stores them. */
+/* Writes the distances as plantcast-prep stores them in the asset file and reads them back into columns[], so that tests use
+   the stored precision. */
 static void take_columns(const struct distance_rows *rows, float *columns)
 {
     const size_t count = asset_distance_count(rows->sensor_count, rows->vertex_count), bytes = count * sizeof(uint16_t), before = 12;
@@ -253,7 +255,7 @@ static void onto_surface(const struct prepared_body *body, double p[3])
     memcpy(p, hit.point_m, sizeof(hit.point_m));
 }
 
-struct field_shown { /* a field as shown on a level of detail: group, formula, kind of distance and readings */
+struct field_shown { /* which field a level of detail is to show: group, interpolation, kind of distance, and readings of 0 or 1 */
     int group;
     bool paper, geodesic;
     unsigned readings;
@@ -292,8 +294,8 @@ static double shown_field(const struct prepared_body *body, const struct field_s
     return shown;
 }
 
-/* Returns the finest level's error at a random point. `snap` moves the point onto the true surface; NULL: the point on the
-   level is used. */
+/* Returns the error of the field that the finest level shows at a random point of it. snap() moves the point onto the true
+   surface; NULL: the level itself is the true surface. */
 static double error_somewhere(const struct prepared_body *body, const struct level *level, uint32_t *seed, void (*snap)(double p[3]))
 {
     const uint32_t *v = level->indices + 3 * (uint32_t)(random_unit(seed) * (level->index_count / 3));
@@ -317,7 +319,7 @@ static double error_somewhere(const struct prepared_body *body, const struct lev
 
 /* --- coarser levels compared along rays, as a camera sees them ----------------------------------------------------------------- */
 
-struct sight_target { /* triangles at which rays are cast, with their bounding volume hierarchy */
+struct sight_target { /* a mesh and its bounding volume hierarchy, for casting rays */
     struct trimesh mesh;
     struct bvh *bvh;
 };
@@ -365,8 +367,10 @@ static bool look(const struct sight_target *seen, const double from[3], const do
     return true;
 }
 
-#define OUTLINE 12.0 /* two neighbouring pixels whose depths differ by more than this many pixels show two surfaces, hence an outline */
-/* A distant orthographic camera whose pixels are as large as the error of the level of detail: nearer cameras do not draw this level. */
+/* if the depths of neighbouring pixels differ by more than this many pixel widths, the pixels show two surfaces: an outline */
+#define OUTLINE 12.0
+/* A distant orthographic camera. A pixel is as wide as the error of the level that is tested: closer cameras would draw a finer
+   level. */
 struct outline_camera {
     double along[3], right[3], up[3], pixel_m, back_m;
 };
@@ -382,7 +386,8 @@ static void random_camera(struct outline_camera *camera, double pixel_m, double 
     camera->back_m = 4 * size_m;
 }
 
-/* lowest and highest value, and nearest and farthest depth, where side * side rays within a pixel hit the finest level */
+/* what side * side rays within a pixel hit on the finest level: lowest and highest value of the field, nearest and farthest
+   depth; missed: a ray hit nothing */
 struct sighted {
     double low, high, nearest, farthest;
     bool missed;
@@ -411,10 +416,10 @@ static struct sighted look_round(const struct prepared_body *body, const struct 
     return sighted;
 }
 
-/* Returns the difference between a pixel of the level and the values that dense rays see on the finest level within that pixel;
-   NAN if nothing is visible. *outline: the reference, or an object in front of it, ends here, so the level may show what lies
-   around the corner. A pixel that seems wrong is checked with more rays, because near a sensor a distant level's pixel is as
-   wide as the field's peak. */
+/* Returns by how much the value that a level shows in a random pixel lies outside the values that rays within that pixel see on
+   the finest level, or NAN if nothing is visible. *outline: the surface ends within the pixel, so the level may show another
+   one there. An apparent error is checked again with more rays, because near a sensor the field's peak may be only a pixel
+   wide. */
 static double error_as_seen(const struct prepared_body *body, const struct sight_target *level, const struct sight_target *finest,
                             const struct outline_camera *camera, uint32_t *seed, bool *outline)
 {
@@ -457,7 +462,8 @@ static void say_errors(const struct prepared_body *body, size_t level, const cha
 }
 
 #define POINTS sweep(20000, 5000)
-/* Checks the finest level's field at random points: 99.5 % must be within one colour step of the truth, and all within `most` steps. */
+/* Checks the field of the finest level at random points: 99.5 % of the errors must be at most one step of the colour map (1/255
+   of the range), all at most `most` steps. */
 static void assert_field(const struct prepared_body *body, const char *name, void (*snap)(double p[3]), double most)
 {
     double *errors = mem_array(POINTS, sizeof(*errors));
@@ -471,10 +477,9 @@ static void assert_field(const struct prepared_body *body, const char *name, voi
 }
 
 #define PIXELS 6000
-/* Checks a coarser level from random directions. Inside the outline 99.9 % of the pixels must be within `most` steps, because
-   one ray in thousands slips between triangles, and 99.5 % within one step; at the outline 95 %. Small bodies are mostly
-   outline, and near a sensor a depth shift of one pixel changes the field much: there the bound is 98 %, or 95 % if at most a
-   tenth of the pixels lie inside the outline. */
+/* Checks the field of a coarser level at random pixels from random directions. Away from outlines 99.5 % of the errors must be
+   at most one step of the colour map and 99.9 % at most `most` steps, as rarely a ray slips between triangles; at outlines 95 %
+   at most one. If the body is so small that outlines are half of it: 98 %, or 95 % if they are nine tenths. */
 static void assert_pixels(const struct prepared_body *body, size_t number, const char *name, double most)
 {
     const struct level *level = &body->levels.at[number];
@@ -496,7 +501,7 @@ static void assert_pixels(const struct prepared_body *body, size_t number, const
     say_errors(body, number, name, "within", errors[0], counts[0]);
     say_errors(body, number, name, "at the outline", errors[1], counts[1]);
     assert_true(counts[0] + counts[1] > PIXELS * 9 / 10);
-    bool large = counts[0] > PIXELS / 2; /* otherwise the body is only a few pixels wide, most of them at its outline */
+    bool large = counts[0] > PIXELS / 2; /* large: most pixels are away from outlines; otherwise the body is only a few pixels wide */
     bool some = counts[0] > PIXELS / 50; /* with fewer pixels inside the outline, percentages are meaningless */
     size_t most_of_1000 = large ? 995 : counts[0] > PIXELS / 10 ? 980 : 950;
     assert_true(!some || errors[0][counts[0] * most_of_1000 / 1000] <= 1 / 255.0);
@@ -520,8 +525,8 @@ static void onto_cylinder(double p[3])
     p[1] /= r;
 }
 
-/* Asserts that each edge belongs to as many triangles as before subdivision (two, or one at a border) and that borders lie on
-   the old border. */
+/* Asserts for each level that an edge belongs to two triangles, or to one where it lies on the border of the original mesh:
+   subdivision has opened no cracks. */
 static void assert_no_cracks(const struct prepared_body *body, double border_m)
 {
     struct welded_positions places;
@@ -552,7 +557,7 @@ static void assert_no_cracks(const struct prepared_body *body, double border_m)
     welded_finish(&places);
 }
 
-/* Asserts that each sensor's own vertex has distance 0, both along the surface and straight. */
+/* Asserts that each sensor is at its own vertex, with a stored distance of 0. */
 static void assert_sensors(const struct prepared_body *body)
 {
     for (size_t i = 0; i < SENSORS; i++) {
@@ -576,8 +581,8 @@ TEST(nine_triangles_show_the_field)
     finish(&body);
 }
 
-/* Checks the field on a plate at points drawn by area. The field jumps where the reaches of two sensors and the data end in one
-   point; there the smallest allowed triangles would otherwise count too much. */
+/* Checks the field on a plate at points distributed evenly over its area. Drawing random triangles instead would favour the
+   smallest ones: they lie where the reaches of two sensors and the data end in one point and the field jumps. */
 static void assert_plate(const struct prepared_body *body)
 {
     struct sight_target finest;
@@ -620,7 +625,8 @@ TEST(nine_triangles_show_how_far_sensors_reach)
     }
 }
 
-/* Makes a plate of two triangles through a box: the part inside is invisible, and the visible parts must be as accurate as elsewhere. */
+/* Makes a box and a plate of two triangles that passes through it. The plate's part within the box is invisible; its outer
+   parts must be as exact as other surfaces. */
 static void make_plate_through_box(struct prepared_body *body)
 {
     static const double rim[4][2] = { { -1.6, -1.3 }, { 1.6, -1.3 }, { 1.6, 1.3 }, { -1.6, 1.3 } };
@@ -646,7 +652,8 @@ static bool is_in_box(const double p[3])
     return fabs(p[0]) < 1 && fabs(p[1]) < 1 && fabs(p[2]) < 1;
 }
 
-/* Returns the value that a level shows at a point of the plate that passes through a box or a ball. */
+/* Returns the value that the level shows at p, a point of the plate that passes through the other body, or NAN if no triangle
+   covers p. */
 static double shown_on_plate(const struct prepared_body *body, const struct level *level, const struct field_shown *showing,
                              const double p[3])
 {
@@ -666,8 +673,8 @@ static double shown_on_plate(const struct prepared_body *body, const struct leve
     return NAN;
 }
 
-/* Collects errors at random points of the plate outside the other body, with straight-line distances, because the way around
-   has no formula. */
+/* Stores in errors[] the field's errors at random points of the plate where is_hidden() is false. Uses straight-line distances,
+   because the distances around the other body have no formula. */
 static void find_errors_on_plate(const struct prepared_body *body, const struct level *level, bool (*is_hidden)(const double p[3]),
                                  double *errors)
 {
@@ -699,7 +706,7 @@ TEST(what_stands_out_of_a_body_shows_the_field)
     finish(&body);
 }
 
-/* Makes a sphere of radius 1 with a plate of two triangles through its centre. */
+/* Makes a sphere of radius 1 and a plate of two triangles that passes through its centre. */
 static void make_plate_through_ball(struct prepared_body *body)
 {
     enum { AROUND = 64, HIGH = 32 };
@@ -731,8 +738,8 @@ static bool is_in_ball(const double p[3])
     return vec_dot(p, p) < 1;
 }
 
-/* Visible parts are as accurate as other coarser levels, except for the smallest triangles near a sensor. The coarsest level
-   has only such triangles. */
+/* In coarser levels, too, the visible parts of a plate through a ball must show the field exactly, except for the smallest
+   triangles at sensors; the coarsest level, which has no others, is not tested. */
 TEST(what_stands_out_is_true_on_coarser_levels_too)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 }, { 0, 0.1, 1.1 },
@@ -752,7 +759,7 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
     finish(&body);
 }
 
-/* A fine plate stays as it is, except where sensors add vertices. */
+/* A fine flat mesh needs no subdivision: it must stay as it is, except for the vertices that sensors add. */
 TEST(straight_edges_are_not_cut)
 {
     struct prepared_body body = { 0 };
@@ -821,7 +828,9 @@ TEST(random_plates_show_the_field)
         assert_sensors(&body);
         if (body.levels.at[0].index_count / 3 < body.own_triangles + 100000)
             assert_field(&body, "random plate", stay, 2);
-        else /* adjacent sensors of one group on a large plate exceed the limit of subdivide.h, which must be reported */
+        /* two close sensors of one group on a large plate would need more triangles than the limit allows; then the limit must
+           be reported */
+        else
             assert_true(body.levels.at[0].left[LEVEL_LIMIT_TRIANGLES].edges > 0);
         finish(&body);
     }
@@ -845,8 +854,8 @@ TEST(a_cylinder_shows_the_field)
     finish(&body);
 }
 
-/* Makes a ring of random size and varying thickness, rotated at random, with sensors at distinct random vertices: two readings
-   at one point would leave the field undefined. */
+/* Makes a ring of random size and varying thickness, rotated at random. Its sensors are at different random vertices, because a
+   point with two sensors would have two readings. */
 static void make_random_ring(struct prepared_body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
@@ -886,15 +895,16 @@ TEST(random_rings_show_the_field_on_every_level)
         prepare(&body, (const double(*)[3])points);
         assert_sensors(&body);
         assert_true(body.levels.count >= 3);
-        assert_field(&body, "ring", NULL, 3); /* errors of up to 3 steps: subdivision samples only a few points of a triangle */
+        /* allows errors of 3 steps, because subdivision itself checks only a few points of each triangle */
+        assert_field(&body, "ring", NULL, 3);
         for (size_t l = 1; l < body.levels.count; l++)
             assert_pixels(&body, l, "ring", 4);
         finish(&body);
     }
 }
 
-/* Distances of many sensors take up most of the file, so a level is kept only if it has at most half of the next finer level's
-   triangles. */
+/* With many sensors, distances are most of the asset file. A level is then worth its size only if it has at most half as many
+   triangles as the next finer one. */
 TEST(levels_of_many_sensors_have_half_of_the_triangles)
 {
     enum { MANY = 128 };
@@ -938,7 +948,8 @@ TEST(levels_of_many_sensors_have_half_of_the_triangles)
     finish(&body);
 }
 
-/* A packed section as long as a plain one would be read as plain. Distances without any order cannot be packed. */
+/* Distances in random order cannot be compressed: they must be stored plainly. A compressed section must never be as long as a
+   plain one, because it would be read as plain. */
 TEST(distances_that_do_not_pack_stay_plain)
 {
     enum { MANY = 64, FEW_VERTICES = 256 };

@@ -62,7 +62,8 @@ static double cylinder_distance(const double size[3], const double a[3], const d
     return hypot(turn > M_PI ? 2 * M_PI - turn : turn, a[2] - b[2]);
 }
 
-/* Makes a plate with a slot that extends in x from size[0] to size[1] and in y from 0 to size[2]. */
+/* Makes a plate of 1.3 m x 1 m with a slot that is open at its lower edge: from x = size[0] to size[1] and up to y = size[2].
+   */
 static void make_slot(struct cad *cad, double size[3], int wide)
 {
     int first = 60 + (int)(40 * cad_random(&chance)), high = 60 + (int)(40 * cad_random(&chance));
@@ -123,7 +124,7 @@ static const struct surface_shape shapes[] = {
     { "plate, narrow slot", make_narrow_slot, slot_distance },
 };
 
-/* Chooses a source at a vertex, or inside a triangle. */
+/* Chooses a random point from which to measure distances: inside a triangle, or at a vertex. */
 static void choose_source(const struct cad *cad, bool inside, double out[3])
 {
     size_t t = (size_t)(cad_random(&chance) * (double)cad->triangle_count);
@@ -221,7 +222,8 @@ static float *distances_from(struct surface *surface, const struct cad *cad, dou
     return distances;
 }
 
-/* Makes two plates of 1 m, in one plane or one above the other. Returns whether the second can be reached from the first. */
+/* Makes two plates of 1 m; the second is shifted by (dx, 10 mm, dz). Returns whether it can be reached from the first along the
+   surface. */
 static bool second_plate_reached(double dx, double dz)
 {
     struct cad plate = { 0 }, both = { 0 };
@@ -247,10 +249,11 @@ TEST(gaps_are_closed_and_walls_are_not_passed)
     assert_true(second_plate_reached(1.0003, 0));   /* two plates with a gap of 0.3 mm are joined */
     assert_false(second_plate_reached(1.02, 0));    /* a slot of 20 mm */
     assert_false(second_plate_reached(0, 0.01));    /* two sheets 10 mm apart */
-    assert_true(second_plate_reached(0.5, 0.0002)); /* one plate lies on the other */
+    assert_true(second_plate_reached(0.5, 0.0002)); /* reached: the second plate lies half on the first, 0.2 mm above it */
 }
 
-/* Asserts that the debug mesh has every counted bridge, either across the gap or where the pipe passes through the shell. */
+/* Asserts that the debug mesh contains every bridge (joint between parts) that the report counts, and that all lie between
+   low_x and high_x. */
 static void assert_bridges_are_shown(const struct surface *surface, double low_x, double high_x)
 {
     const struct surface_report *report = surface_report(surface);
@@ -276,7 +279,7 @@ TEST(bridges_lie_in_the_gap)
     struct surface *surface = surface_of(&both);
     assert_int_equal(surface_report(surface)->components, 2);
     assert_int_equal(surface_report(surface)->components_after, 1);
-    assert_int_equal(surface_report(surface)->bridges, 31); /* each border vertex is bridged to the one opposite */
+    assert_int_equal(surface_report(surface)->bridges, 31); /* 31 bridges: one for each pair of opposite vertices along the gap */
     assert_float_equal(surface_report(surface)->longest_bridge_m, 0.0003, 1e-6);
     assert_bridges_are_shown(surface, 0.9999, 1.0004);
     surface_destroy(&surface);
@@ -302,7 +305,7 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     assert_int_equal(report->components, 2);
     assert_int_equal(report->components_after, 1);
     assert_bridges_are_shown(surface, -0.25, 0.25);
-    assert_true(report->hidden_vertices >= 48 * 8); /* the pipe's rings inside the sphere are hidden */
+    assert_true(report->hidden_vertices >= 48 * 8); /* at least 8 rings of the pipe's vertices lie inside the sphere and are hidden */
     /* the true distance from the sphere's pole to the pipe's end: over the sphere to the pipe, then along the pipe */
     double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam));
     assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
@@ -320,11 +323,11 @@ TEST(nothing_leads_through_a_closed_part)
     struct cad pipes = { 0 };
     cad_closed_pipe(&pipes, &chance, 0.5, 2, 80, 60, 12, 0, (const double[3]){ 0, 0, 0 });
     size_t first = pipes.vertex_count;
-    /* the second pipe passes right through the first */
+    /* a thinner pipe across, whose middle is inside the first pipe */
     cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 });
     struct surface *surface = surface_of(&pipes);
     const struct surface_report *report = surface_report(surface);
-    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* the source is at one end of the second pipe */
+    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* measures from one end of the second pipe to the other */
     assert_int_equal(report->components_after, 1);
     assert_true(report->hidden_vertices > 60 * 20);
     /* The other end is reached along 1.5 m of pipe, half around the first pipe (at best straight across its side), and another 1.5 m. */
@@ -340,7 +343,7 @@ TEST(nothing_leads_through_a_closed_part)
     mem_free(distances);
 }
 
-/* Adds a closed box of 12 triangles. */
+/* Adds a closed box from `low` to `high`, of 12 triangles. */
 static void add_box(struct cad *all, const double low[3], const double high[3])
 {
     struct cad box = { 0 };
@@ -352,8 +355,9 @@ static void add_box(struct cad *all, const double low[3], const double high[3])
     cad_finish(&box);
 }
 
-/* Two ducts end in 3.9 mm flanges that lie on each other; the tolerance, derived from the ducts' length, is larger. A part that
-   touches one side of a flange is not joined to its other side. */
+/* Two ducts end in flanges of 3.9 mm that touch each other. The tolerance for joining parts, derived from the ducts' length, is
+   larger than that. All the same, what touches one side of a flange must not be joined to the flange's other side: the way
+   leads around the rim. */
 TEST(thin_flanges_are_not_bridged)
 {
     struct cad ducts = { 0 };
@@ -376,7 +380,8 @@ TEST(thin_flanges_are_not_bridged)
     mem_free(distances);
 }
 
-/* A 3.9 mm plate, thinner than the tolerance; one duct ends in it at various depths, another stands on its far side. */
+/* One duct ends inside a plate of 3.9 mm, at several depths; a second one stands on the plate's other side. Although the
+   tolerance exceeds the plate's thickness, the way from one duct to the other must lead around the plate's rim. */
 TEST(nothing_leads_through_a_thin_plate)
 {
     enum { DEPTHS = 8 };
@@ -436,7 +441,7 @@ TEST(nearest_is_the_nearest)
         const double p[3] = { 4 * cad_random(&chance) - 2, 4 * cad_random(&chance) - 2, 2 * cad_random(&chance) - 1 };
         struct surface_place place;
         surface_nearest(surface, p, &place);
-        /* the truth of the smooth torus; flat triangles lie slightly inside */
+        /* expected: the distance from a smooth torus; the mesh lies up to 6 mm inside of it */
         double truth = fabs(hypot(hypot(p[0], p[1]) - 1, p[2]) - 0.3);
         assert_float_equal(place.distance_m, truth, 0.006);
         assert_float_equal(hypot3(p, place.position_m), place.distance_m, 1e-9);
@@ -445,8 +450,8 @@ TEST(nearest_is_the_nearest)
     cad_finish(&torus);
 }
 
-/* A search with a limit finds the same point as one without, or nothing if that point is farther away. This holds even where
-   the limit excludes all triangles that face the right way, as for points inside the tube. */
+/* Searching for the nearest point within a limit finds the same point as searching without, or none if that is farther away;
+   also if the limit excludes all triangles that face the given direction, as for points inside the tube. */
 TEST(within_a_limit_is_the_same_spot_or_none)
 {
     struct cad torus = { 0 };
@@ -481,7 +486,8 @@ TEST(within_a_limit_is_the_same_spot_or_none)
     cad_finish(&torus);
 }
 
-/* Sources and points in the middle of strips, far from any vertex of the model, on a pipe as CAD programs triangulate it. */
+/* A pipe as CAD programs triangulate it, from long strips: distances between points in the middle of strips, far from any
+   vertex, must be exact, too. */
 TEST(long_thin_strips_are_exact_near_a_source_too)
 {
     enum { SOURCES = 8, PLACES = 400 };
@@ -521,8 +527,8 @@ TEST(long_thin_strips_are_exact_near_a_source_too)
     cad_finish(&pipe);
 }
 
-/* Returns the largest relative error of short distances on a plate whose cells are shifted, so that most triangles have a
-   flipped edge after resampling. Near a source even a small error is relatively large. */
+/* Returns the largest relative error of distances over short ways, where a small error is relatively large. The plate's cells
+   are distorted, so that resampling flips the edges of most triangles. */
 static double worst_short_way(int across, int up)
 {
     enum { SOURCES = 8, PLACES = 800 };
@@ -560,7 +566,8 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
         int across, up;
         uint64_t state;
     } hard[HARD] = {
-        /* Seeds of meshes that are hard for window propagation. Here, a corner of a triangle lies behind an end of the opposite side */
+        /* random states that make plates on which the propagation of distances once failed: here, a triangle's corner lies
+           behind an end of the opposite edge */
         { 1, 5, 1558015352152668877u },
         { 5, 5, 12376468115645539828u }, /* the source lies exactly on an edge */
         { 1, 6, 15378426302762057891u }, /* an edge whose farther end is reached before the nearer one */
@@ -581,7 +588,8 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
     assert_true(worst < 0.03);
 }
 
-/* On the smaller of two pieces, propagation ends sooner than the one that runs in parallel. */
+/* Distances from many sources, computed at once on all threads, must equal those computed one by one, although some sources are
+   on a small piece where the computation ends sooner. */
 TEST(many_sources_at_once_are_as_one_by_one)
 {
     enum { SOURCES = 21 };
@@ -639,7 +647,8 @@ TEST(a_surface_without_area_is_refused)
     assert_null(surface_create(quiet, NULL, line, 3, triangle, 0, &(struct surface_params){ 0 }));
 }
 
-/* Sizes whose squares underflow: the result does not matter, but the computation must end. */
+/* A model so small that squares of its lengths are zero in floating point: the result may be anything, but the computation must
+   end. */
 TEST(a_speck_ends)
 {
     static const float sizes[] = { 1e-15f, 1e-24f, 1e-30f };
@@ -652,7 +661,7 @@ TEST(a_speck_ends)
         const double source[1][3] = { { 0.41 * (double)sizes[i], 0.37 * (double)sizes[i], 0 } };
         struct surface *surface =
             surface_create(the_log, workers, (const float(*)[3])plate.positions, plate.vertex_count, plate.triangles, plate.triangle_count,
-                           /* a spacing so large that searches visit all triangles */
+                           /* the spacing of sample points is so large that each search visits all triangles */
                            &(struct surface_params){ .spacing_m = 0.2 * (double)sizes[i] });
         assert_non_null(surface);
         float *distances = mem_array(plate.vertex_count, sizeof(*distances));

@@ -23,8 +23,8 @@ TEST(test_one_row)
            "Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E,1.25,-3,0.123\nTT-3,t,E,7,8,9\n");
 }
 
-/* Edits keep the rest of a file: a byte order mark, another separator, unknown columns and their comments, blank rows, quotes,
- * line endings, and a missing final newline. */
+/* Editing one position in a tag list keeps everything else in the file: byte order mark, separator, unknown columns and their
+   contents, blank rows, quotes, line endings, and a missing newline at the end. */
 TEST(test_the_rest_stays_to_the_byte)
 {
     const struct tag_edit to = { "T;\"2\"", "E 2", NULL, NULL, NULL, { 10, 20, -0.0001 }, false };

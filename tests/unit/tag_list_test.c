@@ -97,7 +97,8 @@ CASE(byte_orders_are_resolved)
           { "tags.csv", 3, 19, "Byte Order: 'ABCD' contradicts the address '400001#BB'" });
 }
 
-/* An address that is off by one register still yields a plausible value, so addresses are never guessed. */
+/* Addresses of 32-bit values are refused if it is unclear whether registers count from 0 or 1: an address off by one would
+   still give a plausible value, so the reader never guesses. */
 CASE(where_long_values_begin_is_never_guessed)
 {
     plant_case_load(c, yaml_no_order,
@@ -153,7 +154,8 @@ CASE(raw_values_are_those_of_devices)
     assert_non_null(c->plant);
 }
 
-/* Sparkplug nodes and OPC UA servers report their loss; other publishers do not, so their silent tags become stale. */
+/* By default, tags of MQTT publishers become stale when they send nothing for a while. Tags of Sparkplug nodes do not, because
+   a node's loss is reported. */
 CASE(silent_tags_are_stale_unless_their_loss_is_reported)
 {
     plant_case_load(c, YAML("[{ id: n, type: mqtt, host: h, topic: \"a/{tag}\" },"
@@ -345,8 +347,9 @@ CASE(names_are_unique)
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
 }
 
-/* Noticed: a float that begins one register too early, 16-bit values that are parts of larger ones, and an address that states
-   the source's own unit and so means the same device (1!hr:51). Accepted: equal addresses, bits, other tables and other units. */
+/* Warnings for values that share registers: a float that begins one register too early, 16-bit values within larger ones, and
+   an address with the source's own unit (1!hr:51), which means the same device. No warnings for equal addresses, bits, other
+   tables and other units. */
 CASE(values_that_share_some_registers_are_noticed)
 {
     plant_case_load(c, yaml, "Tag Name,Address,Data Type\nA,hr:10,Float\nB,hr:11,Float\nC,hr:20,Float\nD,hr:21,Int16\n"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light packed into 32 bits decodes to within half a step of its largest channel. */
+/* Packing of light (three floats per pixel) into 32 bits for the software renderer: unpacking gives each channel to within half
+   a step of the largest one. */
 #include "tests/support/test.h"
 
 #include "render/soft/tones.h"

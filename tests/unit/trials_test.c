@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trial layouts: a trial's field equals that of a plant with its sensors at the trial positions, and only sessions that request
-   the trial see it. */
+/* Trials: sensor positions that an engineer tries out. A trial's field must equal that of a plant with the sensors there, and
+   only sessions that request the trial may get it. */
 #include "tests/support/test.h"
 
 #include "field/field.h"
@@ -77,7 +77,8 @@ static struct scalar *copy_of(struct trials_fixture *f, int asset, uint32_t tria
     return copy;
 }
 
-/* Returns the value in a plant that has the sensor at the trial position: the plain sum in double precision. */
+/* Returns the expected value at a vertex if the moved sensor has the distances moved_m[]: the weighted sum of all readings, in
+   double precision. */
 static double truth(const struct trials_fixture *f, const float *moved_m, size_t vertex)
 {
     double sum = 0, total = 0;
@@ -127,7 +128,7 @@ CASE(test_it_may_go_to_another_asset)
     uint32_t id = put(f, sensor_at(f, MOVED, 1, TO, true));
     struct scalar *left = copy_of(f, 0, id), *there = copy_of(f, 1, id), *was = copy_of(f, 0, 0);
     assert_true(fabs((double)there[TO].value - f->plant->snapshot->readings[MOVED].value) < 1e-4);
-    /* the sensor's original vertex shows its reading */
+    /* without the trial, the vertex where the sensor really is shows its reading */
     assert_true(fabsf(was[MOVED].value - (float)f->plant->snapshot->readings[MOVED].value) < 1e-3f);
     size_t changed = 0;
     for (size_t i = 0; i < VERTICES; i++)
@@ -148,7 +149,7 @@ CASE(test_what_it_does_not_touch_is_shared)
     assert_int_equal(plain->version, version);
 }
 
-/* Each step of a drag replaces a trial, and no replaced trial stays in memory. */
+/* Dragging a sensor makes a new trial for each step and drops the one before: memory must not grow. */
 CASE(test_dragging_leaves_nothing_behind)
 {
     uint32_t id = 0, first = 0;
@@ -165,7 +166,8 @@ CASE(test_dragging_leaves_nothing_behind)
     assert_true(field_bytes(f->field) <= bytes);
     assert_null(trials_take(f->trials, first));
     assert_true(trials_live(f->trials, id));
-    struct scalar *gone = copy_of(f, 0, first), *plain = copy_of(f, 0, 0); /* a trial that no longer exists shows the plant's own layout */
+    /* for the number of a dropped trial, the field uses the plant's own positions */
+    struct scalar *gone = copy_of(f, 0, first), *plain = copy_of(f, 0, 0);
     assert_memory_equal(gone, plain, VERTICES * sizeof(*plain));
     mem_free(gone);
     mem_free(plain);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Embedding of an asset's vertices in its surface: vertices of coarser levels lie off the surface and get the distances of their own
-   side. */
+/* Where an asset's vertices lie on its surface, to give them distances: the vertices of coarser levels lie beside the surface
+   and must get the distances of the side to which they belong. */
 #include "surface/vertex_embedding.h"
 
 #include "tests/support/test.h"
@@ -13,10 +13,10 @@
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 
-#define CELL 0.02 /* metres; size of a cell, and thickness of the plate */
+#define CELL 0.02 /* size of the plate's cells and thickness of the plate, in metres */
 #define ACROSS 80
 #define UP 60
-#define RADIUS 0.8 /* metres; radius of the plate's inner side */
+#define RADIUS 0.8 /* radius of the bent plate's inner side, in metres */
 #define FAR 3e-3   /* of the largest distance */
 
 static struct log *the_log;
@@ -33,7 +33,7 @@ static int tear_down(void **state)
     return prep_case_tear_down(state);
 }
 
-/* Makes a closed plate, bent about the y axis so much that a coarser level's edges leave it by more than its thickness, towards
+/* Makes a thin plate, bent about the y axis. It is bent so much that an edge of a coarser level cuts through it and emerges on
    the other side. */
 static void make_bent_plate(struct cad *plate, struct cad_random *random)
 {
@@ -75,7 +75,8 @@ static void on_side(double turn, double y, double radius, float out[3])
     out[2] = (float)(radius * cos(turn));
 }
 
-/* Points that lie like an edge of a coarser level of the plate's outer side are found on that side, although the inner side is nearer. */
+/* Points below the plate's outer side, where an edge of a coarser level would lie, must be found on the outer side by their
+   normal, although the inner side is nearer. */
 TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 {
     enum { COUNT = 200 };
@@ -87,7 +88,8 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
     double worst_m = 0, nearest_m = INFINITY;
     cad_random_start(&chance);
     make_bent_plate(&plate, &chance);
-    /* the first half of the points lies exactly on one side of the plate, like vertices of the finest level; the second half lies off it */
+    /* points 0 to COUNT - 1 lie exactly on the outer side, like vertices of the finest level; the others lie below them, nearer
+       to the inner side */
     for (int i = 0; i < COUNT; i++) {
         double turn = 0.8 * (cad_random(&chance) - 0.5), y = UP * CELL * (0.3 + 0.4 * cad_random(&chance));
         double off_m = CELL * (0.55 + 0.4 * cad_random(&chance));
@@ -125,7 +127,8 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 
 /* --- against plantcast-prep --------------------------------------------------------------------------------------------------- */
 
-/* Counts the vertices of coarser levels whose distance differs from the stored one by more than FAR of the largest distance. */
+/* Counts the vertices of coarser levels whose distance, as embedded here, differs from the one in the asset file by more than
+   FAR of the largest distance. */
 static size_t count_far(const struct asset_view *view, const struct surface *surface, const float (*normals)[3])
 {
     const struct asset_level *finest = &view->levels[0];
@@ -161,8 +164,8 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
     return far;
 }
 
-/* The coarsest level's error equals the plate's thickness, and in some places that level intersects itself, so neither side is
-   right there. */
+/* The coarsest level is not tested: its error equals the plate's thickness, and it intersects itself in places, where neither
+   side is right. */
 TEST(coarser_levels_have_the_distances_of_their_own_side)
 {
     struct prep_case *c = *state;

@@ -43,7 +43,7 @@ static enum refusal_code order(struct wall_remote_fixture *f, const char *view, 
     return wall_remote_order(f->remote, &(struct wall_order){ MAIN, view, "Title", held, "Desk 2" }, "kim", 7);
 }
 
-/* Consumes `text`; asserts the list's length and a part of its text. */
+/* Asserts that the JSON message `text` has a list of `count` items and contains `part`; frees the text. */
 static void assert_list(char *text, size_t count, const char *part)
 {
     json_t *message = test_json(json_loads(text, 0, NULL));

@@ -125,7 +125,8 @@ TEST(every_cut_of_a_frame_is_refused)
     mem_free(bytes);
 }
 
-/* The values of an accepted header are within their ranges, and it is written back unchanged. */
+/* Random changes of a valid frame header: the parser must refuse the header, or return values within their ranges that, written
+   again, give the same bytes. */
 TEST(random_headers_are_refused_or_sane)
 {
     unsigned seed = (unsigned)sweep_seed(), accepted = 0;

@@ -24,11 +24,11 @@ enum { WORDS = 64, LINE_BYTES = 4096 };
 
 struct solution {
     struct trimesh skin;
-    double *values; /* solution at each point of the skin */
-    bool *outside;  /* by triangle of the skin: true if the triangle is on the outside */
+    double *values; /* simulated temperature (or other quantity) at each vertex of the skin, the simulation's surface mesh */
+    bool *outside;  /* by triangle of the skin: whether it belongs to the outside of the body */
 };
 
-struct heat_truth { /* the simulated solution, transferred to the vertices of the asset file */
+struct heat_truth { /* the solution at the asset file's vertices, and the area that each vertex stands for, in all and on the outside */
     double *values, *area_m2, *outside_m2;
     size_t count;
 };
@@ -81,7 +81,8 @@ static double triangle_m2(const float a[3], const float b[3], const float c[3])
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
 }
 
-/* Interpolates the solution at the asset's vertices. A triangle counts as outside if the skin triangle nearest to its centre is outside. */
+/* Takes the solution for each vertex of the asset from the nearest point of the skin. An asset's triangle counts as outside if
+   the skin's triangle nearest to its centre does. */
 static void find_truth(const struct solution *solution, const struct asset_view *view, struct heat_truth *truth)
 {
     struct bvh *bvh = bvh_create(&solution->skin);

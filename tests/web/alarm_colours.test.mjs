@@ -13,8 +13,9 @@ const SIGHTS = {
     deuteranope: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
     protanope: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
 };
-// Smallest allowed CIEDE2000 distances. A search of sRGB in steps of 17 found no saturated colours with much larger ones: the
-// maps cover nearly all hues that dichromats can distinguish. The rims of the ring make up for it.
+// Smallest CIEDE2000 distance allowed between an alarm colour and any colour of a map, for each kind of sight; LEAST_RIM:
+// between a ring's rims and these colours; LEAST_MUTUAL: between alarm colours. The maps use nearly all hues that colour-blind
+// users can tell apart: a search of sRGB in steps of 17 found no alarm colours much farther away, so rings have rims.
 const LEAST = { normal: 9, deuteranope: 4.5, protanope: 4 }, LEAST_RIM = 30, LEAST_MUTUAL = 10;
 const RIMS = ['#ffffff', '#1d252d'];
 
@@ -52,7 +53,7 @@ function distance([l1, a1, b1], [l2, a2, b2]) {
 function coloursOf(name) {
     const lines = read(`shaders/maps/${name}`).split('\n'), list = (text) => text.split(',').map(Number);
     const ends = lines.filter((line) => /^# (below|above) /.test(line)).map((line) => list(line.split(' ')[2]));
-    // the map "operator" has no colours for values beyond its range
+    // leaves out the end colours of the map "operator", whose range has no values outside
     return [...lines.filter((line) => /^\d/.test(line)).map(list), ...name === 'operator.csv' ? [] : ends];
 }
 

@@ -65,7 +65,8 @@ test('a pointer on an arrow\'s line grabs the handle there, in both projections'
         const camera = { eye: [5, -12, 6], target: [5, 5, 0], up: [0, 0, 1], fov: 45, ...lens };
         for (const [x, y] of [[100, 100], [400, 300], [700, 500]]) {
             const seen = sight(camera, x, y, 800, 600), metres = alongSight([3, 2, 1], [1, 0, 0], seen), p = [3 + metres, 2, 1];
-            // The found point is nearer to the line of sight than the points next to it.
+            // alongSight() must find the point of an axis that is nearest to the pointer's line of sight: points 1 cm to either
+            // side are farther from it.
             const off = (q) => {
                 const w = q.map((v, i) => v - seen.origin[i]), d = seen.direction, c = d.reduce((sum, v) => sum + v * v, 0);
                 const t = w.reduce((sum, v, i) => sum + v * d[i], 0) / c;

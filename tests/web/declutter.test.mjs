@@ -54,8 +54,8 @@ test('when zoomed in, all markers are drawn', () => {
     assert.equal(thinOut(near).length, 900);
 });
 
-// A camera that turns by a quarter of a degree per picture around 2,000 sensors, and one that trembles by less than a tenth of
-// a pixel.
+// Two cameras look at 2,000 sensors: one turns around them by a quarter of a degree per picture; one trembles by less than a
+// tenth of a pixel.
 const sensors = Array.from({ length: 2000 }, () => [random(-12, 12), random(-12, 12), random(0, 10)]);
 function drawnFrom(angle, before) {
     const camera = { eye: [40 * Math.cos(angle), 40 * Math.sin(angle), 20], target: [0, 0, 4], up: [0, 0, 1], fov: 45 };
@@ -86,8 +86,8 @@ test('while the camera turns, markers do not flicker', () => {
     assert.ok(changes / shown < 0.02 && flickers < changes / 10);
 });
 
-// A marker at the edge of a crowd may appear with a picture, but then stays: once shown, it needs only 0.8 of the minimum
-// distance.
+// A marker that is shown stays until it is nearer to others than 0.8 of the distance required of new ones. While the camera
+// trembles, a marker may therefore appear once, but not disappear.
 test('while the camera trembles, no marker appears or disappears', () => {
     const changed = new Set();
     for (let angle = 1; angle <= 5; angle++) {

@@ -61,7 +61,8 @@ function fakeStore() {
     return { kept, getItem: (name) => kept.get(name) ?? null, setItem: (name, value) => kept.set(name, value) };
 }
 
-// tryOut: returns what is wrong with a decoder, for each way of decoding.
+// Makes a Decoding with fakes. wrong: for each way of decoding (`acceleration`), the fault that the fake trial of the decoder
+// reports; none: it works.
 function bench({ api = fakeApi(), store = fakeStore(), agent = 'browser 1', wrong = {} } = {}) {
     const told = [], tried = [];
     let now = 0;

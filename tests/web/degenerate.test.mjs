@@ -8,15 +8,18 @@ import { test } from 'node:test';
 import { CASES, forgotten, modules } from './degenerate_cases.mjs';
 import { seed } from './random.mjs';
 
-const PATIENCE_MS = 120000; // all cases take seconds: a longer run is an endless loop
+// time limit for all cases together, which normally take seconds: if it is exceeded, a function loops for ever
+const PATIENCE_MS = 120000;
 const MB = 512;
-// Modules without a function that takes numbers, and modules whose bad input warp.test.mjs and headset.test.mjs cover.
+// Modules that are left out: those without a function that takes numbers, and those whose bad input warp.test.mjs and
+// headset.test.mjs cover.
 const TEXTS = ['depth_grid', 'headset_views', 'warp_mesh', 'warp_raster', 'alarm_actions', 'alarm_call', 'alarm_table', 'alarms',
     'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'gpu', 'h264', 'handover', 'health', 'keys',
     'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals',
     'requests', 'search', 'session', 'wake', 'words'];
 
-// Runs the cases from `first` on until one does not return; adds failures to `wrong`. Returns the index of the next case.
+// Runs the cases from number `first` on in another process, until one loops or fails to return. Adds the faults to `wrong`.
+// Returns the number of the case to go on with.
 function runFrom(first, seed, wrong) {
     const args = [`--max-old-space-size=${MB}`, new URL('degenerate.mjs', import.meta.url).pathname, String(first), String(seed)];
     const options = { timeout: PATIENCE_MS, killSignal: 'SIGKILL', encoding: 'utf8' };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shift handover from the alarm journal: counted, sorted, and read completely.
+// The shift handover report, made from the alarm journal: alarms are counted and sorted, and the journal is read to its end,
+// page by page.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { hearAlarms, readJournal, sortJournal } from '../../clients/web/core/handover.js';

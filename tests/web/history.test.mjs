@@ -109,7 +109,7 @@ test('time ranges are read as people write them, in three languages', () => {
         '480 min'])
         assert.equal(read(text), 28800, text);
     assert.deepEqual(['last 30 d', 'letzte 2 Wochen', '최근 15분', '1,5 h'].map((text) => read(text)), [2592000, 1209600, 900, 5400]);
-    const night = '2026-11-25T22:00 2026-11-26T03:00'; // at the present time, 06:00 has not come yet
+    const night = '2026-11-25T22:00 2026-11-26T03:00'; // 06:00 today lies in the future, so these ranges end at the present time, 03:00
     for (const text of ['yesterday 22:00 to 06:00', 'gestern 22:00 bis 06:00', 'von gestern 22:00 bis 06:00 Uhr', '어제 22:00 ~ 06:00',
         '어제 22:00부터 06:00까지', '22:00 to 06:00', 'yesterday 22:00 to now', '2026-11-25 22:00 - today 06:00'])
         assert.equal(read(text), night, text);

@@ -57,8 +57,8 @@ test('labels cover no other label and no mark, lie inside, and important ones ar
     }
 });
 
-// Checks the leader lines of a call-out: one to each of its rings up to 60 units away or, if there are none or more than four,
-// only one to the nearest.
+// Checks the leader lines of a call-out. If one to four of its rings are within 60 units, each of these has a line; otherwise
+// only the nearest ring has.
 function checkLeaders(members, placed) {
     const far = ({ id, x, y }) => {
         const [x1, y1, x2, y2] = leaderLine({ x, y, ...placed.get(id) }, placed.get(id), 0);
@@ -102,7 +102,8 @@ test('every alarm ring has a label or a call-out, within the picture and over no
     }
 });
 
-// A camera that turns by a quarter of a degree per picture around a plant of sensors, and one that trembles by a fraction of a pixel.
+// Two cameras look at a plant of 60 sensors: one turns around it by a quarter of a degree per picture; one trembles by a
+// fraction of a pixel.
 const sensors = Array.from({ length: 60 }, (_, i) => {
     const away = 12 * Math.sqrt(i / 60);
     return [away * Math.cos(i * 2.4), away * Math.sin(i * 2.4), (i % 7) * 1.5];

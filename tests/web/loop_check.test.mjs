@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the tag that moved among other, noisy ones, and reads expected values from a CSV.
+// Loop checks: the page finds the tag whose value an engineer at the transmitter moves, among others that are noisy, and reads
+// expected values from a CSV file.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readExpected, LoopCheckSession } from '../../clients/web/core/loop_check.js';

@@ -45,7 +45,7 @@ test('a pin keeps a distance from its own point\'s alarm ring, so that its stem 
 test('a pin without free space covers as few markers as it can', () => {
     const half = { left: 0, top: 0, right: 150, bottom: 200 }, marks = [];
     for (let y = 0; y < 200; y += 18)
-        // two rows have fewer markers, but still no room for a pin between them
+        // markers every 30 px, in two rows only every 100 px: there a pin must cover the fewest markers, though still one
         for (let x = 0; x < 150; x += y > 100 && y < 140 ? 100 : 30)
             marks.push({ left: x, right: x + 12, top: y, bottom: y + 12 });
     const covered = (box) => marks.filter((mark) => meets(box, mark)).length;

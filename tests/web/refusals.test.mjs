@@ -14,7 +14,8 @@ const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (languag
 const codes = Object.keys(tables.en).filter((key) => !key.includes('.'));
 const blanks = (text) => (text.match(/\{\w+\}/g) ?? []).map((blank) => blank.slice(1, -1)).sort();
 
-// [code, names of arguments] for each place in the source where the server refuses something.
+// The server's source text, and `refused`: [code, names of the arguments, or null if unknown] for each place where it refuses
+// something.
 const source = ['server', 'preprocess'].flatMap((folder) => readdirSync(new URL(folder, ROOT), { recursive: true })
     .filter((name) => name.endsWith('.c') && !name.endsWith('base/refusal.c')).map((name) => read(`${folder}/${name}`))).join('\n');
 const refused = [...source.matchAll(/\bREFUSAL_([A-Z]\w*)\b(?:,\s*"([^"]*)")?/g)].filter(([, code]) => !/^(?:NONE|TEXT_BYTES)$/.test(code))

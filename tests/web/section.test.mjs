@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../../clients/web/core/section.js';
 
-// Returns shown, ghost or hidden, by the server's rule.
+// Returns how an asset is drawn (shown, ghost or hidden), following the rule by which the server combines the three lists.
 function assetLook({ hidden = [], ghost = [], isolate = [] }, id) {
     if (hidden.includes(id))
         return 'hidden';

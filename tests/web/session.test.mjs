@@ -106,7 +106,7 @@ test('a leader knows the followers, and hands the lead to one of them', () => {
     const heard = [];
     session.on('followers', () => heard.push(session.followers));
     socket.say({ type: 'followers', count: 2, sessions: [7, 9], names: ['kim', null] });
-    socket.say({ type: 'followers', count: 1, sessions: [7] }); // the message as the server sends it to clients without a token
+    socket.say({ type: 'followers', count: 1, sessions: [7] }); // clients without a token get the message without names
     assert.deepEqual(heard, [{ count: 2, sessions: [7, 9], names: ['kim', null] }, { count: 1, sessions: [7], names: [] }]);
     giveLead(session, 9);
     assert.deepEqual(last(socket.sent), { type: 'lead', session: 9 });
@@ -275,7 +275,7 @@ test('items drawn over the picture follow the parameters of the shown picture', 
     assert.deepEqual([session.shown.group, session.shown.split, news()], ['temperature', null, 0]);
     draw(1);
     assert.deepEqual([session.shown.group, session.shown.split, news()], ['pressure', null, 1]);
-    draw(3); // the frame shows the third parameters; the second ones were never drawn
+    draw(3); // the server drew the third change of parameters and skipped the second one
     assert.deepEqual([session.shown, news()], [session.params, 1]);
     draw(3);
     assert.equal(news(), 0);
@@ -532,7 +532,8 @@ test('a leader who has left is still named', () => {
 test('a user who begins to lead no longer follows; the shown camera stays until another is sent', () => {
     const eyes = (x) => ({ camera: { eye: [x, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 }, waitUs: 0, fieldUs: 0, renderUs: 0,
         encodeUs: 0, sentTimeUs: 0 });
-    // Messages of the server in order; numbers stand for pictures. The last picture shows the session's own view at that time.
+    // By case: messages in the order in which the server sends them; a number stands for a picture with that camera, null for
+    // the user's request to stop following. The last picture always shows the session's own view.
     const ways = {
         'given the lead before any picture of the leader': [vector('server/following.json'), vector('server/following-nobody.json'), 5],
         'given the lead while the leader moves': [vector('server/following.json'), 3, vector('server/following-nobody.json'), 4, 5],
@@ -551,7 +552,8 @@ test('a user who begins to lead no longer follows; the shown camera stays until 
                 socket.say(step);
         });
         assert.deepEqual(session.camera.eye, [5, 8, 7], how);
-        assert.equal(events.at(-1)[0], 'camera', how); // the new camera is also written to the page's address
+        // the session emits `camera`, so that the page writes the new camera into its address
+        assert.equal(events.at(-1)[0], 'camera', how);
         const said = events.length, sent = socket.sent.length;
         session.flush();
         assert.equal(socket.sent.length, sent, 'the server knows the camera, so it is not sent');
@@ -680,7 +682,7 @@ test('alarms raised while the connection was lost are announced once, in the sam
     };
     assert.deepEqual(raised(of.kept), []);
     reconnect(welcome);
-    reconnect(welcome); // the connection is lost again before the alarms arrived
+    reconnect(welcome); // connects again before the alarms of the last connection arrived: these count as not seen yet
     assert.deepEqual(raised(of.kept, of.late), ['1 L']);
     assert.deepEqual(raised(of.kept, of.late), []);
     reconnect({ ...welcome, plant: { ...welcome.plant, name: 'Another' } });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detection of sleep, letter sizes for reading from afar, distances, and links.
+// Tools of the page: detection that the computer slept, sizes of letters to be read from afar, measuring distances, and links
+// to share.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { health, simulatedText } from '../../clients/web/core/health.js';

@@ -18,7 +18,8 @@ const PERSPECTIVE = { eye: [6, -9, 5], target: [0, 0, 0.5], up: [0, 0, 1], fov: 
 const PARALLEL = { ...PERSPECTIVE, fov: 0, height_m: 8 };
 const BOX = { min: [-1, -1, 0], max: [1, 1, 2] }, FLOOR = 4; // FLOOR: half the side of the floor, metres
 
-// Returns the distance along the view direction to the first surface at a pixel, and that surface; null: background.
+// Returns what the camera sees at a pixel: { z: distance along the view direction, name: surface (floor or side of the box),
+// point }, or null for the background.
 function hit(camera, x, y) {
     const { origin, direction } = sight(camera, x, y, WIDTH, HEIGHT);
     let best = null;
@@ -38,7 +39,8 @@ function hit(camera, x, y) {
     return best;
 }
 
-// Returns where a mask differs from its prediction, computed bit by bit from the definition.
+// A mask's bits are stored as differences from a prediction made from neighbouring bits. Returns these differences for one
+// cell, bit by bit from the definition in PROTOCOL.md.
 function unexpected(cell, { columns, near, far, masks }) {
     const at = (x, y) => { // x, y: position of the bit, counted from the cell's top left corner
         const [dx, dy] = [x, y].map((v) => Math.floor(v / SIDE)), other = cell + dx + dy * columns;
@@ -53,7 +55,8 @@ function unexpected(cell, { columns, near, far, masks }) {
     });
 }
 
-// Encodes the scene as described in PROTOCOL.md. A cell is divided where it shows the box and something else.
+// Encodes the depths that the camera sees as PROTOCOL.md describes. A cell of pixels is divided into near and far where it
+// shows the box and also something else.
 function encode(camera) {
     const parallel = camera.height_m !== undefined, columns = Math.ceil(WIDTH / CELL), rows = Math.ceil(HEIGHT / CELL);
     const depth = (at) => (parallel ? at.z : 1 / at.z), all = [];
@@ -174,13 +177,14 @@ for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PAR
     });
 }
 
-// Colours of what pixels show, as 32-bit numbers with red in the lowest byte: the background, the floor and each side of the
-// box.
+// colourOf(): colour of the picture's pixel by what it shows (background, floor, a side of the box), a 32-bit number with red
+// in the lowest byte. isGrey(): whether a pixel is grey.
 const sumOf = (name) => [...name].reduce((sum, letter) => sum + letter.charCodeAt(), 0);
 const colourOf = (at) => (at === null ? 0xfff0f0f0 : 0xff000000 + 40 * sumOf(at.name)) | 0;
 const isGrey = (pixel) => (pixel & 255) === (pixel >> 8 & 255) && (pixel & 255) === (pixel >> 16 & 255);
 
-// Draws the scene's picture from another camera on the processor, before areas missing from the picture are filled.
+// Draws the scene as seen by the camera, warps the picture to the camera `to` by the page's own rasterizer, and leaves areas
+// that the picture does not show empty.
 async function rasterized(camera, to, size = [WIDTH, HEIGHT], box = { left: 0, top: 0, width: size[0], height: size[1] }) {
     const { bytes, all } = encode(camera), grid = await decodeGrid(bytes), picture = Int32Array.from(all, colourOf);
     const raster = new Raster(...size), layers = new Layers(picture, WIDTH, [grid]);
@@ -220,7 +224,8 @@ test('the processor draws reduced pictures, and halves of split views only in th
     const drawn = (from, to) => raster.pixels.filter((pixel, i) => i % 200 >= from && i % 200 < to && pixel !== 0).length;
     assert.equal(drawn(0, 100), 0);
     assert.ok(drawn(100, 200) > 0.8 * 100 * 120);
-    const near = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [1.05, -1.6, 1] }); // the box reaches behind the eye
+    // the camera is so close that the box reaches behind the eye
+    const near = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [1.05, -1.6, 1] });
     assert.ok(near.raster.pixels.some((pixel) => pixel !== 0));
     const lost = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [NaN, 0, 0] });
     assert.ok(lost.raster.pixels.every((pixel) => pixel === 0), 'an invalid camera sees nothing');
