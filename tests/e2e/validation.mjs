@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field compared with simulated heat conduction in a bent pipe of coarse elements (tests/validation has the parts and all cases).
+// Compares the field (values interpolated from sensors) with the temperatures of a heat conduction simulation in a bent pipe of
+// coarse elements. The other parts and cases are in tests/validation.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
@@ -28,14 +29,15 @@ before(() => {
 const errors = (sensors, interpolation, distance = '') => part.rows.find((row) => row.sensors === sensors &&
     row.interpolation === interpolation && row.distance === distance).outside;
 
-// The temperatures that CalculiX computes are at most the fixed 200, at least the ambient temperature, and mostly in between.
+// The simulation with CalculiX fixes one temperature at 200 °C, and the surroundings are cooler. So the highest temperature must be 200
+// °C, and the lowest must lie between that of the surroundings and 40 °C.
 test('the reference temperatures of CalculiX are within the given limits', { skip }, () => {
     assert.ok(part.nodes > 2000 && part.triangles > 4000, `only ${part.nodes} nodes`);
     assert.ok(Math.abs(part.high - 200) < 0.01 && part.low > 20 && part.low < 40, `temperatures from ${part.low} to ${part.high}`);
 });
 
-// Bounds of the mean error and the 95th percentile in kelvin; the part's temperatures span 180 K. Each bound is a third above
-// the measured error.
+// [number of sensors, interpolation, distance, limit of the mean error, limit of the 95th percentile], errors in kelvin. The
+// part's temperatures span 180 K. Each limit is a third above the error that was measured.
 for (const [sensors, interpolation, distance, mean, p95] of [
     [20, 'shepard', 'geodesic', 6.3, 18.6], [20, 'harmonic', '', 4.6, 13], [20, 'fin', '', 4.8, 27], [5, 'fin', '', 11.8, 54],
     [20, 'gp', '', 3.3, 6.8], [5, 'gp', '', 21.7, 93],
@@ -47,7 +49,8 @@ for (const [sensors, interpolation, distance, mean, p95] of [
     });
 }
 
-// The walls of the two legs are as far apart as the pipe is thick: straight-line distances mix a hot leg with a cold one.
+// The gap between the pipe's two legs is only as wide as the pipe is thick. Straight-line distances across the gap mix the values
+// of a hot leg and a cold one, so distances along the surface must give smaller errors.
 test('distances along the surface give smaller errors than straight ones across the gap', { skip }, () => {
     const along = errors(20, 'shepard', 'geodesic').mean, straight = errors(20, 'shepard', 'euclidean').mean;
     assert.ok(along < 0.85 * straight, `mean error ${along} K along the surface, ${straight} K straight`);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Follows preprocess/YOUR_PLANT.md: types each command as printed there and expects each printed line of output; clicks the
-// page's controls by their printed names and expects the printed results. Only ports differ, and times are not compared.
+// Follows the instructions of preprocess/YOUR_PLANT.md: types each printed command and compares the output with the printed
+// lines; clicks the named controls of the web page and expects the described results. Ports may differ from the printed ones,
+// and times are not compared.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -19,7 +20,7 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync
 const page = readFileSync(new URL('../../preprocess/YOUR_PLANT.md', import.meta.url), 'utf8');
 const blocks = (text, kind) => [...text.matchAll(/^```(\w*)\n([^]*?)^```$/gm)].filter(([, of]) => of === kind).map(([, , code]) => code);
 
-// Returns [{ command, said: [line, ...] }] from the section with this number on.
+// Returns the printed commands of a text with the output lines printed below each: [{ command, said: [line, ...] }].
 function stepsOf(text) {
     const steps = [];
     for (const line of blocks(text, '').filter((code) => code.startsWith('$ ')).join('').split('\n').filter(Boolean))
@@ -60,7 +61,7 @@ test('each command of YOUR_PLANT.md prints the output that the page shows', { sk
             for (const line of said)
                 assert.ok(out.includes(line), `${command}: the page shows:\n${line}\nthe program printed:\n${out}`);
             console.log(`# ${command}: as on the page, ${said.length} lines`);
-            // the page prints the expected content of matches.csv below the command
+            // YOUR_PLANT.md also prints lines of matches.csv; the real file must contain each of them
             if (/^plantcast match/.test(command) && said.length > 0)
                 for (const line of blocks(page, '').find((code) => code.startsWith('Tag,Status')).trim().split('\n'))
                     assert.ok(readFileSync(join(folder, 'plant/matches.csv'), 'utf8').includes(`${line}\n`), line);
@@ -92,7 +93,7 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), running = [];
     const section = page.slice(page.indexOf('## On a page'), page.indexOf('## 1. The model'));
     const written = section.slice(section.indexOf('1. ')).replace(/\s+/g, ' ');
-    let at = 0; // position up to which the test has read the section
+    let at = 0; // position in the section behind the last text that read() has found; texts must occur in this order
     const read = (text) => {
         const found = written.indexOf(text, at);
         assert.ok(found >= 0, `the page does not contain, or not in this order: ${text}`);
@@ -132,14 +133,14 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
         await settle(room);
         await shoot(room, 'page-1-empty');
 
-        // Step 1 of the page: the files.
+        // Step 1 of the section `On a page`: the user chooses the files.
         await said(named('Drop a model and a tag list here, or choose files'));
         const files = ['plm-sample.rvm', 'plm-sample.att', 'kepware.csv'].map((name) => join(folder, read(`\`${name}\``).slice(1, -1)));
         await panel.locator('input[type=file]').setInputFiles(files);
         await room.waitForFunction(() => globalThis.plantcast.session.model.assets.length === 19, null, { timeout: 200000 });
         await said(named('The plant is live'));
 
-        // Step 2 of the page: the size of the model.
+        // Step 2 of the section: the page shows the size of the model.
         await said(read('12.5 × 6.45 × 8.00 m'));
         await panel.locator('summary', { hasText: named('Size') }).click();
         assert.ok(await panel.getByLabel(named('Show a person of 1.8 m next to it')).isChecked());
@@ -147,7 +148,7 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
         await shoot(room, 'page-2-plant');
         await panel.locator('summary', { hasText: 'Size' }).click();
 
-        // Step 3 of the page: the tags.
+        // Step 3 of the section: the user reviews the matches of the tags.
         for (const name of ['Matched', 'Doubtful', 'Unmatched', 'Unplaced'])
             read(`${await filter(name).locator('b').textContent()} ${name}`);
         await filter(named('Doubtful')).click();
@@ -160,7 +161,7 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
         await idle();
         await room.waitForFunction(() => globalThis.plantcast.session.model.tag('TT-1111')?.asset === '-ART1111PO-');
 
-        // Step 4 of the page: the place of a sensor.
+        // Step 4 of the section: the user places a sensor by hand.
         await filter(named('Unplaced')).click();
         await row(read('ART1105BA_TT01')).click();
         await arrive(room);
@@ -189,7 +190,7 @@ test('each click described in YOUR_PLANT.md has the described result', { skip: s
         await arrive(room);
         await shoot(room, 'page-4c-saved');
 
-        // Step 5 of the page: the source of the values.
+        // Step 5 of the section: the user names the source of the values.
         await room.locator('#import-toggle').click();
         await panel.locator('summary', { hasText: named('Values') }).click();
         for (const [label, value] of [['Modbus TCP device', '127.0.0.1'], ['Port', '5020']])

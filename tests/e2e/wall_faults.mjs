@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that is a tile of a wall and whose clock is 5 s ahead.
+// A display that shows one tile of a wall and whose clock is 5 s ahead of the server's: it must show each picture at the time
+// that the server sets for all tiles.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -32,7 +33,8 @@ const url = () => `http://127.0.0.1:${plant.port}/`;
 const presents = (client) => client.texts.filter(({ type }) => type === 'present');
 const camera = (seq, x) => ({ type: 'camera', seq, eye: [x, -7, 1], target: [x, 0, 0], up: [0, 0, 1], fov: 30 });
 
-// The first tile, which leads and acknowledges at once.
+// Returns the client of the wall's first tile. It leads (its camera applies to the wall) and acknowledges each frame at once,
+// so it never delays the wall.
 async function leading() {
     const leader = await PlainClient.open(plant.port);
     await leader.hello({ width: WIDTH, height: HEIGHT, codecs: ['jpeg'], tile: { wall: 'wide', display: 1 } });

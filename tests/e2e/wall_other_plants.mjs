@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pane of a wall that shows another plant, with two daemons, and what it shows if the other server does not send a picture.
+// A pane of a wall that shows the picture of another plant, served by a second daemon; also what the pane shows if the other
+// server sends no usable picture.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { once } from 'node:events';
@@ -20,7 +21,7 @@ const SIZE = [1280, 720], LARGE_BYTES = 9 << 20, NAME = 'Zwei Kästen, 탱크 2'
 const tokens = {};
 let plant, other, otherArgs, fake, fakePort, picture, small;
 
-// Behaviours of a fake server, chosen by the first part of the path.
+// How a fake server answers, selected by the first part of the request's path: a good picture, a slow one, an error and so on.
 const FRAME = { 'plantcast-frame': 'data_time_us=1, oldest_age_ms=1500, plant=Fake%20plant', 'content-type': 'image/png' };
 const MANNERS = {
     good: (response) => response.writeHead(200, FRAME).end(picture),
@@ -89,7 +90,8 @@ async function startOther() {
     await other.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
 }
 
-// Starts the plant: its wall has a large pane of the other plant, and next to it a pane of a server that answers nonsense.
+// Starts the plant that has the wall. One large pane shows the other plant, and the pane next to it shows a server that answers
+// nonsense.
 async function startPlant() {
     plant = await TinyPlant.create();
     const at = (id, more = '') => `- { id: ${id}, url: "http://127.0.0.1:${fakePort}/${id}", every_s: 2${more} }\n`;
@@ -143,7 +145,8 @@ test('each way that another plant\'s server fails to send a picture is reported'
         const settled = list.every(({ id, why, picture: number }) => why === EXPECTED[id] && (number > 0) === (EXPECTED[id] === ''));
         return settled || (options.last = JSON.stringify(list), false);
     }, 'each', 60000).catch((error) => assert.fail(`${error.message}\n${options.last}`));
-    // The server requests the picture every 2 s; repeated if another one has arrived meanwhile.
+    // Reads the picture's number and then requests that picture; repeats if the server has replaced the picture in between,
+    // which it does every 2 s.
     const [good, shown] = await until(async () => {
         const state = await stateOf('good'), answer = await get(`api/v1/other_plants/picture?id=good&picture=${state.picture}`);
         return answer.status === 200 && [state, answer.body];
@@ -170,7 +173,7 @@ test('the pane shows another plant\'s picture, name and data age; also that its 
     options, async (t) => {
     const screen = { viewport: { width: SIZE[0], height: SIZE[1] } };
     const { page, close, errors } = await openPage(`http://127.0.0.1:${plant.port}/wall.html?wall=room`, screen,
-        // only in the top window, because frames within the page are sandboxed
+        // stores the token only in the top window: the frames within the page are sandboxed and have no session storage
         `top === window && sessionStorage.setItem('plantcast.token', '${tokens.display}')`);
     const image = page.locator('.pane.snapshot img').first(), card = page.locator('.pane.snapshot .gone').first();
     const title = page.locator('.pane.snapshot h2').first();
@@ -190,7 +193,8 @@ test('the pane shows another plant\'s picture, name and data age; also that its 
     await becomes(async () => /old/.test(await title.textContent()), false, 'no age');
     await shoot(page, 'wall-other-plant-gone');
 
-    writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // the server reads the token file for each request
+    // the new token is used at once, because the server reads the token file before each request to the other plant
+    writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n');
     await other.startDaemon(...otherArgs);
     await card.filter({ hasText: 'Its server rejects the token' }).waitFor();
     writeFileSync(join(plant.folder, 'other.token'), `${tokens.other}\n`);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Three walls like those in a control room, to be viewed from their usual distance. The screenshots at 1920x1080 are in the
-// README (deploy/pictures).
+// Makes screenshots of three walls like those in a control room, at 1920x1080 and other sizes, and checks that everything on
+// them is complete. Those at 1920x1080 are shown in the README (deploy/pictures).
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -66,7 +66,7 @@ async function keep(page, name, [width]) {
     await page.screenshot({ path: `${path}.png` });
 }
 
-// Returns whether each pane of views has its own refined picture at full size, and each trend its curves.
+// Returns whether every pane with a view shows a refined picture for its own camera and parameters, and every trend has curves.
 const whole = () => [...document.querySelectorAll('.pane iframe')].every((frame) => {
     const { session } = frame.contentWindow.plantcast ?? {}, { picture } = session ?? {};
     return frame.closest('.trend') ? frame.contentWindow.plantcast?.trends?.series.size > 0 :
@@ -78,8 +78,8 @@ const cut = () => [...document.querySelectorAll('.pane h2, .pane p, .pane li, .p
     element.children.length === 0 && element.clientWidth > 0 && element.scrollWidth > element.clientWidth + 1)
     .map((element) => `${element.className}: ${element.textContent}`);
 
-// Returns parts of panes that are incomplete or misplaced: the chart, the age of the readings, the ticks next to the colour
-// bar.
+// Returns the parts of panes that are incomplete or in the wrong place: a trend's chart, the age of the readings, the ticks
+// next to the colour bar. The list should be empty.
 const amiss = () => [...document.querySelectorAll('.pane iframe')].flatMap((frame) => {
     const { contentDocument: inner, contentWindow: { innerHeight } } = frame, found = [];
     const box = (selector) => inner.querySelector(selector)?.getBoundingClientRect();
@@ -111,7 +111,7 @@ for (const wall of ['overview', 'six']) {
     }
 }
 
-// The browsers' windows represent adjacent screens with bezels in between.
+// opens one browser window per display; between the displays lie bezels, which hide a part of the view
 for (const size of SIZES) {
     test(`tiles at ${size.join('x')} show one picture with nothing cut off`, more, async () => {
         const each = [size[0] / COLUMNS, size[1] / ROWS];

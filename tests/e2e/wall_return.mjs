@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forty wall displays lose their server at the same time: they reconnect one after another, and all show values again. Each
-// uses the page's own connection and session code on a plain socket.
+// Forty wall displays lose their server at the same time. Expected: they reconnect at different times, and all show values
+// again. Each display runs the page's own connection and session code on a plain socket instead of a browser.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Connection, FIRST_WAIT_MS, JITTER } from '../../clients/web/core/connection.js';
@@ -14,7 +14,7 @@ const DISPLAYS = 40, TEXT = 1, PATIENCE_MS = 120000;
 const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
 let plant, displays = [];
 
-// A WebSocket with the members that core/connection.js uses.
+// A WebSocket with those members of the browser's WebSocket that core/connection.js uses.
 class Socket {
     constructor(port) {
         PlainClient.open(port, { acknowledge: false }).then((client) => this.use(client), () => this.end({ code: 1006, reason: '' }));
@@ -95,7 +95,8 @@ test('forty displays reconnect one after another, and all are live', options, as
     await all('lost', ({ liveAt, waits }) => liveAt === 0 && waits.length > 0);
     const waits = displays.map((display) => display.waits[0]).sort((a, b) => a - b);
     const most = Math.max(...waits.map((from) => waits.filter((ms) => ms >= from && ms < from + 100).length));
-    assert.ok(most <= 12, `${most} of ${DISPLAYS} displays reconnected within 100 ms`); // on average, 2 displays reconnect within 100 ms
+    // if the displays spread evenly, 2 would reconnect within 100 ms on average; 12 allows for chance
+    assert.ok(most <= 12, `${most} of ${DISPLAYS} displays reconnected within 100 ms`);
     assert.ok(waits.at(-1) - waits[0] > SPREAD_MS / 2 && waits.at(-1) <= FIRST_WAIT_MS * (1 + JITTER) + SPREAD_MS,
         `the displays waited: ${waits}`);
     const { port } = plant;

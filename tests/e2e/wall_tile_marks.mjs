@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Marks on a picture across two displays: alarms on either display, notes, the desk's pointer, and the view's title, whichever
-// display connects first.
+// Marks on a picture that extends across two displays: alarms on each display, notes, the pointer of a user at the desk, and
+// the title of the view. The result must not depend on which display connects first.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -26,7 +26,7 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     plant.addAlarms();
-    // prevents stale and Bad readings, so that no other alarm is raised on a busy machine
+    // lengthens timeouts, so that a busy machine has no stale or Bad readings, which would raise other alarms
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',600,90'));
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000') + WALLS);
@@ -85,7 +85,9 @@ test('hidden alarms, and alarms of quantities not shown, are marked on the right
         const { top, bottom } = legend.getBoundingClientRect();
         return [top < 0, bottom > innerHeight + 4, legend.scrollHeight > legend.clientHeight + 1];
     });
-    assert.deepEqual(cut, [false, false, false]); // nothing is cut off, although the burn-in shift moves all displays by up to 3 pixels
+    // neither the mark's top, nor its bottom, nor the legend is cut off, although the burn-in protection shifts the whole
+    // display by up to 3 pixels
+    assert.deepEqual(cut, [false, false, false]);
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-marks-${i + 1}`);
     said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H']], name: 'kim' });
@@ -101,7 +103,7 @@ test('notes and the desk\'s pointer are marked at their places', options, async 
     note('Manhole open', { asset: 'P-101A' });
     const { id } = await crew.text('noted');
     await pages[1].page.locator('.marks .note', { hasText: 'Manhole open' }).waitFor();
-    // points repeatedly, because the pointer disappears after some seconds
+    // points again every second, because the page removes the pointer after some seconds
     const here = () => point([0, 0, 0.5]), pointing = setInterval(here, 1000);
     try {
         here();

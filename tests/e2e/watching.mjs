@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Monitoring: the rules of deploy/prometheus and the panels of deploy/grafana, in a real Prometheus that reads from a real
-// daemon.
+// Monitoring: a real Prometheus reads the metrics of a real daemon. The rules of deploy/prometheus must load, and the queries
+// of the panels in deploy/grafana must find data.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -27,7 +27,7 @@ test('every alert rule passes promtool, fires when it should, and has its entry 
     assert.deepEqual([...runbook.matchAll(/^## (\w+)$/gm)].map(([, name]) => name), alerts);
 });
 
-// Metrics that are empty for a plant with one daemon and without notifications, certificate, backup and clients.
+// Queries that find no data here, because the plant has only one daemon and no notifications, certificate, backup or clients.
 const EMPTY = /plantcast_core|plantcast_renderers|notify|certificate|backup|histogram_quantile|\[1d|predict_linear/;
 
 test('Prometheus scrapes a daemon and loads the rules, and every panel\'s query finds data',
@@ -65,7 +65,7 @@ test('Prometheus scrapes a daemon and loads the rules, and every panel\'s query 
         }
     });
 
-// The file of Debian's package: other jobs, and commented rules.
+// The configuration file that Debian's package installs: it has other jobs, and its rules are commented out.
 const STOCK = `global:
   scrape_interval:     1s # Set the scrape interval.
 rule_files:
@@ -103,7 +103,8 @@ test('prometheus-add keeps the file\'s other jobs, and scraping works with a sel
         shell(`${add} one`);
         assert.equal(readFileSync(etc('prometheus/prometheus.yml'), 'utf8'), config, 'a second run changes nothing');
         assert.equal(statSync(etc('prometheus/plantcast-one.token')).mode & 0o077, 0);
-        // removes Prometheus's token file, as on a machine where only the plant was restored
+        // deletes the token file in Prometheus's folder, as on a new machine on which only the plant was restored; the command
+        // must make it again
         rmSync(etc('prometheus/plantcast-one.token'));
         shell(`${add} one`);
         assert.equal(readFileSync(etc('plantcast/one/tokens'), 'utf8').match(/prometheus/g).length, 1);
@@ -114,7 +115,8 @@ test('prometheus-add keeps the file\'s other jobs, and scraping works with a sel
         await daemon.line(/ready/);
         prometheus = spawn('prometheus', [`--config.file=${etc('prometheus/prometheus.yml')}`,
             `--storage.tsdb.path=${join(root, 'data')}`, `--web.listen-address=127.0.0.1:${own}`], { stdio: 'ignore' });
-        const scrapes = async (since) => { // waits until the daemon was scraped after that time
+        // waits until Prometheus has read the daemon's metrics after the time `since` (ms), and returns the target's labels
+        const scrapes = async (since) => {
             for (const end = Date.now() + 60000; ; await sleep(200)) {
                 const { data } = await fetch(`http://127.0.0.1:${own}/api/v1/targets`).then((answer) => answer.json()).catch(() => ({}));
                 const target = data?.activeTargets.find(({ labels }) => labels.plant === 'one');

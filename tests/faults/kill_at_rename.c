@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD library: kills the program, as kill -9 would, before it renames a file for the KILL_AT_RENAME-th time (counted from 1). */
+/* LD_PRELOAD library that kills the program, as kill -9 would, immediately before its n-th rename of a file. n: environment
+   variable KILL_AT_RENAME, counted from 1. */
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>

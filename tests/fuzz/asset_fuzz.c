@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feeds bytes to asset_view_init, both unchanged and with size and checksum corrected: otherwise no input would pass these
-   checks. A valid view must be readable from end to end. */
+/* Feeds random bytes to asset_view_init, once unchanged and once with the size and checksum in the header corrected, because
+   hardly any random input passes these two checks. If a file is accepted, every byte of its sections must be readable. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

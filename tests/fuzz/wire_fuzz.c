@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests the frame header's reader against its writer: a header that was read is valid and is written back as the same bytes; a
-   header written from any struct reads back equal or is refused. */
+/* Tests the frame header's reader against its writer. A header that the reader accepts is valid and the writer produces the
+   same bytes from it. A header written from any struct is read back with the same values, or the reader refuses it. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

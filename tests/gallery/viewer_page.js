@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws a glTF model with three.js and compares another picture with it. The plant's axes are x, -z and y of glTF.
+// Draws a glTF model with three.js, and compares another program's picture of the same model with that. The plant's x, y and z
+// axes are glTF's x, -z and y.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
@@ -51,7 +52,8 @@ function sunLight(sun, ball) {
     return light;
 }
 
-// Returns each pixel's openness, the visible share of the hemisphere above its surface, from depth pictures in all directions.
+// Returns each pixel's openness: the share of the directions above its surface in which no geometry hides the sky. Computes it
+// from depth pictures of the model in OPEN_RAYS directions.
 function openness(scene, model, ball, camera, width, height) {
     const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType }), sum = new Float32Array(width * height);
     const light = new THREE.DirectionalLight(0xffffff, Math.PI);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Depth grids of frames: points computed from the grid by the rule of PROTOCOL.md equal those that a ray hits, in software and in GL. */
+/* Depth grids that are sent with frames. The points of the scene that follow from a grid by the rule of PROTOCOL.md are
+   compared with the points that rays through the same pixels hit, for the software renderer and for GL. */
 #include "tests/support/test.h"
 
 #include "render/pick/pick.h"
@@ -21,7 +22,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Returns the distance along the direction of view to a point. */
+/* Returns a point's depth: its distance from the eye, measured along the camera's viewing direction. */
 static double depth_of(const struct view *view, const double point_m[3])
 {
     double right[3], up[3], forward[3], z = 0;
@@ -61,7 +62,8 @@ static void check_grid(const struct view *view, const struct depth_grid *grid, i
         wrong += !good;
     }
     print_message("%d cells right, %d wrong, %d on the ground, %u bytes\n", right, wrong, ground, read.wire.payload_bytes);
-    assert_true(right > 40 && wrong <= (right + wrong) / 25); /* cells may be wrong at outlines, where their centre is beside the surface */
+    /* up to 4 % of the cells may be wrong: at outlines, the centre of a cell may miss the surface whose depth the cell has */
+    assert_true(right > 40 && wrong <= (right + wrong) / 25);
     depth_read_finish(&read);
 }
 
@@ -119,7 +121,8 @@ TEST_WITH(cuts_count_as_surfaces, set_up, stand_tear_down)
     check_view(&view);
 }
 
-/* Frames that are only recoloured, because the camera stands still, keep the grid. */
+/* With a still camera, only the colours of a frame are computed again. Such frames must have the same depth grid as the first
+   one. */
 TEST_WITH(recoloured_frames_keep_the_grid, set_up, stand_tear_down)
 {
     struct view view;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles too long for the field: picks and pixels compared with plain sums over all sensors in double precision. Each pick
-   must be within one colour step; each pixel must be too, or be marked uncertain. With straight-line distances each pixel must
-   be exact and unmarked. */
+/* Triangles that are too long to show the field exactly, because values are interpolated linearly between their corners. Picks
+   and pixels are compared with plain sums over all sensors in double precision. Each pick must be within one colour step, and
+   each pixel too, unless it is marked uncertain. With straight-line distances each pixel must be exact and unmarked. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -29,13 +29,16 @@ struct drawn_error_case {
 };
 struct drawn_error_tally {
     int compared, marked, marked_right, no_data, other;
-    double worst_pick, worst_drawn;    /* largest errors as shares of the range: of picks, and of unmarked pixels */
-    double worst_marked, worst_beyond; /* largest error of marked pixels; largest excess over pick.drawn_error, negative if that is
-                                          an upper bound */
-    double worst_evaluated;            /* largest difference between pixel_field_at() and picks */
-    double worst_placed;               /* largest error of unmarked pixels, less the change of the true value within SNAP_PX */
-    /* number of software pixels that were compared, and that had another colour; number of picks whose flags differ from
-       pixel_field_at()'s */
+    double worst_pick, worst_drawn;    /* largest error of picks, and of pixels that are not marked uncertain, as shares of the range */
+    /* worst_marked: largest error of marked pixels; worst_beyond: largest excess of an error over pick.drawn_error, negative if
+       that is always an upper bound */
+    double worst_marked, worst_beyond;
+    /* largest difference between the values of pixel_field_at() and of picks, as a share of the range */
+    double worst_evaluated;
+    /* largest error of unmarked pixels after subtracting how much the true value changes within SNAP_PX */
+    double worst_placed;
+    /* soft: number of pixels of the software renderer that were compared; soft_off: those with another colour; flags_off:
+       number of picks whose flags differ from those of pixel_field_at() */
     int soft, soft_off, flags_off;
 };
 
@@ -55,7 +58,7 @@ static double weight_of(const struct view *view, double distance_m, double radiu
     return weight;
 }
 
-/* Returns the true value at a pick by straight distances; NAN: no data. */
+/* Returns the true value at the picked point, computed with straight-line distances to all sensors; NAN: no data there. */
 static double truth_at(const struct drawn_error_case *site, const struct view *view, const struct pick *pick)
 {
     const struct scene_asset *asset = &site->scene->assets[pick->asset];
@@ -151,8 +154,8 @@ static void compare_pixel(const struct drawn_error_case *site, const struct view
         tally->worst_beyond = fmax(tally->worst_beyond, drawn - pick.drawn_error / range);
 }
 
-/* Returns whether the pixel and its neighbours show one flat surface, judged by their depths, without a jump of the value
-   between pixels. */
+/* Returns whether the pixel and its eight neighbours have data and show one flat surface, judged by their depths, without a
+   jump of the value. */
 static bool is_within(const float (*measured)[4], int x, int y)
 {
     if (x < 1 || y < 1 || x + 1 >= WIDTH_PX || y + 1 >= HEIGHT_PX)
@@ -170,7 +173,8 @@ static bool is_within(const float (*measured)[4], int x, int y)
     return true;
 }
 
-/* Compares previews and refined pictures that are drawn without a GPU with what GL measured. */
+/* Draws a preview and a refined picture with the software renderer, and compares the colours with the values that GL measured.
+   */
 static void compare_soft(const struct drawn_error_case *site, const struct view *view, const float (*measured)[4],
                          struct drawn_error_tally *tally)
 {
@@ -215,8 +219,8 @@ static void compare_view(const struct drawn_error_case *site, const struct view 
     mem_free(measured);
 }
 
-/* Compares one view each for shepard with a low and two high powers, and for paper. The toy plant's distances along the surface
-   are straight lines. */
+/* Compares four views: Shepard interpolation with a low power and two high ones, and the interpolation of the paper. In the toy
+   plant, distances along the surface equal straight-line distances. */
 static void compare(const struct drawn_error_case *site, enum distance_mode distance, struct drawn_error_tally *tally)
 {
     static const double powers[] = { 2, 6, 0, 16 };
@@ -244,12 +248,13 @@ static void expect_truth(const char *name, const struct drawn_error_tally *tally
                   tally->worst_beyond / STEP, tally->soft, tally->soft_off);
     assert_true(tally->compared > 500);
     assert_true(tally->worst_pick <= STEP);
-    /* 2 % more than a step, because a pixel's value is a float and belongs to a slightly different point than the pick's */
+    /* the limit is 2 % above one colour step, because a pixel's value is a float and belongs to a slightly different point than
+       the pick's value */
     assert_true(tally->worst_drawn <= 1.02 * STEP);
     assert_true(tally->worst_beyond <= 0.1 * STEP);
 }
 
-/* With straight-line distances nothing is interpolated, so nothing is marked. */
+/* With straight-line distances the value is computed exactly for each pixel, so no pixel may be marked uncertain. */
 static void expect_exact(const char *name, const struct drawn_error_tally *tally)
 {
     expect_truth(name, tally);
@@ -257,15 +262,16 @@ static void expect_exact(const char *name, const struct drawn_error_tally *tally
                   tally->worst_placed / STEP, tally->flags_off);
     assert_int_equal(tally->marked, 0);
     assert_int_equal(tally->flags_off, 0);
-    /* the software renderer's points are slightly off, which matters where high powers bend the field within a pixel */
+    /* The software renderer's surface points are slightly inaccurate. One pixel in a thousand may differ, because with high
+       powers the field changes strongly within a pixel. */
     assert_true(tally->soft > 500 && tally->soft_off <= 0.001 * tally->soft);
     assert_true(tally->worst_evaluated <= 0.02 * STEP && tally->worst_placed <= 0.25 * STEP);
 }
 
 /* --- needles ---------------------------------------------------------------------------------------------------------------- */
 
-/* Makes a plate with NEEDLES strips from side to side up to x = end_m, each of two triangles, with small triangles beyond, and
-   a small box for each of `sensors`. */
+/* Makes a square plate in the plane z = 0. From x = 0 to end_m it consists of NEEDLES strips across the whole plate, each of
+   two long triangles (needles), beyond of small triangles. Adds a small box at each of the `sensors` places. */
 static void make_plate(struct test_shape *shape, double end_m, int sensors, double (*places)[3])
 {
     double low = 0;
@@ -315,10 +321,12 @@ TEST(test_needles)
     struct drawn_error_tally tally;
     tally_plates(SIDE_M, MANY, DISTANCE_GEODESIC, &tally);
     expect_truth("needles", &tally);
-    assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* a good part of the pixels is marked uncertain */
+    /* more than a quarter of the pixels is marked uncertain, and some of them are really off by more than a colour step */
+    assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP);
 }
 
-/* On a plate of needles and small triangles, only the needles are marked, because only they show the field inexactly. */
+/* One half of the plate consists of needles, the other of small triangles. Only pixels of needles may be marked uncertain,
+   because only they show the field inexactly. */
 TEST(test_half_of_needles)
 {
     struct drawn_error_tally tally;
@@ -328,8 +336,8 @@ TEST(test_half_of_needles)
     assert_true(tally.marked_right < tally.marked / 3);
 }
 
-/* Sets up a plate of needles. resolved_levels: one bit per level, set if preparation subdivided the level until it shows the
-   field exactly. */
+/* Sets up a plant with one plate of needles and MANY sensors. resolved_levels: bit i tells the renderer that preparation has
+   subdivided level i until it shows the field exactly. */
 static void stand_on_plate(struct stand *stand, struct view *view, uint64_t resolved_levels)
 {
     struct toy *toy = toy_create();
@@ -367,8 +375,9 @@ TEST(test_many_sensors_are_exact)
     expect_plates(CROWD);
 }
 
-/* Needles of 1:10,000; degenerate triangles; sensors at a corner, on an edge, a hair beside it, and two at one point that
-   disagree. Further sensors are anywhere, every other one at the previous one's point. */
+/* Makes a plate of needles 10,000 times as long as wide and of degenerate triangles. Sensors lie at a corner, on an edge, a
+   tiny distance from the edge, and two with different readings at one point. The others lie at random points, every second one
+   at the same point as the one before. */
 static void make_odd_plate(struct test_shape *shape, int sensors, double (*places)[3])
 {
     const double width_m = SIDE_M / 10000, x = between(1, SIDE_M - 1), y = between(1, SIDE_M - 1);
@@ -417,7 +426,8 @@ TEST(test_odd_shapes_with_many_sensors_are_exact)
     expect_odd_shapes(CROWD);
 }
 
-/* The frame states its largest drawing error, and 0 if all readings are equal. */
+/* The frame states its largest drawing error: on this plate more than 1 if neighbouring readings differ by 40, and 0 if all
+   readings are equal. */
 TEST(test_equal_readings_mark_nothing)
 {
     struct stand stand;
@@ -434,13 +444,15 @@ TEST(test_equal_readings_mark_nothing)
     stand_finish(&stand);
 }
 
-/* The error bound from preparation holds only while all sensors are good and readings are in range; otherwise the error is measured. */
+/* The error bound that preparation stored holds only while all sensors are good and all readings are within the range.
+   Otherwise the renderer must measure the error. */
 TEST(test_lost_sensors_and_wild_readings_are_measured)
 {
     struct stand stand;
     struct view view;
     stand_on_plate(&stand, &view, 1);
-    for (int way = 0; way < 3; way++) { /* first as prepared, then with one sensor lost, then with one far out of range */
+    /* way 0: all sensors good, as assumed by preparation; 1: one sensor Bad; 2: one reading far out of the range */
+    for (int way = 0; way < 3; way++) {
         for (int i = 0; i < MANY; i++)
             toy_set(stand.snapshot, i, 20 + 5 * i, way == 1 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
         if (way == 2)
@@ -459,7 +471,8 @@ struct long_part {
     struct drawn_error_case site;
 };
 
-/* Prepares the part with this kind of distance. Skips the test where the part is absent. */
+/* Prepares the plant of the long part with this `distance` setting in the plant file. Skips the test if the part's files are
+   missing. */
 static void long_part_init(struct long_part *part, struct prep_case *c, const char *distance)
 {
     static const double readings[] = { 20, 95, 40, 110, 60, 5 };
@@ -508,8 +521,8 @@ TEST_WITH(test_long_part, prep_case_set_up, prep_case_tear_down)
     long_part_finish(&part);
 }
 
-/* With distances along surfaces, half of the part is off by more than a step, and so is a fifth of the picks
-   (tests/bench/notes/windows.md): all of it is marked. */
+/* With distances along surfaces, half of the part's pixels and a fifth of the picks would be off by more than a colour step
+   (tests/bench/notes/windows.md). All of these must be marked uncertain. */
 TEST_WITH(test_long_part_along_surfaces, prep_case_set_up, prep_case_tear_down)
 {
     struct long_part part;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A field that gets no memory is shown as no data, never as an asset without sensors and never as some value. The linker
-   redirects mem_try_array and pool_take to this file. */
+/* If memory for a field cannot be allocated, the asset must be shown as having no data, never as an asset without sensors and
+   never with a wrong value. The linker redirects calls of mem_try_array and pool_take to this file. */
 #include "tests/support/test.h"
 
 #include "gpu/pool.h"
@@ -19,7 +19,8 @@ void *__wrap_mem_try_array(size_t count, size_t bytes_each);
 struct pool_slice *__real_pool_take(struct pool *pool, size_t count);
 struct pool_slice *__wrap_pool_take(struct pool *pool, size_t count);
 
-/* Fails arrays with one entry per vertex: doubles are sums, floats are weights, scalars are displayed values. */
+/* Lets allocations of arrays with one entry per vertex fail, depending on `fault`. An array of doubles contains sums, one of
+   floats weights, and one of struct scalar displayed values. */
 void *__wrap_mem_try_array(size_t count, size_t bytes_each)
 {
     bool by_vertex = count == VERTICES;
@@ -29,7 +30,8 @@ void *__wrap_mem_try_array(size_t count, size_t bytes_each)
     return __real_mem_try_array(count, bytes_each);
 }
 
-/* Fails slices with one entry per vertex. Lighting uses equal slices, but is made before anything fails. */
+/* Lets allocations of pool slices with one entry per vertex fail if `fault` is NO_BUFFER. Lighting uses slices of the same
+   size, but allocates them before. */
 struct pool_slice *__wrap_pool_take(struct pool *pool, size_t count)
 {
     return fault == NO_BUFFER && count == VERTICES ? NULL : __real_pool_take(pool, count);
@@ -50,7 +52,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Sets up several plates side by side with two sensors each. */
+/* Set-up: several plates side by side, each an asset with two sensors. */
 static int set_up_many(void **state)
 {
     static const double sensors[2][3] = { { 0, 0, 0 }, { 1.5, 3.5, 0 } };
@@ -83,7 +85,7 @@ static void look_down(struct view *view)
     view->look = LOOK_FLAT;
 }
 
-/* Asserts that every pixel inside the plate has one of the two hatching colours, and that both occur. */
+/* Asserts that every pixel within the plate has one of the two greys of the no-data hatching, and that both greys occur. */
 static void assert_hatched(const struct view *view)
 {
     struct frame *frame = stand_draw(&stand, view);
@@ -107,12 +109,14 @@ TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
     for (int kind = NO_SUMS; kind <= NO_BUFFER; kind++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.tier = (enum tier)tier;
-            view.field.power = 1 + kind + 0.25 * tier; /* a power (exponent of distance) that no earlier frame had */
+            /* each frame has a power (exponent of distance) that no earlier frame had, so that its field is not cached */
+            view.field.power = 1 + kind + 0.25 * tier;
             fault = kind;
             uint64_t content = planned_content(stand.renderer, &view, stand.snapshot);
             assert_hatched(&view);
             fault = ALL_WELL;
-            /* the content differs, so the frame is drawn again */
+            /* the planned content differs from that of the hatched frame, so the renderer draws the frame again instead of
+               reusing it */
             assert_true(planned_content(stand.renderer, &view, stand.snapshot) != content);
             struct frame *frame = stand_draw(&stand, &view);
             assert_true(map_index_exact(colormap_at(NULL, 0), frame_pixel(frame, 8, SIDE_PX - 8)) >= 0);
@@ -128,7 +132,7 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     view.field.power = 9;
     fault = NO_WEIGHTS;
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
-    fault = ALL_WELL; /* allocations work again, because other arrays for drawing have the same size */
+    fault = ALL_WELL; /* ends the fault, because drawing allocates other arrays of the same size */
     assert_non_null(job);
     while (!renderer_step(stand.renderer, job, 1000000)) {
     }
@@ -138,7 +142,8 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     frame_unref(&frame);
 }
 
-/* Fields computed for the same frame evict neither each other nor their displayed values. */
+/* The cache limit is smaller than the fields of one frame. Fields that belong to the same frame must not evict each other or
+   their displayed values, so the frame looks the same as without a limit. */
 TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
 {
     struct view view;
@@ -162,7 +167,8 @@ TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
             const uint8_t *a = frame_pixel(want, i % SIDE_PX, i / SIDE_PX), *b = frame_pixel(got, i % SIDE_PX, i / SIDE_PX);
             shown += a[0] != a[1] || a[1] != a[2];
             for (int c = 0; c < 3; c++)
-                assert_true(abs(a[c] - b[c]) <= 2); /* sums that are computed again are rounded differently */
+                /* allows a difference of 2, because sums that are computed again are rounded differently */
+                assert_true(abs(a[c] - b[c]) <= 2);
         }
         assert_true(shown > SIDE_PX * SIDE_PX / 10);
         frame_unref(&want);
@@ -179,7 +185,8 @@ static void assert_kept(const struct fields *fields, struct fields_entry *const 
         assert_ptr_equal(fields->entries[i], was[i]);
 }
 
-/* One frame of this plant needs more than the cache limit: its fields are not recomputed for each frame, and other fields are evicted. */
+/* One frame of this plant needs more fields than the cache limit allows. The frame's fields must nevertheless be kept for the
+   next frame, while fields that it does not need are evicted. */
 TEST_WITH(test_what_one_picture_needs_stays, set_up_many, tear_down)
 {
     struct view view;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contexts, programs and framebuffers: the basis of every render pass. */
+/* GL contexts, programs and framebuffers, which every render pass uses. */
 #include "tests/support/test.h"
 #include <sys/wait.h>
 #include <unistd.h>
@@ -45,7 +45,8 @@ TEST(test_context_tells_what_it_is)
     assert_int_equal(rig.gl->software, strstr(rig.gl->renderer, "llvmpipe") != NULL);
 }
 
-/* GL functions are loaded once for all contexts, so contexts of different back ends cannot exist in one process. */
+/* The addresses of GL functions are loaded once for all contexts. Therefore creating a context of another back end in the same
+   process must fail. */
 TEST(test_contexts_beside_each_other_are_of_one_kind)
 {
     for (enum gl_kind kind = GL_EGL_DEVICE; kind <= GL_OSMESA; kind++)
@@ -93,7 +94,8 @@ TEST(test_defines_and_includes_reach_the_compiler)
     glDeleteShader(shader);
 }
 
-/* Draws blue above red with a green pixel in the corner, which shows whether rows start at the top and bytes are in the order b, g, r. */
+/* Draws a picture with blue above red and one green pixel in the corner. It shows whether rows begin at the top and bytes are
+   in the order blue, green, red. */
 static void draw_flag(const struct target *target)
 {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->framebuffer);
@@ -142,8 +144,8 @@ TEST(test_target_too_large_is_refused)
     assert_false(target_init(&target, rig.log, rig.gl->max_texture_px * 2, 16, 1));
 }
 
-/* Mesa's EGL without drivers (libgl1-mesa-dri not installed) gives no context and must not crash. Runs in a child process that
-   has not yet loaded drivers. */
+/* Without drivers (Debian package libgl1-mesa-dri not installed), Mesa's EGL must create no context and must not crash. Runs in
+   a child process, because this process has already loaded drivers. */
 static pid_t try_without_drivers(void)
 {
     pid_t child = fork();
@@ -152,7 +154,9 @@ static pid_t try_without_drivers(void)
     struct log *log = log_create(LOG_INFO);
     setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
     struct gl *gl = gl_create(log, GL_EGL_SURFACELESS, NULL);
-    _exit(gl && gl->software); /* exit code 1 for a software context: drivers of a GPU do not come from Mesa */
+    /* exit code 1: a software context was created, which must not happen; a GPU's own drivers do not come from Mesa and are
+       allowed */
+    _exit(gl && gl->software);
 }
 
 static pid_t without_drivers;
@@ -186,7 +190,7 @@ static bool draws_with(struct log *log, const char *name, const char *renderer)
     return good;
 }
 
-/* Returns whether every usable device of the list can be opened by index and by address. */
+/* Returns whether every device of the list that is not listed as unusable can be opened by its index and by its PCI address. */
 static bool right_devices_draw(struct log *log, char *list)
 {
     for (char *line = strtok(list, "\n"); line; line = strtok(NULL, "\n")) {
@@ -201,7 +205,8 @@ static bool right_devices_draw(struct log *log, char *list)
     return true;
 }
 
-/* Returns whether opening this device fails, without falling back to software, and logs the reason once. */
+/* Returns whether opening this device fails without falling back to software rendering, and the reason is logged exactly once.
+   */
 static bool is_refused(struct log *log, FILE *said, const char *name, const char *reason)
 {
     char text[4096] = "";

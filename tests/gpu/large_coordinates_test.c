@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant at survey coordinates, 5,500 km north of the origin (UTM), looks the same as at the origin. */
+/* Draws the same plant at the origin and at survey coordinates (UTM, 5,500 km north of the origin): both must look the same. */
 #include "tests/support/test.h"
 
 #include "render/pick/pick.h"
@@ -8,7 +8,8 @@
 enum { WIDTH_PX = 320, HEIGHT_PX = 240, PIXELS = WIDTH_PX * HEIGHT_PX };
 
 static const double FAR_OFF_M[3] = { 412345, 5512345, 120 };
-static const double SAME_M = 1e-6; /* metres; a double resolves 1e-9 at 5.5e6 m */
+/* positions may differ by this many metres between the two plants; a double at 5.5e6 m resolves 1e-9 m */
+static const double SAME_M = 1e-6;
 
 static struct rig rig;
 static struct stand near, far;
@@ -35,7 +36,7 @@ static void move_scene(struct scene *scene, const double by_m[3])
     }
 }
 
-/* Makes the i-th view of the near plant, and the same view of the far one. */
+/* Makes the i-th view of the plant at the origin, and the same view of the distant plant. */
 static void look(int i, struct view *at_near, struct view *at_far)
 {
     view_default(&near.toy->scene, WIDTH_PX, HEIGHT_PX, at_near);
@@ -50,7 +51,8 @@ static void look(int i, struct view *at_near, struct view *at_far)
     move(at_far->camera.target_m, FAR_OFF_M);
 }
 
-/* Asserts that both frames are equal, except for pixels whose centre lies exactly on an edge. */
+/* Asserts that the frames of both plants are equal. A few pixels may differ, namely those whose centre lies exactly on an edge.
+   */
 static void assert_same(const struct view *at_near, const struct view *at_far)
 {
     struct frame *a = stand_draw(&near, at_near), *b = stand_draw(&far, at_far);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials compared with glTF's reflectance model, integrated in double precision: a grid of spheres from rough to smooth and
-   from dielectric to metal, under surroundings from a file and under the sun; and white spheres in a white furnace, which must
-   be invisible. */
+/* Compares materials with glTF's reflectance model, integrated in double precision. The scene is a grid of spheres from rough
+   to smooth and from dielectric to metal, lit by surroundings from a file or by the sun. Also tests white spheres in white
+   surroundings (white furnace test), which must be indistinguishable from the background. */
 #include "tests/support/test.h"
 
 #include "tests/support/cielab.h"
@@ -10,17 +10,18 @@
 
 enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, /* STEPS: largest value of `steps` */
         WIDTH = 256, HEIGHT = 128, SAMPLES = 400 };
-/* as in shaders/environment.glsl; SPACE_M: distance between the spheres */
+/* SKY_LIGHT, SUN_LIGHT: brightness factors, the same as in shaders/environment.glsl; SPACE_M: distance in metres between the
+   centres of the spheres */
 static const double SKY_LIGHT = 0.55, SUN_LIGHT = 0.78, SPACE_M = 8;
 static struct rig rig;
-static int steps, spheres; /* steps: number of roughness values, and of metallic values */
+static int steps, spheres; /* steps: number of different roughness values, and of metallic values; spheres: steps * steps */
 
 struct scene_of {
     struct stand stand;
     struct asset_material materials[SPHERES];
     char *folder, *path;
     double (*radiance)(const double towards[3], int channel);
-    double level[3]; /* irradiance of a horizontal white surface, divided by pi */
+    double level[3]; /* light from the whole surroundings on a horizontal white surface (irradiance / pi), per colour channel */
 };
 
 /* --- surroundings ---------------------------------------------------------------------------------------------------------------- */
@@ -32,7 +33,7 @@ static double white(const double towards[3], int channel)
     return 3;
 }
 
-/* Radiance of the surroundings: blue above, brown below, with a wide warm lamp on one side. */
+/* Returns the radiance of test surroundings in a direction: blue above, brown below, and a wide warm lamp on one side. */
 static double room(const double towards[3], int channel)
 {
     static const double above[3] = { 0.7, 0.9, 1.2 }, below[3] = { 0.35, 0.30, 0.25 }, lamp[3] = { 3.0, 2.6, 1.8 };
@@ -40,7 +41,8 @@ static double room(const double towards[3], int channel)
     return below[channel] + (above[channel] - below[channel]) * up + lamp[channel] * exp(12 * (at - 1));
 }
 
-/* Writes a Radiance HDR file: mantissas with a common exponent. The middle column points along +x. */
+/* Writes surroundings as a Radiance HDR file, whose pixels are three mantissas with a common exponent. The middle column shows
+   the direction +x. */
 static void write_hdr(const char *path, double (*radiance)(const double[3], int))
 {
     FILE *file = fopen(path, "wb");
@@ -102,7 +104,8 @@ static void scene_finish(struct scene_of *scene)
     stand_finish(&scene->stand);
 }
 
-/* Draws one sphere from -y, so that a pixel's position gives x and z. */
+/* Draws sphere i with an orthographic camera that looks from -y, so that a pixel's column and row give x and z of the point on
+   the sphere. */
 static struct frame *draw_sphere(struct scene_of *scene, int i, const double sun[3])
 {
     struct view view;
@@ -147,9 +150,9 @@ static double smith(double n_l, double n_v, double a2)
     return 0.5 / (n_l * sqrt(n_v * n_v * (1 - a2) + a2) + n_v * sqrt(n_l * n_l * (1 - a2) + a2));
 }
 
-/* Reflected sky by the glTF 2.0 specification, appendix B: single reflection, and light that enters a dielectric and leaves it
-   again. Scaling compensates for multiple reflection between rough facets (Turquin, "Practical multiple scattering compensation
-   for microfacet models"). */
+/* Computes the expected reflection of the surroundings by the glTF 2.0 specification, appendix B: single reflection, plus light
+   that enters a dielectric and leaves it again. The result is scaled to compensate for multiple reflection between rough facets
+   (Turquin, "Practical multiple scattering compensation for microfacet models"). */
 static void reflected_sky(const struct scene_of *scene, const struct asset_material *m, const double n[3], const double v[3], double out[3])
 {
     double alpha = m->roughness * m->roughness, a2 = alpha * alpha, n_v = dot(n, v), all = 0, once = 0;
@@ -197,7 +200,7 @@ static void reflected_sun(const struct asset_material *m, const double n[3], con
     }
 }
 
-/* Khronos PBR Neutral tone mapping, then sRGB, 0 to 255. */
+/* Converts a colour to what is shown: Khronos PBR Neutral tone mapping, then sRGB from 0 to 255. */
 static void shown(double c[3])
 {
     double least = fmin(c[0], fmin(c[1], c[2])), offset = least < 0.08 ? least - 6.25 * least * least : 0.04, peak;
@@ -221,7 +224,7 @@ static double difference(const uint8_t *bgrx, const double want[3])
     return lab_distance(a, b);
 }
 
-/* Returns false if the pixel is beside the sphere or at its rim. */
+/* Computes the sphere's normal at a pixel. Returns false if the pixel is outside the sphere or near its rim. */
 static bool normal_at(int x, int y, double n[3])
 {
     n[0] = ((x + 0.5) / SIDE_PX - 0.5) * 1.1 / 0.5;
@@ -231,7 +234,7 @@ static bool normal_at(int x, int y, double n[3])
     return square < 0.92 * 0.92;
 }
 
-/* Returns the mean CIELAB difference of one sphere; `step`: spacing of the compared pixels. */
+/* Draws sphere i and returns the mean CIELAB difference between its pixels and the reference. */
 static double compare(struct scene_of *scene, int i, const double sun[3])
 {
     const double v[3] = { 0, -1, 0 };
@@ -241,7 +244,7 @@ static double compare(struct scene_of *scene, int i, const double sun[3])
     for (int y = 2; y < SIDE_PX; y += 4)
         for (int x = 2; x < SIDE_PX; x += 4) {
             double n[3], want[3];
-            /* skips pixels at a grazing sun, where shadows are soft */
+            /* skips pixels that the sun grazes (within about 7 degrees of the surface), because its soft shadow begins there */
             if (!normal_at(x, y, n) || fabs(dot(n, sun)) < 0.12)
                 continue;
             reflected_sky(scene, &scene->materials[i], n, v, want);
@@ -278,7 +281,7 @@ TEST(test_grid)
     assert_true(all[0] <= 2 && all[1] <= 2 && worst[0] <= 4 && worst[1] <= 4);
 }
 
-/* Under uniform light a white sphere has the light's brightness everywhere, including its rim. */
+/* Under light that is equal from all directions, a white sphere must be as bright as the light everywhere, also at its rim. */
 TEST(test_white_furnace)
 {
     struct scene_of scene;
@@ -301,7 +304,9 @@ TEST(test_white_furnace)
     }
     print_message("# white in white: %.1f %% of the pixels off by more than 3 %%, the worst by %.1f %%\n", 100.0 * off / all, 100 * worst);
     scene_finish(&scene);
-    assert_true(off <= 0.04 * all && worst <= 0.07); /* tolerates pixels where a neighbour hides one of the few sky directions */
+    /* 4 % of the pixels may be off, because a neighbouring sphere hides one of the few directions in which the sky is sampled
+       */
+    assert_true(off <= 0.04 * all && worst <= 0.07);
 }
 
 /* A dark, smooth dielectric reflects a few percent in its middle and much more at its rim. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Occlusion culling: hidden geometry is not drawn, and no pixel changes, with cameras outside, among and inside the assets. */
+/* Occlusion culling, which skips geometry that nearer geometry hides: hidden geometry is not drawn, and every pixel equals that
+   of a frame without culling. Cameras stand outside, among and inside the assets. */
 #include "tests/support/test.h"
 #include <limits.h>
 
@@ -16,7 +17,8 @@ struct occlusion_tally {
     size_t pictures, left_out, different;
 };
 
-/* Draws with or without occlusion culling. Cluster culling is the same in both, because it may lose a pixel of a cluster seen edge-on. */
+/* Draws with or without occlusion culling (leave_out). *count receives the number of culled assets. Culling of clusters seen
+   from behind stays on in both cases, because it may lose a pixel of a cluster seen edge-on. */
 static struct frame *draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool leave_out,
                           size_t *count)
 {
@@ -106,16 +108,18 @@ TEST(test_the_demo_plant)
     site_finish(&site);
 }
 
-/* --- a city of cubes that fill their bounding boxes, side by side -------------------------------------------------------------- */
+/* --- a block of ROW x ROW x ROW cubes with small gaps; each cube is an asset that fills its bounding box
+   ----------------------------- */
 
-enum { ROW = 3, SIDE = 6 }; /* assets per side; squares per side of a face */
+/* ROW: number of cubes along each side of the block; SIDE: number of squares along each edge of a cube's face */
+enum { ROW = 3, SIDE = 6 };
 
 static void add_cube(struct toy *toy, const char *id, const double at[3])
 {
     struct test_shape shape = { 0 };
     for (int face = 0; face < 6; face++) {
         double corner[3] = { 0 }, u[3] = { 0 }, v[3] = { 0 };
-        int axis = face / 2, far = face % 2; /* u, v: the face's sides; u x v points out of the cube */
+        int axis = face / 2, far = face % 2; /* u, v: edges of the face, in an order in which u x v points out of the cube */
         corner[axis] = far;
         u[(axis + (far ? 1 : 2)) % 3] = 1;
         v[(axis + (far ? 2 : 1)) % 3] = 1;
@@ -155,7 +159,8 @@ TEST(test_cubes)
     }
 }
 
-/* A camera in front of one face of the city: all cubes except those of that face are culled. */
+/* The camera looks at the middle of one side of the block. Only the ROW x ROW cubes of that side may be drawn; all others are
+   hidden. */
 TEST(test_a_wall_hides_what_is_behind)
 {
     struct stand stand;
@@ -165,7 +170,8 @@ TEST(test_a_wall_hides_what_is_behind)
     renderer_use_gl(stand.renderer, true);
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
     view.tier = TIER_PREVIEW;
-    view.width_px = 1280; /* at this size the margin around boxes is less than the gap between the cubes */
+    /* the picture is large enough for the renderer's margin around boxes to be narrower than the gaps between the cubes */
+    view.width_px = 1280;
     view.height_px = 720;
     double middle_m = 0.5 * (ROW + 0.02 * (ROW - 1));
     view.camera =
@@ -174,7 +180,7 @@ TEST(test_a_wall_hides_what_is_behind)
     frame_unref(&frame);
     print_message("# a wall: %zu of %d cubes left out\n", count, ROW * ROW * ROW);
     assert_int_equal(count, (ROW - 1) * ROW * ROW);
-    /* the front wall of cubes is clipped away, and another wall stands behind it */
+    /* The section box removes the front layer of cubes, so the second layer hides the rest. */
     clip_box(&view.visibility.clip, (double[3]){ 1.1, -1, -1 }, (double[3]){ 9, 9, 9 });
     frame = draw(stand.renderer, &view, stand.snapshot, true, &count);
     frame_unref(&frame);
@@ -182,7 +188,8 @@ TEST(test_a_wall_hides_what_is_behind)
     stand_finish(&stand);
 }
 
-/* The eye is inside the box of two balls; a wall fills the image and hides the box, but one ball is in front of the wall. */
+/* One asset consists of three balls, two of them far away on opposite sides, so that the eye is inside the asset's box. A wall
+   fills the picture and hides most of the box, but the third ball is in front of the wall and must be drawn. */
 TEST(test_the_eye_in_a_box)
 {
     struct toy *toy = toy_create();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A constant field exactly at the end of its range, or at an isoline's value: no pixel may show an out-of-range colour or a
-   line, even on thin triangles at a grazing angle. */
+/* A field that has the same value everywhere, exactly at the end of the displayed range or at an isoline. Despite rounding, no
+   pixel may show an out-of-range colour or an isoline, also on thin triangles seen at a grazing angle. */
 #include "tests/support/test.h"
 
 #include "tests/support/rig_case.h"
@@ -8,7 +8,7 @@
 
 enum { WIDTH_PX = 480, HEIGHT_PX = 320, READING = 90 };
 
-/* Makes poles from near the eye to far away, and a ball. */
+/* Makes thin poles at distances from near the eye to far away, and a ball. */
 static struct toy *make_poles(void)
 {
     struct toy *toy = toy_create();
@@ -30,7 +30,8 @@ static void look_along(const struct stand *stand, enum look look, bool cut, stru
         view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 6 } } };
 }
 
-/* Returns the number of pixels that differ much between two ranges. */
+/* Draws the view with two ranges and returns the number of pixels whose colours differ clearly. lines: with an isoline at the
+   reading. */
 static int count_changed(struct stand *stand, struct view *view, const double range[2], bool lines, const double other[2])
 {
     int changed = 0;
@@ -51,13 +52,15 @@ static int count_changed(struct stand *stand, struct view *view, const double ra
     return changed;
 }
 
-/* A value exactly at the end of the range looks like one well inside; a value slightly outside looks like one far outside. */
+/* Frames with the reading exactly at an end of the range must equal those with the reading well inside. Frames with the reading
+   slightly outside must equal those with the reading far outside. */
 TEST(test_no_specks_at_the_ends)
 {
     static const enum look looks[] = { LOOK_DEFAULT, LOOK_GLOSSY, LOOK_FLAT };
     static const double ends[2][2] = { { 20, READING }, { READING, 130 } }, inside[2][2] = { { 20, 90.2 }, { 89.8, 130 } };
     static const double past[2][2] = { { 20, 89.99 }, { 90.01, 130 } }, far_past[2][2] = { { 20, 85 }, { 95, 130 } };
-    enum { LINE_PX = 16 }; /* at grazing angles rounding errors are as large as slopes */
+    /* number of pixels that may show the isoline: at grazing angles the rounding errors are as large as the field's slopes */
+    enum { LINE_PX = 16 };
     struct stand stand;
     stand_init(&stand, &rig, make_poles());
     renderer_use_gl(stand.renderer, true);

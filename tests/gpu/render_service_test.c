@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The render service: a moving client is served while another's frame is refined, and abandoned requests are not drawn. */
+/* The render service, which draws and encodes frames for all clients on its own threads. Frames of a moving client are drawn
+   between the steps of another client's refined frame, and abandoned requests are not drawn. */
 #include "tests/support/test.h"
 #include <pthread.h>
 #include <stdatomic.h>
@@ -15,8 +16,10 @@
 
 #define ENCODES "plantcast_encodes_total{codec=\"jpeg\"}"
 enum { REFINER = 1, MOVER = 2, PICKER = 3, VIEWERS = 100 };
-static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* age from which a frame is no longer shared */
-static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far longer than any frame takes, also under sanitizers */
+/* age at which a drawn frame is no longer given to other clients that request the same view */
+static const int64_t RECENT_NS = 600 * NS_PER_MS;
+/* maximum wait of a test for a frame; far longer than any frame takes, also under sanitizers */
+static const int64_t PATIENCE_NS = 100 * NS_PER_S;
 
 static struct toy *toy;
 static struct log *logger;
@@ -27,7 +30,8 @@ static struct render_service *service;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
 static int notices;
-static bool hardware; /* whether a GPU draws, which draws a refined frame in a single step */
+/* true: a GPU draws. Tests of refinement in steps are skipped then, because a GPU draws a refined frame in a single step */
+static bool hardware;
 
 static void on_pictures(void *arg)
 {
@@ -38,7 +42,7 @@ static void on_pictures(void *arg)
     pthread_mutex_unlock(&lock);
 }
 
-/* Waits for the next encoded frame; the caller owns it. */
+/* Waits for the next encoded frame of any client. The caller destroys it. */
 static struct encoded_frame *next(void)
 {
     static struct encoded_frame *waiting;
@@ -72,7 +76,8 @@ static void ask_sized(uint64_t client, enum urgency urgency, double turn, int wi
     render_service_wake(service);
 }
 
-/* Requests a frame for a client. turn: angle of the camera. */
+/* Requests a frame for a client: with URGENCY_REFINE a refined one of 2400 x 1600 pixels, otherwise one of 320 x 180. turn: how
+   far the camera is moved, so that different values give different views. */
 static void ask(uint64_t client, enum urgency urgency, double turn)
 {
     bool still = urgency == URGENCY_REFINE;
@@ -117,7 +122,8 @@ TEST(test_mover_is_served_during_a_refinement)
     assert_true(count_of("plantcast_render_steps_total") > steps + 4);
 }
 
-/* A small frame for another address overtakes a large one. */
+/* A large and then a small snapshot are requested for one address, and a small one for another address. The other address's
+   small frame must be delivered before the large frame. */
 TEST(test_a_small_picture_overtakes_a_large_one_of_another)
 {
     if (hardware)
@@ -149,7 +155,8 @@ TEST(test_a_small_picture_overtakes_a_large_one_of_another)
         render_service_forget(service, asked[i].client);
 }
 
-/* While a large frame for another address is drawn, a snapshot is not held up by a later refined frame for its own address. */
+/* While a large frame for another address is drawn, an address requests a snapshot and later a refined frame. The snapshot must
+   be delivered before the refined frame. */
 TEST(test_a_snapshot_goes_before_a_later_refinement)
 {
     if (hardware)
@@ -181,7 +188,8 @@ TEST(test_a_snapshot_goes_before_a_later_refinement)
         sum += encoded->client;
         encoded_frame_destroy(&encoded);
     }
-    assert_int_equal(sum, REFINER + MOVER + PICKER); /* the large frame continues although nobody requests anything further */
+    /* all three frames arrive: the large one was continued although no client requested anything meanwhile */
+    assert_int_equal(sum, REFINER + MOVER + PICKER);
     for (int i = 0; i < 3; i++)
         render_service_forget(service, clients[i]);
 }
@@ -226,7 +234,8 @@ TEST(test_refinement_ends_while_others_go_on_moving)
     encoded_frame_destroy(&last);
 }
 
-/* Returns whether a client got its frames during another's refinement as fast as when alone, except for an occasional refinement step. */
+/* Measures how long a client's 40 previews take alone, and while another client's frame is refined. Returns whether the number
+   of refinement steps that ran in between is within the expected bound. */
 static bool refining_costs_little(int attempt)
 {
     enum { PICTURES = 40 };
@@ -253,7 +262,7 @@ static bool refining_costs_little(int attempt)
     }
     print_message("# %d pictures: %.1f ms alone, %.1f ms beside a refinement\n", PICTURES, (double)took_ns[0] / NS_PER_MS,
                   (double)took_ns[1] / NS_PER_MS);
-    /* A refinement step runs after 150 ms without a preview, and otherwise at most once between two previews. */
+    /* expected bound: one refinement step per 150 ms without a preview, plus two */
     bool little = count_of("plantcast_render_steps_total") - steps <= 2 + took_ns[1] / (150 * NS_PER_MS);
     while (!refined) {
         struct encoded_frame *encoded = next();
@@ -263,7 +272,8 @@ static bool refining_costs_little(int attempt)
     return little;
 }
 
-/* If this thread is delayed by 150 ms, refinement steps run in between; the measurement is then repeated. */
+/* Previews of one client must hardly be delayed by the refinement of another client's frame. Repeated up to some attempts: if
+   this thread is delayed by 150 ms, refinement steps run although a preview would be requested. */
 TEST(test_refining_one_costs_a_mover_little)
 {
     if (hardware)
@@ -274,7 +284,8 @@ TEST(test_refining_one_costs_a_mover_little)
     assert_true(little);
 }
 
-/* A hundred clients request the same view at once, and each again after its frame, in two qualities. */
+/* A hundred clients request the same view, half of them at once, the others when they get their frame. All must share one
+   rendered and encoded frame; another quality requires only another encoding. */
 TEST(test_a_hundred_viewers_cost_one_picture)
 {
     int64_t renders = count_of("plantcast_renders_total"), encodes = count_of(ENCODES);
@@ -300,7 +311,7 @@ TEST(test_a_hundred_viewers_cost_one_picture)
     }
     assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
     assert_int_equal(count_of(ENCODES) - encodes, 1);
-    request.quality.quality = 42; /* a request with another quality shares the rendered frame */
+    request.quality.quality = 42; /* with another quality the rendered frame is shared, and only the encoding is done again */
     request.always = true;
     render_service_request(service, 1000, &request);
     render_service_wake(service);
@@ -325,7 +336,8 @@ static void ask_with_depth(uint64_t client, bool depth, double turn)
     render_service_wake(service);
 }
 
-/* Returns whether the frame of a client's new view has a depth grid. */
+/* Requests a new view for a client, with or without the wish for a depth grid. Returns whether the frame that it gets has a
+   depth grid. */
 static bool gets_depth(uint64_t client, bool depth, double turn)
 {
     ask_with_depth(client, depth, turn);
@@ -349,7 +361,8 @@ TEST(test_depth_is_drawn_while_a_client_that_wants_it_is_present)
     render_service_forget(service, MOVER);
 }
 
-/* While a refined frame is drawn in steps, no other one begins, so the second request is withdrawn before it is drawn. */
+/* Requests that a client withdraws before they are drawn must be answered with FRAME_SKIPPED. The second request still waits
+   when it is withdrawn, because the service refines one frame at a time and the first refinement is under way. */
 TEST(test_withdrawn_requests_are_not_drawn)
 {
     if (hardware)
@@ -360,14 +373,14 @@ TEST(test_withdrawn_requests_are_not_drawn)
     ask(MOVER, URGENCY_REFINE, 71);
     render_service_withdraw(service, MOVER);
     render_service_withdraw(service, REFINER);
-    render_service_withdraw(service, PICKER); /* no-op, because this client has no request */
+    render_service_withdraw(service, PICKER); /* withdrawing for a client without a request must have no effect */
     for (int i = 0; i < 2; i++) {
         struct encoded_frame *encoded = next();
         if (encoded->client == MOVER)
             assert_true(!encoded->packet && encoded->absence == FRAME_SKIPPED);
         encoded_frame_destroy(&encoded);
     }
-    ask(MOVER, URGENCY_INPUT, 72); /* requests a frame again, as a client does when its view is unhidden */
+    ask(MOVER, URGENCY_INPUT, 72); /* requests a frame again after the withdrawal, as a client does when its hidden page is shown */
     struct encoded_frame *encoded = next();
     assert_true(encoded->packet && encoded->client == MOVER);
     encoded_frame_destroy(&encoded);
@@ -375,7 +388,8 @@ TEST(test_withdrawn_requests_are_not_drawn)
     render_service_forget(service, REFINER);
 }
 
-/* One client requests frames that cost many times as much as another's. Returns whether the other got many more frames. */
+/* Two clients request frames all the time, one of 2560 x 1440 and the other of 320 x 180 pixels. Returns whether the second
+   client got more than twice as many frames. */
 static bool shares_time(void)
 {
     enum { LARGE = 2000, SMALL = 2001, LARGES = 5, PICTURES = 5000 };
@@ -398,7 +412,8 @@ static bool shares_time(void)
     return counts[1] > 2 * counts[0];
 }
 
-/* Both clients get equal time, not equal numbers of frames. The test repeats if this thread is late in requesting the small frames. */
+/* The service shares its drawing time equally among clients, so a client with small frames gets more of them. Repeated if it
+   fails, because this thread may have requested the small frames too late. */
 TEST(test_time_is_shared_not_pictures)
 {
     bool shared = false;
@@ -413,7 +428,7 @@ static void assert_same_bytes(const struct packet *a, const struct packet *b)
     assert_memory_equal(a->bytes, b->bytes, a->count);
 }
 
-/* Returns the frame that a client gets for a camera turned by `turn`. */
+/* Requests a frame for a client with the camera moved by `turn`, and returns that frame. */
 static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, double turn)
 {
     ask(client, urgency, turn);
@@ -423,7 +438,7 @@ static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, d
     return encoded;
 }
 
-/* Requests a refined frame large enough that a context loss happens during it. */
+/* Requests a refined frame that is large enough for a GL context loss to happen while it is drawn. */
 static void ask_for_still(double turn)
 {
     ask_sized(REFINER, URGENCY_REFINE, turn, sweep(2400, 1200), sweep(1600, 800));
@@ -437,14 +452,15 @@ static struct encoded_frame *refined_of(double turn)
     return encoded;
 }
 
-/* The GL context is lost repeatedly during long and short frames: no frame is lost, and all look the same as before. */
+/* The GL context is lost repeatedly while large refined frames and small ones are drawn. Every request must get its frame, and
+   each must equal the frame drawn before the losses. */
 TEST(test_lost_context_is_made_again_under_load)
 {
     enum { LOSSES = 3, MOVES = 4 };
-    const int tried = sweep(LOSSES, 2); /* the first loss while idle, the second during a refinement */
+    const int tried = sweep(LOSSES, 2); /* in short runs two losses: one while the service is idle, one during a refinement */
     int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
     struct encoded_frame *refined[LOSSES], *moved[MOVES];
-    for (int i = 0; i < tried; i++) /* a different view each time, because repeated views are cached */
+    for (int i = 0; i < tried; i++) /* each frame has another view, because frames of a repeated view are cached */
         refined[i] = refined_of(5 + 0.1 * i);
     for (int i = 0; i < MOVES; i++)
         moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
@@ -492,11 +508,12 @@ static size_t address_space_bytes(void)
     return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Memory suffices for one more frame, but not for the samples from which it is computed. */
+/* The address space is limited so that a frame itself can be allocated, but not the buffers from which it is computed. Only
+   that frame may fail; later frames must be drawn as before. */
 TEST(test_no_memory_fails_that_picture_alone)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    skip(); /* sanitizers end the program when memory is exhausted */
+    skip(); /* under sanitizers, a failed allocation ends the program */
 #endif
     enum { BIG_PX = 4096, ROOM_BYTES = 160 << 20 };
     struct rlimit all, tight;
@@ -517,10 +534,12 @@ TEST(test_no_memory_fails_that_picture_alone)
     encoded_frame_destroy(&after);
 }
 
-/* A frame that could not be encoded was not shown: the repeated request must not be answered with "unchanged". */
+/* A frame that was drawn but could not be encoded was not shown to the client. If the client repeats the request with another
+   codec, it must get the frame, not the answer "unchanged". */
 TEST(test_what_could_not_be_encoded_is_drawn_again)
 {
-    const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* H.264 has no encoder in this test */
+    /* the first codec has no encoder in this test, so encoding fails */
+    const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG };
     for (int i = 0; i < 2; i++) {
         struct frame_request request = {
             .codec = codecs[i], .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns()
@@ -549,7 +568,7 @@ static struct pick_answer *next_pick(void)
     return answer;
 }
 
-/* A pick does not wait for a slow frame, and delays it by no more than one step. */
+/* A pick is answered between two steps of a slow frame: it does not wait for the frame, and delays it by at most one step. */
 TEST(test_picks_are_answered_between_steps)
 {
     if (hardware)
@@ -573,7 +592,7 @@ TEST(test_picks_are_answered_between_steps)
     encoded_frame_destroy(&refined);
 }
 
-/* Only the newest pending pick is answered. */
+/* If a client sends several picks before the first is answered, only the newest must be answered. */
 TEST(test_newest_pick_wins)
 {
     struct pick_query query = { .client = PICKER, .x_px = 320, .y_px = 180 };
@@ -624,7 +643,7 @@ static void remake(bool by_gl, size_t memory_bytes)
     assert_true(make_service(by_gl, memory_bytes));
 }
 
-/* Writes readings to the store that the event loop has not read yet. */
+/* Writes readings to the store without passing them to the service, as if the event loop had not yet read them. */
 static void write_readings(double value)
 {
     for (int tag = 0; tag < (int)toy->plant.tag_count; tag++) {
@@ -633,7 +652,8 @@ static void write_readings(double value)
     }
 }
 
-/* Passes the store's readings to the service as the event loop does. ahead_ns: dates the snapshot that much later. */
+/* Passes a snapshot of the store's readings to the service, as the event loop does. ahead_ns: how much later than now the
+   snapshot is dated. */
 static void pass_readings(int64_t ahead_ns)
 {
     struct snapshot *snapshot = test_snapshot(toy->plant.tag_count);
@@ -648,7 +668,8 @@ static void change_readings(double value)
     pass_readings(0);
 }
 
-/* Frames show the event loop's snapshot, which sessions also get as text, even if the store has newer readings. */
+/* Sessions get the readings of the event loop's snapshot as text. Frames must show the readings of the same snapshot, even if
+   the store already has newer ones. */
 TEST(test_frames_show_the_readings_of_the_texts)
 {
     remake(false, 0);
@@ -667,7 +688,9 @@ TEST(test_frames_show_the_readings_of_the_texts)
     remake(false, 0);
 }
 
-/* The pauses end before, during and after the time in which GL draws the first client's frame. */
+/* One client requests a frame without a depth grid, and another requests the same view with one. The pauses between the
+   requests vary, so that the second arrives before, while or after GL draws the first frame. The second client must always get
+   a depth grid. */
 TEST(test_a_frame_that_gl_draws_without_depth_does_not_answer_a_client_that_wants_it)
 {
     remake(true, 0);
@@ -705,8 +728,9 @@ static void ask_for_refined(uint64_t client, enum look look)
     render_service_wake(service);
 }
 
-/* Requests a frame as a session does that shows a refined frame when a reading changes, after that has waited for waited_ns.
-   Returns how many more frames will come. */
+/* Requests a frame because of changed readings, as a session does that shows a refined frame. waited_ns: how long the changed
+   readings have already waited. Returns the number of additional answers that the service will send: 1, or 0 if the request
+   replaced a waiting one. */
 static int ask_for_data(uint64_t client, enum look look, int64_t waited_ns)
 {
     struct frame_request request = { .codec = WIRE_CODEC_JPEG,
@@ -722,8 +746,8 @@ static int ask_for_data(uint64_t client, enum look look, int64_t waited_ns)
     return answer == REQUEST_ADDED;
 }
 
-/* Readings change all the time and wait at most one second. The refined frame must still come, and no frame shows older
-   readings than the frame before. Returns whether no frame was abandoned meanwhile. */
+/* Changes readings after every frame while a refined frame is being drawn. Asserts that the refined frame arrives all the same,
+   and that no frame shows older readings than the one before. Returns whether no frame was abandoned meanwhile. */
 static bool refined_comes(enum look look, int64_t waited_ns)
 {
     int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
@@ -754,8 +778,8 @@ static bool refined_comes(enum look look, int64_t waited_ns)
     return count_of("plantcast_renders_abandoned_total") == abandoned;
 }
 
-/* Asserts that the refined frame comes although readings change, and that from then on each change yields a refined frame
-   without further steps. */
+/* Asserts that the refined frame arrives although readings change, and that afterwards each change yields a refined frame by
+   recolouring alone, without refinement steps. */
 static void assert_refined_comes(enum look look, int64_t waited_ns)
 {
     assert_true(refined_comes(look, waited_ns));
@@ -777,7 +801,8 @@ TEST(test_changing_readings_leave_refined_pictures)
     assert_refined_comes(LOOK_DEFAULT, 0);
 }
 
-/* Simulates frames whose refinement takes longer than readings may wait. */
+/* A refinement that takes longer than changed readings may wait, simulated by requests that have already waited 2 s: the
+   refined frame must still be completed. */
 TEST(test_changing_readings_leave_slow_pictures)
 {
     if (hardware)
@@ -786,7 +811,7 @@ TEST(test_changing_readings_leave_slow_pictures)
     assert_refined_comes(LOOK_GLOSSY, 2 * NS_PER_S);
 }
 
-/* The data for recolouring a refined frame exceeds the cache limit. */
+/* The data for recolouring a refined frame exceeds the cache limit of 64 MiB: the refined frame must still be completed. */
 TEST(test_changing_readings_leave_pictures_without_room)
 {
     if (hardware)
@@ -795,7 +820,8 @@ TEST(test_changing_readings_leave_pictures_without_room)
     assert_true(refined_comes(LOOK_GLOSSY, 2 * NS_PER_S));
 }
 
-/* GL caches no data for recolouring: a frame is abandoned for new readings a few times, each time later, and is finally completed. */
+/* GL keeps no data for recolouring, so changed readings abandon a refined frame that is being drawn. Each repetition may run
+   longer before it is abandoned, and one of the first 12 must be completed. */
 TEST(test_what_takes_long_by_gl_comes_in_the_end)
 {
     if (hardware)
@@ -828,20 +854,23 @@ static void ask_view(uint64_t client, enum urgency urgency, enum tier tier, doub
     render_service_wake(service);
 }
 
-/* A refined frame waits for another client's frame, and a preview of the same view overtakes it. The client never shows the
-   late frame, so the repeated request must deliver that picture. */
+/* A client's refined frame waits for another client's frame, and a preview of the same view, requested later, is delivered
+   first. The refined frame is then skipped as outdated. If the client requests it again, it must be delivered. */
 TEST(test_an_overtaken_refinement_comes_when_it_is_asked_for_again)
 {
     enum { OVERTAKEN = 201, LATER = 202 };
     uint64_t preview_number = 0, refined_number = 0;
     if (hardware)
         skip();
-    remake(true, 0); /* the software renderer recolours a refined frame with newer readings and gives it the newest number */
+    /* draws with GL, because the software renderer would recolour the refined frame with newer readings and give it the newest
+       number */
+    remake(true, 0);
     int64_t steps = count_of("plantcast_render_steps_total");
     ask(REFINER, URGENCY_REFINE, 31);
     await_step(steps + 1);
     ask_view(OVERTAKEN, URGENCY_DATA, TIER_REFINED, 33);
-    ask_view(LATER, URGENCY_DATA, TIER_PREVIEW, 35); /* the answer to this request shows that the one before was begun and then deferred */
+    /* the answer to this request shows that the service has begun the request before it and deferred it */
+    ask_view(LATER, URGENCY_DATA, TIER_PREVIEW, 35);
     for (int left = 4; left > 0; left--) {
         struct encoded_frame *encoded = next();
         if (encoded->client == LATER)
@@ -864,7 +893,8 @@ TEST(test_an_overtaken_refinement_comes_when_it_is_asked_for_again)
     remake(false, 0);
 }
 
-/* Bands cannot be recoloured quickly, so the refined frame is drawn again and delivered. */
+/* A picture with colour bands cannot be recoloured quickly. When readings change, the refined frame must be drawn again and
+   delivered, and not abandoned for a preview. */
 TEST(test_readings_change_pictures_that_are_not_quick)
 {
     int64_t abandoned = count_of("plantcast_renders_abandoned_total");
@@ -887,7 +917,7 @@ TEST(test_readings_change_pictures_that_are_not_quick)
     assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
 }
 
-/* Stopping the service does not wait for the end of a refinement. */
+/* Destroying the service during a refinement must not wait until the refined frame is complete. */
 TEST(test_stop_waits_for_no_refinement)
 {
     if (hardware)
@@ -899,8 +929,8 @@ TEST(test_stop_waits_for_no_refinement)
     assert_true(count_of("plantcast_renders_total") == renders);
 }
 
-/* With a real or simulated GPU, several frames are in flight at once. Each reaches its client and shows the requested view;
-   equal requests meanwhile share it; and a context loss meanwhile loses no frame. */
+/* With GL (a GPU or its software emulation), several frames are drawn at once. Each client must get the frame of the view that
+   it requested, equal requests share a frame, and a context loss meanwhile must lose no frame. */
 TEST(test_pictures_fly)
 {
     enum { CLIENTS = 8, ROUNDS = 6, FIRST = 100 };
@@ -923,7 +953,7 @@ TEST(test_pictures_fly)
             encoded_frame_destroy(&encoded);
         }
         if (clock_mono_ns() - begin_ns > RECENT_NS / 2)
-            most += CLIENTS / 4; /* tolerates frames that have become too old to be shared */
+            most += CLIENTS / 4; /* in a slow round, frames may become too old to be shared, so each request pair may be drawn twice */
     }
     assert_in_range(count_of("plantcast_renders_total") - renders, ROUNDS * CLIENTS / 2, most);
     assert_int_equal(count_of("plantcast_gl_losses_total"), losses + 1);

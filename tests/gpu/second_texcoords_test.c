@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Textures with two mappings, from a GLB to a frame. One material's base colour uses TEXCOORD_0, and its other four textures
-   are mapped mirrored. It must look like a material whose four images are mirrored instead. */
+/* A model whose material uses two sets of texture coordinates, from the GLB file to the drawn frame. The base colour uses the
+   first set, and the other four textures use a mirrored mapping. The frame must equal that of a material whose four images are
+   mirrored instead. */
 #include "tests/support/test.h"
 
 #include <png.h>
@@ -15,8 +16,9 @@
 
 enum { SIDE = 32, TEXELS = SIDE * SIDE, WIDTH = 320, HEIGHT = 180 };
 enum map { BASE, METAL, NORMAL, OCCLUSION, GLOW, MAPS };
-/* How the other four textures are mirrored: by a second coordinate set; by a transform that names this set and overrides
-   another; by a transform of the first set; by mirrored images with the same mapping. Or they are absent. */
+/* How the other four textures are mirrored: by a second set of coordinates; by a texture transform that selects this set
+   instead of the one that the texture names; by a texture transform of the first set; by mirrored images. BASE_ONLY: there are
+   no other textures. */
 enum way { SECOND_SET, NAMED_BY_TRANSFORM, TRANSFORMED, MIRRORED_IMAGES, BASE_ONLY, WAYS };
 static const char *const way_names[WAYS] = { "second set", "named by transform", "transformed", "mirrored images", "base only" };
 static const char PLANT[] = "plant: {name: P, time_zone: UTC}\n"
@@ -27,7 +29,7 @@ static const char PLANT[] = "plant: {name: P, time_zone: UTC}\n"
 
 /* --- the model ------------------------------------------------------------------------------------------------------------------- */
 
-/* The pattern is not symmetric under mirroring. */
+/* Computes a pixel of a test image. No image equals its mirror image. */
 static void paint(enum map map, int column, int row, uint8_t rgb[3])
 {
     double x = (column + 0.5) / SIDE, y = (row + 0.5) / SIDE;
@@ -146,7 +148,7 @@ static void save(const struct frame *frame, enum way way)
     mem_free(packed);
 }
 
-/* Draws the prepared model, with levels of detail and subdivision for its sensors. */
+/* Draws the model after preparation by plantcast-prep, with levels of detail and with triangles subdivided for its sensors. */
 static struct frame *picture_of(struct prep_case *c, enum way way)
 {
     struct site site;
@@ -167,8 +169,8 @@ static struct frame *picture_of(struct prep_case *c, enum way way)
 }
 
 struct difference {
-    int most;            /* largest difference of a channel, in levels of 255 */
-    double mean, beyond; /* mean in levels of 255; share of pixels that differ by more than 8 */
+    int most;            /* largest difference of a colour channel between the two frames, of 255 */
+    double mean, beyond; /* mean: mean difference of 255; beyond: share of the pixels that differ by more than 8 */
 };
 
 static struct difference compare(const struct frame *a, const struct frame *b)
@@ -202,8 +204,9 @@ TEST_WITH(every_way_to_say_it_looks_the_same, prep_case_set_up, prep_case_tear_d
     }
     assert_int_equal(d[NAMED_BY_TRANSFORM].most, 0);
     assert_true(d[TRANSFORMED].most <= 1);
-    assert_true(d[MIRRORED_IMAGES].mean < 0.1 && d[MIRRORED_IMAGES].beyond < 0.001); /* rounding decides at the borders of texels */
-    /* the comparison is meaningful only if the textures are visible */
+    /* mirrored images may differ slightly, because rounding decides which texel is used at the borders of texels */
+    assert_true(d[MIRRORED_IMAGES].mean < 0.1 && d[MIRRORED_IMAGES].beyond < 0.001);
+    /* checks that the four textures are visible at all; otherwise the comparisons above would prove nothing */
     assert_true(d[BASE_ONLY].mean > 3);
     for (int way = 0; way < WAYS; way++)
         frame_unref(&frames[way]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast snapshot` on one asset of the demo plant, as a user runs it: exit codes, messages and the picture's content. */
+/* `plantcast snapshot` of one asset of the demo plant, run as a user would: exit codes, messages and the picture's content. */
 #include "tests/support/test.h"
 #include <sys/wait.h>
 #include <unistd.h>
@@ -58,7 +58,8 @@ static void link_demo(const char *name)
     free(whole);
 }
 
-/* Writes a plant with only the first asset and its tags, because each run bakes the light of the whole plant. */
+/* Writes a plant with only the demo plant's first asset and that asset's tags, because each run computes the ambient light of
+   the whole plant. */
 static void write_plant(void)
 {
     char *text = read_demo("plant.yaml"), *list = read_demo("tags.csv"), *rest = NULL;
@@ -84,7 +85,7 @@ static void write_values(const char *text)
     temp_write_text(folder, "values.csv", text);
 }
 
-/* Counts pixels that are noticeably coloured. */
+/* Counts the pixels of the picture that are clearly coloured, that is, not grey. */
 static int count_colored(void)
 {
     png_image image = { .version = PNG_IMAGE_VERSION };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials with textures, holes and glass, drawn in software and compared with GL. */
+/* Materials with textures, holes and glass: frames of the software renderer compared with those of GL. */
 #include "tests/support/test.h"
 
 #include "tests/support/no_textures.h"
@@ -9,7 +9,8 @@
 static struct rig rig;
 static struct stand stand;
 
-enum { WALL, GRATING, SIGN, FENCE, WINDOW, CURTAIN, PLATES }; /* plates in the order in which make_plant() adds them */
+/* indices of the plates (assets), in the order in which make_plant() adds them */
+enum { WALL, GRATING, SIGN, FENCE, WINDOW, CURTAIN, PLATES };
 enum { PAINTED, GRATE, GLASS, SMOKE, STEEL, MATERIALS };
 enum { BASE, GLOSS, BUMPS, CREASES, LAMPS, HOLES, HAZE, TEXTURES };
 enum { SIDE_PX = 64, TEXELS = SIDE_PX * SIDE_PX, MOST_VERTICES = 1024 };
@@ -116,7 +117,8 @@ static void look(struct view *view, enum tier tier, int i)
                                     .height_m = i % 5 == 4 ? 3.5 : 0 };
 }
 
-/* Compares views from both sides, near and far, in every look, with sections and selections. */
+/* Draws twelve views from both sides, near and far, in several looks, some with section planes or a selected asset. At most the
+   fraction may_differ of the pixels may differ between software and GL. */
 static void compare_all(enum tier tier, double may_differ)
 {
     for (int i = 0; i < 12; i++) {
@@ -142,10 +144,13 @@ TEST(test_previews)
 
 TEST(test_refined)
 {
-    compare_all(TIER_REFINED, 0.06); /* here rims of holes are smooth, and the nearest pane is always drawn in front */
+    /* more differences than in previews, because the refined software frame has smooth rims of holes and always blends panes in
+       order of depth */
+    compare_all(TIER_REFINED, 0.06);
 }
 
-/* Each plate alone, so that nothing else differs. */
+/* Draws each plate alone, so that a difference is due to this plate, with a limit of its own for the share of pixels that may
+   differ. */
 TEST(test_each)
 {
     static const double may_differ[] = { [SIGN] = 0.003, [FENCE] = 0.03, [WINDOW] = 0.002, [CURTAIN] = 0.002 };
@@ -161,7 +166,8 @@ TEST(test_each)
         }
 }
 
-/* Recolouring what is visible through glass and gratings equals drawing it again. */
+/* After readings have changed, surfaces seen through glass and gratings are only recoloured. The result must equal a frame that
+   is drawn completely. */
 TEST(test_new_readings)
 {
     struct view view;

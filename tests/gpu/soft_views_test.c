@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames of both tiers without a GPU compared with GL: every pixel and every marker. */
+/* Compares previews and refined frames of the software renderer with those of GL: every pixel (up to a share given in each
+   test) and every marker. */
 #include "tests/support/test.h"
 
 #include "render/soft/kernels.h"
@@ -11,7 +12,7 @@
 static struct rig rig;
 static struct stand stand;
 
-/* Runs the following statement for both tiers. */
+/* Runs the following statement once for previews and once for refined frames. */
 #define EACH_TIER(tier) for (enum tier tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
 
 TEST(test_home)
@@ -24,7 +25,7 @@ TEST(test_home)
 
 TEST(test_sizes)
 {
-    enum { ONE_ROW_MORE = 185 }; /* height in pixels, one row more than a tile */
+    enum { ONE_ROW_MORE = 185 }; /* height in pixels: one row more than whole tiles of the software renderer */
     static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, ONE_ROW_MORE } };
     EACH_TIER(tier)
         for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
@@ -39,7 +40,7 @@ TEST(test_looks)
     struct view view = soft_view(&stand, TIER_PREVIEW, 400, 300);
     view.look = LOOK_FLAT;
     view.colormap = (int)colormap_count(NULL) - 1;
-    view.range_min = 30; /* some values lie below the range and some above */
+    view.range_min = 30; /* range within the readings, so that some values lie below it and some above */
     view.range_max = 70;
     soft_assert_like_gl(&stand, &view, 0.002);
     view = soft_view(&stand, TIER_REFINED, 640, 360);
@@ -53,7 +54,7 @@ TEST(test_looks)
     soft_assert_like_gl(&stand, &view, 0.005);
 }
 
-/* Cameras all around, far away, from below and among the pipes, where triangles extend behind the eye. */
+/* Cameras around the plant, far away, below it, and among the pipes, where some triangles extend behind the eye. */
 TEST(test_cameras)
 {
     EACH_TIER(tier) {
@@ -65,7 +66,8 @@ TEST(test_cameras)
     }
 }
 
-/* Orthographic cameras all around and above: wide ones, and narrow ones that stand among the pipes. */
+/* Orthographic cameras around and above the plant: with a wide field of view, and with a narrow one that stands among the
+   pipes. */
 TEST(test_orthographic)
 {
     for (int i = 0; i < 24; i++) {
@@ -103,7 +105,7 @@ TEST(test_sun)
 {
     EACH_TIER(tier) {
         struct view view = soft_view(&stand, tier, 400, 300);
-        for (int i = 0; i < 4; i++) { /* uses more lights than are cached */
+        for (int i = 0; i < 4; i++) { /* four light directions, more than the renderer caches */
             double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
             memcpy(view.light_dir, towards, sizeof(towards));
             soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.003 : 0.01);
@@ -111,7 +113,7 @@ TEST(test_sun)
     }
 }
 
-/* Outlines of 1.5 pixels: their antialiased edges differ from GL's. */
+/* The selected asset's outline is 1.5 pixels wide. Its antialiased edges may differ between software and GL. */
 TEST(test_outlines)
 {
     struct view view;
@@ -138,7 +140,8 @@ TEST(test_hidden_assets)
     }
 }
 
-/* From the third frame on, a still camera's frame is only recoloured; hatching then has softer edges. */
+/* From the third frame of a still camera on, changed readings only recolour the cached frame. More pixels may differ then,
+   because recoloured hatching has softer edges. */
 TEST(test_still_camera)
 {
     struct view view = soft_view(&stand, TIER_PREVIEW, 640, 360);
@@ -163,7 +166,8 @@ TEST(test_still_camera)
     toy_fill(stand.snapshot, 0);
 }
 
-/* After the camera stood still, a frame with a moved camera or a hidden asset must not reuse the cached frame. */
+/* The camera stands still, and then is moved or an asset is hidden: the next frame must be drawn again and must not reuse the
+   cached one. */
 TEST(test_moves_after_standing)
 {
     struct view view = soft_view(&stand, TIER_PREVIEW, 320, 200);
@@ -175,7 +179,8 @@ TEST(test_moves_after_standing)
     soft_assert_like_gl(&stand, &view, 0.01);
 }
 
-/* Colouring per pixel: isolines, bands, logarithmic scales. Edges of lines differ, because GL measures slopes differently. */
+/* Colours that are computed for each pixel: isolines, bands and logarithmic scales. Pixels at the edges of lines may differ,
+   because GL measures the field's slope differently. */
 TEST(test_lines_and_scales)
 {
     for (int i = 0; i < 5; i++) {
@@ -195,7 +200,8 @@ TEST(test_lines_and_scales)
     }
 }
 
-/* Places the camera in front of the middle of an edge, so close that the edge's triangles extend far beyond the image. */
+/* Places the camera in front of the middle of the edge between vertices v and w, so close that the triangles at this edge
+   extend far beyond the picture. */
 static void look_closely(const struct scene_asset *asset, uint32_t v, uint32_t w, struct view *view)
 {
     const struct asset_view *file = &asset->file->view;
@@ -217,10 +223,11 @@ static bool is_rim(int a, int b)
     return (a > 127) != (b > 127);
 }
 
-/* Borders of data and of uncertainty within triangles that are clipped because they extend far beyond the image. */
+/* Borders of hatching (no data, uncertain data) within triangles that are clipped because they extend far beyond the picture.
+   */
 TEST(test_patterns_close_by)
 {
-    enum { TANK = 1 }; /* the tank has a bad and an uncertain sensor */
+    enum { TANK = 1 }; /* index of the tank, which has a Bad and an Uncertain sensor */
     const struct scene_asset *asset = &stand.toy->scene.assets[TANK];
     int looked = 0, rims = 0;
     struct view view = soft_view(&stand, TIER_PREVIEW, 160, 120);
@@ -255,7 +262,8 @@ static void set_limits(bool set)
             plant->tags[tag].alarms.limits[i] = set && tag != 2 ? limits[i] : NAN;
 }
 
-/* One tag has no limits, so the area near it is plain. Assets without a field are grey. */
+/* The operator view colours the field by the sensors' alarm limits. One tag has no limits, so the surface nearest to it has no
+   colour, and assets without a field are grey. */
 TEST(test_operator)
 {
     set_limits(true);
@@ -271,7 +279,7 @@ TEST(test_operator)
     set_limits(false);
 }
 
-/* A still camera reuses the cached frame, but not for the same view with isolines. */
+/* A frame of a still camera is reused for the same view, but not for the same view with isolines added. */
 TEST(test_lines_of_a_still_camera)
 {
     struct view view, lined;
@@ -284,7 +292,7 @@ TEST(test_lines_of_a_still_camera)
     }
 }
 
-/* The implementations that are compared with the fastest one of this machine. */
+/* The implementations of the inner loops (kernels) that are compared with the fastest one that this machine supports. */
 static const struct soft_kernels *const other_kernels[] = {
     &soft_kernels_plain,
 #ifdef __x86_64__
@@ -298,18 +306,19 @@ static void compare_kernels(const struct view *view, const struct soft_kernels *
     const struct soft_kernels **kernels = &stand.renderer->by_soft->kernels, *widest = *kernels;
     struct frame *wide = stand_draw(&stand, view);
     *kernels = other;
-    struct frame *same = stand_draw(&stand, view); /* the second frame of this view is cached for recolouring */
+    /* drawing the same view a second time also tests the kernels that prepare a frame for recolouring */
+    struct frame *same = stand_draw(&stand, view);
     *kernels = widest;
     assert_memory_equal(wide->bgrx, same->bgrx, (size_t)wide->stride_bytes * (size_t)wide->height_px);
     frame_unref(&wide);
     frame_unref(&same);
 }
 
-/* The vectorised loops give the same bits as the portable ones. */
+/* The loops compiled for different vector widths must give bit-identical frames. */
 TEST(test_kernels)
 {
     const struct soft_kernels *widest = stand.renderer->by_soft->kernels;
-    /* widths whose last tile has 16 or 8 columns, and heights whose last tile has one row */
+    /* widths at which the last tile has 16 or 8 columns, or another number; the heights below leave a last tile of one row */
     static const int widths_px[] = { 640, 333, 37, 322, 330 };
     struct view view;
     if (widest == &soft_kernels_plain) {
@@ -330,7 +339,7 @@ TEST(test_kernels)
     }
 }
 
-/* Only sky: wide and tall images, narrow and wide angles, level and tilted cameras. */
+/* Views in which only the sky is visible: wide and tall pictures, narrow and wide angles, level and tilted cameras. */
 TEST(test_sky)
 {
     static const int sizes_px[][2] = { { 640, 360 }, { 1600, 40 }, { 40, 600 }, { 320, 240 } };
@@ -361,7 +370,8 @@ TEST(test_sky)
     assert_in_range(worst, 0, 2);
 }
 
-/* Ghosts in front of and behind other assets, with sections and, in previews, with a still camera. */
+/* Ghosts (translucent assets) in front of and behind other assets, with section planes; in previews also with a still camera.
+   */
 TEST(test_ghosts)
 {
     for (int i = 0; i < 24; i++) {
@@ -380,7 +390,8 @@ TEST(test_ghosts)
     }
 }
 
-/* The other looks: light has steps as fine as the colours'. */
+/* The looks `glossy` and `materials`. More pixels may differ than in the default look, because light adds small steps of
+   brightness to those of the colours. */
 TEST(test_gloss_and_materials)
 {
     for (int i = 0; i < 8; i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Split views: each half equals the frame of its own view, markers and labels stay in their half, and progressive rendering
-   equals drawing at once. */
+/* Split views, whose halves have different parameters: each half must equal the frame of its own view, markers and labels stay
+   within their half, and drawing in steps gives the same frame as drawing at once. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -20,7 +20,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Makes a split view: the left half shows values, the right half bands and isolines in other colours. */
+/* Makes a split view: the left half shows the default colours, the right half bands and isolines with another colour map. */
 static void make_view(struct view *view)
 {
     struct view right;
@@ -58,7 +58,8 @@ TEST_WITH(test_halves_are_pictures, set_up, stand_tear_down)
             assert_true(same_row(whole, parts[1], y, LEFT + DIVIDER_PX / 2, DIVIDER_PX / 2, WIDTH - LEFT - DIVIDER_PX / 2));
         }
         assert_true(memcmp(parts[0]->bgrx, parts[1]->bgrx, (size_t)LEFT * 4 * HEIGHT) != 0);
-        /* the whole view has fewer markers than its two halves, because those outside their half are dropped */
+        /* the split frame may have fewer markers than the frames of both halves together, because markers that extend into the
+           other half are dropped */
         assert_in_range(whole->marker_count, 8, markers);
         for (size_t i = 0; i < whole->marker_count; i++)
             assert_true(whole->markers[i].half == (whole->markers[i].x_px >= LEFT));
@@ -67,7 +68,8 @@ TEST_WITH(test_halves_are_pictures, set_up, stand_tear_down)
             assert_true(whole->labels[i].half == 1 && whole->labels[i].x_px == parts[1]->labels[i].x_px + LEFT);
         assert_true(whole->content == planned_content(stand.renderer, &view, stand.snapshot));
         frame_read_markers(whole, stand.snapshot, NULL);
-        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* draws both legends; the test only asserts that this ends */
+        /* draws markers and both legends; the test only requires that this neither crashes nor hangs */
+        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL);
         frame_unref(&parts[0]);
         frame_unref(&parts[1]);
         frame_unref(&whole);
@@ -95,7 +97,7 @@ TEST_WITH(test_bit_by_bit, set_up, stand_tear_down)
     assert_null(canvas);
 }
 
-/* Two split views in progress at once give the same frames as each drawn alone. */
+/* Two split views, both submitted to GL before either is complete, must give the same frames as each drawn alone. */
 TEST_WITH(test_launched_together, set_up, stand_tear_down)
 {
     struct view views[2];
@@ -127,7 +129,7 @@ TEST_WITH(test_launched_together, set_up, stand_tear_down)
     renderer_use_gl(stand.renderer, false);
 }
 
-/* A split view may become too narrow to split. */
+/* Pictures of 16 to 19 pixels width, too narrow for two halves and the divider, must be drawn without a fault. */
 TEST_WITH(test_narrow, set_up, stand_tear_down)
 {
     struct view view;

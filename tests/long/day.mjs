@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A day of a plant in one hour: temperatures recorded on a rig, 24 times as fast; twenty users who move their cameras; the
-// plant file changed and reloaded; devices that stop answering; a refused tag; a full disk; a clock set forward and back by an
-// hour; the end of a month. MINUTES: duration. Prints memory, descriptors, threads and latency, and their growth. Requires a
-// field equal to a fresh computation to the last bit, a history without gaps, and no growth of descriptors and threads.
+// A day of a plant in one hour: temperatures recorded on a test rig are played 24 times as fast, and twenty users move their
+// cameras. Meanwhile the plant file is changed and reloaded, devices stop answering, a tag is refused, a disk fills up, the
+// clock is set forward and back by an hour, and a month ends. MINUTES sets the duration. Prints memory, descriptors, threads
+// and latency, and their growth. Requires that the field equals a fresh computation to the last bit, that history has no gaps,
+// and that descriptors and threads do not grow.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -40,8 +41,8 @@ const hold = async (tag, value) => {
     });
 };
 
-// A unique value of PI-1 that the history must contain exactly. It lies above or below all readings before and after it,
-// because history drops values on the line between two readings.
+// Gives PI-1 a unique value that history must contain exactly. The value lies above or below all other readings of PI-1,
+// because history stores no points that lie on the line between two others.
 const mark = async () => {
     const n = marked++, value = (n % 2 ? -2.375 : 12.375) + n / 1024;
     const from_s = Math.floor(clock.now() / 1000) - 1;
@@ -55,7 +56,7 @@ function measure() {
     return { memory_mb: of('VmRSS') / 1024, threads: of('Threads'), descriptors: readdirSync(`/proc/${pid()}/fd`).length };
 }
 
-// Starts twenty clients that drag the camera.
+// Runs `plantcast probe` with twenty clients that move their cameras. Resolves with its report when it ends.
 const crowd = () => new Promise((done, fail) => {
     const child = spawn(join(BIN, 'plantcast'), ['probe', `http://127.0.0.1:${plant.port}/`, '--sessions', String(SESSIONS), '--seconds',
         String(PROBE_S), '--motion', 'random', '--size', '320x180', '--blind', '--json'], { stdio: ['ignore', 'pipe', 'inherit'] });
@@ -65,7 +66,7 @@ const crowd = () => new Promise((done, fail) => {
     child.on('exit', () => done(JSON.parse(out)));
 });
 
-// Events in the plant while clients watch, one per round.
+// What happens to the plant while clients watch: one of these functions per round.
 const events = [
     async function reload() {
         const text = readFileSync(plant.file, 'utf8'), turn = /description: warm/.test(text);
@@ -109,9 +110,9 @@ const events = [
     },
 ];
 
-// Compares, at points on both boxes, the daemon's field after all these events with that of a program newly started with the
-// current readings. Both report the readings and qualities that they used. If those differ, as when the device answers late on
-// a busy machine, both are asked again.
+// Compares the daemon's field after all these events, at points on both boxes, with the field that a newly started program
+// computes from the current readings. Repeats if the two used different readings or qualities, as when the device answers late
+// on a busy machine.
 async function drift(round) {
     for (const [i, tag] of ['TI-1', 'TI-2', 'PI-1'].entries())
         await hold(tag, [20 + round % 50, 70 - round % 50, round % 10][i]);
@@ -136,7 +137,7 @@ async function drift(round) {
     return worst;
 }
 
-// Returns how much row[key] grows per hour, by least squares.
+// Returns by how much row[key] grows per hour: the slope of a least-squares line.
 function slope(rows, key) {
     const n = rows.length, mean = (of) => rows.reduce((sum, row) => sum + of(row), 0) / n;
     const t = mean((row) => row.hours), y = mean((row) => row[key]);
@@ -172,8 +173,9 @@ test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 600
     for (const key of ['memory_mb', 'descriptors', 'threads', 'p95_ms'])
         console.log(`# ${key}: ${rows[0][key].toFixed(1)} at first, ${rows.at(-1)[key].toFixed(1)} at last, ` +
             `${slope(rows, key).toFixed(2)} an hour`);
-    // Compares the medians of the first and the last third: descriptors of closing connections exist for a moment, and without
-    // a watching client, memory is released before the end of a month. Each further month adds its file, read and written.
+    // Compares the median of the first third of the samples with that of the last third, because single samples vary:
+    // descriptors of closing connections exist for a moment, and the end of a month releases memory. Each month that begins may
+    // add MONTH_DESCRIPTORS for its file.
     const third = Math.ceil(rows.length / 3), median = (part, key) => part.map((row) => row[key]).sort((a, b) => a - b)[third >> 1];
     for (const [key, growth, more] of [['descriptors', 1, MONTH_DESCRIPTORS], ['threads', 1, 0], ['memory_mb', GROWTH, 0]]) {
         const early = median(rows.slice(0, third), key), late = median(rows.slice(-third), key);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* C interface to CGAL: shortest paths on polyhedra, and the union of two polyhedra. */
+/* C interface to CGAL, whose exact results the tests compare with ours: shortest paths on polyhedra, and the union of two
+   polyhedra. */
 #include "tests/oracle/geodesic.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -41,7 +42,9 @@ bool measure(const oracle_mesh *from, size_t triangle, const double weights[3], 
     std::vector<Mesh::Face_index> faces;
     if (!read(from, &mesh, &faces))
         return false;
-    auto edge = halfedge(faces[triangle], mesh); /* CGAL chooses the first corner of a face */
+    /* CGAL lists a face's corners beginning at a corner of its own choice, so the barycentric weights must be put into that
+       order */
+    auto edge = halfedge(faces[triangle], mesh);
     const Mesh::Vertex_index corners[3] = { source(edge, mesh), target(edge, mesh), target(next(edge, mesh), mesh) };
     double turned[3] = { 0, 0, 0 };
     for (int i = 0; i < 3; i++)

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A slow link: forwards TCP connections to a port of this machine, limits the bytes per second received from there and delays
-   both directions. Its socket buffers are small, so that excess data waits at the sender, as on a real link. Runs until its
-   standard input ends.
-
-   usage: relay PORT BYTES_PER_S DELAY_MS   (prints "relay: listening PORT") */
+/* Simulates a slow link: forwards TCP connections to a port of this machine, limits the bytes per second that come from that
+   port, and delays both directions. Its socket buffers are small, so that data beyond the limit waits at the sender, as on a
+   real link. Runs until its standard input ends. usage: relay PORT BYTES_PER_S DELAY_MS (prints "relay: listening PORT") */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -25,10 +23,10 @@ struct relay_chunk {
     char bytes[CHUNK_BYTES];
 };
 
-struct relay_direction { /* one direction of a connection; a ring buffer of chunks */
+struct relay_direction { /* one direction of a forwarded connection, with a ring buffer of chunks that wait for their delay */
     int from, to;
-    double bytes_per_s; /* limit of the speed in bytes per second; 0: no limit */
-    int64_t free_ns;    /* monotonic time in nanoseconds from which the next byte may be read */
+    double bytes_per_s; /* maximum number of bytes per second; 0: no limit */
+    int64_t free_ns;    /* monotonic time in nanoseconds before which no further byte is read, to keep the limit */
     unsigned first, count;
     struct relay_chunk *chunks;
 };
@@ -93,7 +91,8 @@ static void link_open(struct relay_link *link, int client, int port, double byte
         link_close(link);
 }
 
-/* Reads chunks from the sender. Returns false if the sender is gone. */
+/* Reads chunks from the sender as far as the limit and the buffer allow. Returns false if the sender has closed the connection.
+   */
 static bool take(struct relay_direction *way, int64_t now_ns)
 {
     while (way->count < CHUNKS && now_ns >= way->free_ns) {
@@ -111,7 +110,7 @@ static bool take(struct relay_direction *way, int64_t now_ns)
     return true;
 }
 
-/* Sends the chunks that are due. Returns false if the receiver is gone. */
+/* Sends the chunks whose delay is over. Returns false if the receiver has closed the connection. */
 static bool give(struct relay_direction *way, int64_t now_ns)
 {
     while (way->count > 0) {
@@ -162,7 +161,7 @@ int main(int argc, char **argv)
     fflush(stdout);
     for (char byte = 1; byte;) {
         struct pollfd waits[2] = { { .fd = listener, .events = POLLIN }, { .fd = STDIN_FILENO, .events = POLLIN } };
-        poll(waits, 2, 1); /* polls in steps of 1 ms, which is fine enough for all links */
+        poll(waits, 2, 1); /* a timeout of 1 ms is fine enough for the delays and limits of all tests */
         if (waits[0].revents)
             accept_one(listener, links, atoi(argv[1]), atof(argv[2]));
         if (waits[1].revents && read(STDIN_FILENO, &byte, 1) <= 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes a plant with many copies of a real one side by side, each with its own names. usage: repeat_plant.mjs MODEL.rvm COPIES
-// OUT.rvm MODEL.att, if it exists, becomes OUT.att.
+// Writes an RVM model that contains many copies of a real plant side by side, each with names of its own. usage:
+// repeat_plant.mjs MODEL.rvm COPIES OUT.rvm. If MODEL.att exists, its attributes are copied to OUT.att as well.
 import { closeSync, existsSync, openSync, readFileSync, writeFileSync, writeSync } from 'node:fs';
 import { copyGroup, readRvm, writeRvm } from '../e2e/support/rvm_file.mjs';
 

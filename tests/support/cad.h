@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes like those of CAD exporters: clean ones with random tessellation, and copies with the faults of exports. */
+/* Shapes like those of CAD exporters for tests: clean ones with random triangles, and copies with faults that exports have. */
 #ifndef TESTS_CAD_H
 #define TESTS_CAD_H
 #include <stddef.h>
@@ -14,32 +14,37 @@ struct cad {
 struct cad_random {
     uint64_t state;
 };
-void cad_random_start(struct cad_random *random); /* seeds from PLANTCAST_SEED, or else from the clock; prints the seed */
-double cad_random(struct cad_random *random);     /* returns a number in 0 <= x < 1 */
+/* takes the seed from the environment variable PLANTCAST_SEED, or else from the clock, and prints it, so that a failure can be
+   repeated */
+void cad_random_start(struct cad_random *random);
+double cad_random(struct cad_random *random);     /* returns a random number from 0 (included) to 1 (excluded) */
 
 void cad_finish(struct cad *cad);
 
-/* Adds a plate of across x up cells with a random diagonal in each cell; inner vertices are moved by up to half of `jitter` cells. */
+/* Adds a plate divided into across x up cells, each of two triangles with a random diagonal. Inner vertices are moved randomly
+   by up to jitter / 2 times the size of a cell. */
 void cad_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, double jitter);
-/* Adds a plate like cad_plate(), without jitter and without these cells: columns first..first + wide - 1, rows below `high`. */
+/* Adds a plate like cad_plate() without jitter and with a slot: the cells in columns first..first + wide - 1 and rows 0..high -
+   1 are missing. */
 void cad_slotted_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, int first, int wide,
                        int high);
-/* A sphere of radius 1 with 6 * cells^2 + 2 vertices. */
+/* Adds a sphere of radius 1 that is made from a cube with cells x cells squares per side, so it has 6 * cells^2 + 2 vertices.
+   */
 void cad_sphere(struct cad *cad, struct cad_random *random, int cells);
-/* A cylinder of radius 1 with open ends. */
+/* Adds a cylinder surface of radius 1 with open ends, with `around` cells around the axis and `along` cells along it. */
 void cad_cylinder(struct cad *cad, struct cad_random *random, int around, int along, double length, double jitter);
-/* A torus of radius 1 along the middle of its tube. */
+/* Adds a torus whose tube's centre line has radius 1; around, tube: number of cells around the torus and around the tube. */
 void cad_torus(struct cad *cad, struct cad_random *random, int around, int tube, double tube_radius, double jitter);
-/* An open pipe with two bends of 135 degrees and radius 1, in opposite directions. */
+/* Adds a pipe with open ends and two bends of 135 degrees in opposite directions, whose centre line has a bend radius of 1. */
 void cad_bent_pipe(struct cad *cad, struct cad_random *random, int along, int around, double pipe_radius, double jitter);
-/* A box without a lid, x * y * z cells large; its walls and bottom are one cell thick. */
+/* Adds a box without a lid whose outer size is x, y and z cells; its walls and bottom are one cell thick. */
 void cad_thin_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell);
-/* A closed box of x * y * z cells; its lowest corner is at the origin. */
+/* Adds a closed box of x * y * z cells whose lowest corner is at the origin. */
 void cad_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell);
-/* A closed tube along a horizontal figure eight that is 2 wide, so that it intersects itself. half: only its rising (1) or
-   falling (2) branch from the left end to the right end, closed there; 0: all of it. */
+/* Adds a closed tube along a horizontal figure eight that is 2 wide; the tube intersects itself at the crossing. half: 1 or 2:
+   only the branch that rises or falls from the left end to the right end, with closed ends; 0: the whole eight. */
 void cad_eight(struct cad *cad, struct cad_random *random, int along, int around, double tube_radius, int half);
-/* A closed cylinder about an axis through `centre`, rotated from z towards x. */
+/* Adds a cylinder with closed ends. Its axis goes through `centre` and is rotated by turn_rad from z towards x. */
 void cad_closed_pipe(struct cad *cad, struct cad_random *random, double radius, double length, int around, int along, int rings,
                      double turn_rad, const double centre[3]);
 
@@ -47,13 +52,14 @@ void cad_append(struct cad *cad, const struct cad *other, const double move[3]);
 
 enum cad_fault { CAD_CLEAN, CAD_SOUP, CAD_GAPS, CAD_REPEATED, CAD_HANGING, CAD_FINS, CAD_FAULTS };
 extern const char *const cad_fault_names[CAD_FAULTS];
-/* Copies the clean shape and adds the fault. vertex_of[clean vertex]: a vertex of the copy at the same position (or within the
-   gap). SOUP: no two triangles share a vertex. GAPS: cut into 14 patches, pulled apart by up to 1e-4 of the size. REPEATED: a
-   third of the triangles are reversed, and a third duplicated, reversed or not. HANGING: about every seventh triangle has an
-   edge split in two. FINS: every twentieth triangle has another triangle standing on one of its edges. */
+/* Copies a clean shape with one kind of fault. vertex_of[vertex of the clean shape] receives a vertex of the copy at the same
+   position (GAPS: near it). SOUP: no two triangles share a vertex. GAPS: the shape is cut into 14 patches that are moved apart
+   by up to 1e-4 of its size. REPEATED: a third of the triangles are reversed, and a third are present twice, partly reversed.
+   HANGING: about every seventh triangle has an additional vertex on one edge. FINS: on an edge of every twentieth triangle
+   stands a further triangle. */
 void cad_break(struct cad *broken, const struct cad *clean, enum cad_fault fault, struct cad_random *random, uint32_t *vertex_of);
 
-/* A random rotation, scale and translation. Reusing the struct gives several shapes the same motion. */
+/* A random rotation, scale and translation for cad_put(). Use the same struct to move several shapes together. */
 struct cad_place {
     double rotation[9], scale, move[3];
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inflates a depth grid and undoes its prediction. */
+/* Reads a depth grid as a client does: decompresses it and undoes the prediction of its cells. */
 #include "tests/support/depth_reader.h"
 
 #include <stdlib.h>
@@ -44,7 +44,8 @@ static int middle_of(int a, int b, int c)
 }
 
 struct codes_beside {
-    int left, up, corner; /* codes of the cells to the left, above and diagonally; 0 beyond the edge */
+    /* codes of the cell to the left, the cell above, and the cell above the left one; 0 if the cell is outside the grid */
+    int left, up, corner;
 };
 
 static struct codes_beside codes_beside_of(const uint16_t *codes, int i, int columns)
@@ -69,7 +70,8 @@ static uint16_t near_symbol(const struct depth_read *read, struct payload_bytes 
     return symbol(bytes, n.left > far ? n.left : n.up > far ? n.up : n.corner > far ? n.corner : far);
 }
 
-/* Returns the mask bit (x, y) of the whole grid, as used to predict masks in `cell`; 0 beyond the edge. */
+/* Returns the mask bit at (x, y) of the grid, which predicts mask bits in `cell`; 0 outside the grid. If the cell at (x, y) has
+   no mask, the bit follows from whether its depth is closer to the near or to the far depth of `cell`. */
 static int bit_at(const struct depth_read *read, int cell, int x, int y)
 {
     int side = read->wire.mask_side, other = y / side * read->wire.columns + x / side;

@@ -6,8 +6,8 @@
 #include "preprocess/geometry/geometry.h"
 #include "tests/support/no_textures.h"
 
-/* Makes a geometry without vertices, with one empty primitive and one material without textures. It has room for this many
-   vertices and triangles, and for a second primitive and material. */
+/* Initialises a geometry that has no vertices yet, one empty primitive, and one material without textures. Allocates room for
+   this many vertices and triangles, and for a second primitive and material. */
 static inline void geometry_begin(struct geometry *g, size_t vertices, size_t triangles)
 {
     *g = (struct geometry){ .primitive_count = 1, .material_count = 1 };

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A test's folder for models, and the model that was read last. */
+/* State of a cmocka test that reads glTF models: a folder for the files, and the model read last. */
 #ifndef TESTS_GLTF_CASE_H
 #define TESTS_GLTF_CASE_H
 #include "preprocess/geometry/geometry.h"
 
 struct gltf_case {
     char *folder;
-    struct gltf_model model; /* the last model read; valid if `good` */
+    struct gltf_model model; /* the model that was read last; valid only if `good` */
     char why[MODEL_WHY_BYTES];
     bool good;
 };
@@ -14,7 +14,8 @@ struct gltf_case {
 /* Set-up and tear-down for cmocka; the state is a struct gltf_case. */
 int gltf_case_set_up(void **state);
 int gltf_case_tear_down(void **state);
-/* Reads a model, replacing the last one. If c->good is false, c->why says what is wrong. */
+/* Reads the model file at `path` into c->model, which replaces the previous model. If c->good is false afterwards, c->why says
+   what is wrong. */
 void gltf_case_read(struct gltf_case *c, const char *path);
 /* writes the bytes to a file in the folder and reads it */
 void gltf_case_load(struct gltf_case *c, const char *name, const void *bytes, size_t size);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fixture of a Modbus source with its device and its store. */
+/* cmocka fixture with a simulated Modbus device, the source that polls it, and the store that gets the readings. */
 #include "modbus_case.h"
 
 #include <setjmp.h>
@@ -73,7 +73,7 @@ const struct reading *modbus_case_look(struct modbus_case *c, int tag)
     return &c->snapshot->readings[tag];
 }
 
-#define LOADED 4 /* factor on timeouts, for a loaded machine */
+#define LOADED 4 /* factor on the time limits given by tests, because a loaded machine is slower */
 
 void modbus_case_expect(struct modbus_case *c, int tag, uint32_t quality, double timeout_s)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus device for tests that can misbehave like real devices. */
+/* Simulates a Modbus device for tests. On request it misbehaves in the ways in which real devices do. */
 #include "modbus_device.h"
 
 #include <modbus.h>
@@ -28,13 +28,15 @@ struct device_thread {
     modbus_t *modbus;
     modbus_mapping_t *mapping, *wrong;
     int listen_fd, stop_fd;
-    int line_fd; /* the terminal's slave end, kept open so that the terminal survives while nobody else has it open */
-    int header;  /* number of bytes before the function code; the last of them is the unit number */
+    /* file descriptor of the pseudo terminal's slave end (DEVICE_LINE); kept open because the terminal is lost when nobody has
+       that end open */
+    int line_fd;
+    int header;  /* number of bytes in a request before the function code; the last of these bytes is the unit number */
     int clients[MAX_CLIENTS];
     struct {
         int64_t since_ns, heard_ns;
         int answers;
-    } of[MAX_CLIENTS]; /* state of each client, by index */
+    } of[MAX_CLIENTS]; /* state of the client with the same index in clients[] */
     size_t client_count;
     int64_t away_until_ns;
 };
@@ -63,7 +65,7 @@ static void drop_client(struct device_thread *t, size_t index, bool reset)
     close(t->clients[index]);
     t->of[index] = t->of[--t->client_count];
     t->clients[index] = t->clients[t->client_count];
-    if (t->device->away_ms) { /* the device stops listening, so connections are refused */
+    if (t->device->away_ms) { /* stops listening for away_ms, so that new connections are refused */
         t->away_until_ns = clock_mono_ns() + t->device->away_ms * NS_PER_MS;
         close(t->listen_fd);
         t->listen_fd = -1;
@@ -76,7 +78,8 @@ static bool stopped_within(struct device_thread *t, int ms)
     return poll(&stop, 1, ms) > 0;
 }
 
-/* Writes the answer that libmodbus would send into `reply`, captured through a socket pair. Returns its length. */
+/* Stores in `reply` the answer to a request that libmodbus would send. libmodbus can only write to a socket, so the function
+   passes it one end of a socket pair. Returns the number of bytes. */
 static int catch_reply(struct device_thread *t, const uint8_t *request, int bytes, modbus_mapping_t *mapping, uint8_t *reply)
 {
     int pair[2], fd = modbus_get_socket(t->modbus);
@@ -99,7 +102,8 @@ static void drip(struct device_thread *t, int fd, const uint8_t *request, int by
             break;
 }
 
-/* Sends a wrong answer with the transaction number of an earlier request, `behind` requests ago. */
+/* Sends an answer with wrong values. Over TCP, it has the transaction number of the request that came `behind` requests
+   earlier. */
 static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request, int bytes, int behind)
 {
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -112,7 +116,8 @@ static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request,
     (void)!write(fd, reply, (size_t)count); /* the client may have closed the connection */
 }
 
-/* Makes the answer of another unit, whose RTU checksum must cover the other unit's number. */
+/* Stores in `reply` an answer that appears to come from another unit (slave number); over RTU, the checksum matches that
+   number. Returns the number of bytes. */
 static int catch_foreign(struct device_thread *t, const uint8_t *request, int bytes, uint8_t *reply)
 {
     uint8_t foreign[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -124,7 +129,7 @@ static int catch_foreign(struct device_thread *t, const uint8_t *request, int by
     return count;
 }
 
-/* Sends the answer with a part of it corrupted. */
+/* Sends an answer that is corrupted in the way that `manner` selects, such as shortened or from another unit. */
 static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request, int bytes, int manner)
 {
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
@@ -145,7 +150,8 @@ static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request
     (void)!write(fd, reply, (size_t)count);
 }
 
-/* Records the pause since the last answer and the number of registers requested. */
+/* Updates the device's statistics: the shortest pause between an answer and the next request, and the numbers of registers
+   requested. */
 static void note_request(struct device_thread *t, const uint8_t *request)
 {
     struct modbus_device *device = t->device;
@@ -171,7 +177,8 @@ static void refuse(struct device_thread *t, const uint8_t *request, int code)
     modbus_reply_exception(t->modbus, request, (unsigned)code);
 }
 
-/* Applies the behaviour that depends on the age of a connection. Returns whether the device answers. */
+/* Simulates devices that do not answer new connections for a while, or that fail after some time or number of answers. Returns
+   whether the device answers now. */
 static bool answers_at_its_age(struct device_thread *t, size_t index)
 {
     struct modbus_device *device = t->device;
@@ -191,7 +198,8 @@ static void accept_client(struct device_thread *t)
     atomic_fetch_add(&t->device->connections, 1);
 }
 
-/* Directs the answer to the newest connection, like a serial device server, which forwards the bytes of its serial line. */
+/* Makes the newest connection receive the answer. A serial device server behaves like this: it forwards all bytes of its serial
+   line to the connection that was opened last. */
 static void turn_to_newest(struct device_thread *t)
 {
     struct pollfd pending = { .fd = t->listen_fd, .events = POLLIN };
@@ -200,7 +208,7 @@ static void turn_to_newest(struct device_thread *t)
     modbus_set_socket(t->modbus, t->clients[t->client_count - 1]);
 }
 
-/* Answers a request. Returns false if the connection must be reset. */
+/* Answers a request as the device's `manner` says. Returns false if the caller shall reset the connection. */
 static bool answer(struct device_thread *t, int fd, const uint8_t *request, int bytes)
 {
     struct modbus_device *device = t->device;
@@ -277,7 +285,7 @@ static void open_socket(struct device_thread *t)
     modbus_free(listener);
 }
 
-/* Closes idle connections, and listens again after `away_ms`. */
+/* Closes connections that were idle for idle_ms, and begins to listen again when away_ms is over. */
 static void tend(struct device_thread *t)
 {
     int64_t now_ns = clock_mono_ns();
@@ -309,11 +317,12 @@ static void *device_main(void *arg)
     }
 }
 
-/* Opens the pseudo terminal, which counts as the only client. */
+/* Opens a pseudo terminal as the serial line; its master end takes the place of the only client. */
 static void open_line(struct device_thread *t)
 {
     struct termios raw = { 0 };
-    t->listen_fd = eventfd(0, EFD_CLOEXEC); /* never readable: there are no other clients */
+    /* a descriptor that never becomes readable instead of a listening socket, because a serial line has no further clients */
+    t->listen_fd = eventfd(0, EFD_CLOEXEC);
     cfmakeraw(&raw);
     must(openpty(&t->clients[0], &t->line_fd, t->device->line, &raw, NULL) == 0, "openpty");
     t->client_count = 1;
@@ -323,7 +332,7 @@ void device_start(struct modbus_device *device)
 {
     struct device_thread *t = mem_new(sizeof(*t));
     t->device = device;
-    signal(SIGPIPE, SIG_IGN); /* clients may close their connection before reading an answer */
+    signal(SIGPIPE, SIG_IGN); /* without this, writing an answer to a client that has closed its connection would end the process */
     t->line_fd = -1;
     t->header = device->wire == DEVICE_TCP ? 7 : 1;
     t->modbus = device->wire == DEVICE_TCP ? modbus_new_tcp("127.0.0.1", 502) : modbus_new_rtu("/dev/null", 9600, 'N', 8, 1);
@@ -351,7 +360,8 @@ void device_stop(struct modbus_device *device)
     eventfd_write(t->stop_fd, 1);
     pthread_join(t->thread, NULL);
     while (t->client_count)
-        drop_client(t, 0, true); /* closes with RST, which leaves no TIME_WAIT, so that the port is free at once */
+        /* closes connections with RST instead of FIN, so that none stays in TIME_WAIT and the port can be reused at once */
+        drop_client(t, 0, true);
     if (t->listen_fd >= 0)
         close(t->listen_fd);
     if (t->line_fd >= 0)

@@ -80,7 +80,8 @@ void maker_require(struct model_maker *maker, const char *extension)
     maker_add(maker, "extensionsUsed", json_string(extension));
 }
 
-/* Returns the model's JSON. Its root nodes are those that are not children; the loader finds them without a scene. */
+/* Returns the model as JSON text, with `uri` as the location of its buffer. It has no scene: the loader then takes the nodes
+   without a parent as root nodes. */
 static char *json_of(struct model_maker *maker, const char *uri)
 {
     json_t *buffers = json_object_get(maker->root, "buffers"), *first = json_array_get(buffers, 0);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes models of one wavy sheet in all encodings of glTF. */
+/* Makes glTF models of the same wavy sheet in every way that glTF offers to encode it, as seeds for fuzzing and for tests of
+   the loader. */
 #include "tests/support/model_seeds.h"
 
 #include <math.h>
@@ -106,7 +107,7 @@ static void indices16(struct model_maker *m, const struct wavy_sheet *s, struct 
     finish(m, seed);
 }
 
-/* One triangle strip per row of squares, each a primitive over the same vertices. */
+/* Encodes each row of squares as a triangle strip; each strip is a primitive, and all primitives share the vertices. */
 static void strips(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int at = positions(m, s), mesh = maker_mesh(m, json_null());
@@ -126,7 +127,8 @@ static void strips(struct model_maker *m, const struct wavy_sheet *s, struct see
     finish(m, seed);
 }
 
-/* Each square is a fan of four corners; all fans share one index accessor. Also adds lines and points, which must be ignored. */
+/* Encodes each square as a triangle fan of four vertices; all fans share one index accessor. Also adds lines and points, which
+   the loader must ignore. */
 static void fans(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, json_null()), list = maker_numbers(m, (uint8_t[4]){ 0, 1, 2, 3 }, 4, UBYTE, 4, "SCALAR");
@@ -148,7 +150,7 @@ static void fans(struct model_maker *m, const struct wavy_sheet *s, struct seed 
     finish(m, seed);
 }
 
-/* Three vertices per triangle, without indices; attributes interleaved. */
+/* Encodes three vertices per triangle, without indices; positions and other attributes are interleaved in one buffer view. */
 static void soup(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     float(*corners)[6] = mem_array(s->index_count, sizeof(*corners));
@@ -164,7 +166,7 @@ static void soup(struct model_maker *m, const struct wavy_sheet *s, struct seed 
     finish(m, seed);
 }
 
-/* All positions are zero, and a sparse accessor replaces every one of them. */
+/* Encodes positions as zeros, all of which a sparse accessor replaces by the real positions. */
 static void sparse(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     uint32_t *all = mem_array(s->vertex_count, sizeof(*all));
@@ -180,7 +182,7 @@ static void sparse(struct model_maker *m, const struct wavy_sheet *s, struct see
     finish(m, seed);
 }
 
-/* 16-bit positions, scaled by the node; 8-bit normals; 16-bit texture coordinates. */
+/* Encodes positions as 16-bit integers, which the node scales; normals with 8 bits, and texture coordinates with 16 bits. */
 static void quantized(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int16_t(*at)[4] = mem_array(s->vertex_count, sizeof(*at));
@@ -211,7 +213,8 @@ static void quantized(struct model_maker *m, const struct wavy_sheet *s, struct 
 
 /* --- meshopt ------------------------------------------------------------------------------------------------------------- */
 
-/* Appends a buffer view that exists only compressed, in buffer 0; buffer 1 has no data and only states the uncompressed size. */
+/* Appends a buffer view whose data exists only in compressed form, in buffer 0. Buffer 1 has no data; it only states the
+   uncompressed size. Returns the index of the view. */
 static int packed_view(struct model_maker *m, const void *bytes, size_t count, size_t stride, const char *mode, const char *filter)
 {
     bool list = strcmp(mode, "TRIANGLES") == 0, sequence = strcmp(mode, "INDICES") == 0;
@@ -267,7 +270,8 @@ static void meshopt_filters(struct model_maker *m, const struct wavy_sheet *s, s
     finish(m, seed);
 }
 
-/* Two instances; a quaternion encoded with meshopt's filter rotates one of them upside down. */
+/* Places the mesh twice with EXT_mesh_gpu_instancing; the instances' rotations are quaternions encoded with meshopt's filter,
+   and one turns the sheet upside down. */
 static void meshopt_instances(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     const float turns[2][4] = { { 0, 0, 0, 1 }, { 1, 0, 0, 0 } }, places[2][3] = { { 0, 0, 0 }, { 0, 0, 5 } };
@@ -317,7 +321,7 @@ static void draco_sequential(struct model_maker *m, const struct wavy_sheet *s, 
 
 /* --- trees, instances, materials ----------------------------------------------------------------------------------------- */
 
-/* Shared meshes: plain, mirrored, deep in a node tree, and positioned by a matrix. */
+/* Uses one mesh in several nodes: unchanged, mirrored, deep in a tree of nodes, and positioned by a matrix. */
 static void tree(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int mesh = maker_mesh(m, plain_primitive(m, s));
@@ -344,7 +348,7 @@ static void instances(struct model_maker *m, const struct wavy_sheet *s, struct 
     finish(m, seed);
 }
 
-/* PNG of 2 x 2 pixels: red, green / blue, white. */
+/* PNG file of 2 x 2 pixels: red and green in the first row, blue and white in the second. */
 static const unsigned char png[] = {
     137, 80,  78,  71, 13,  10,  26,  10,  0,   0,   0,   13,  73,  72, 68, 82, 0,   0,   0,  2,   0,   0,   0,   2,  8,
     2,   0,   0,   0,  253, 212, 154, 115, 0,   0,   0,   18,  73,  68, 65, 84, 120, 218, 99, 248, 207, 192, 192, 0,  194,
@@ -382,7 +386,8 @@ static void textured_by_uri(struct model_maker *m, const struct wavy_sheet *s, s
     finish(m, seed);
 }
 
-/* Textures on two sets of texture coordinates; a second texture uses the second set with its own transform. */
+/* Gives the material textures that use both sets of texture coordinates; the emissive texture also scales the second set by a
+   transform of its own. */
 static void textured_twice(struct model_maker *m, const struct wavy_sheet *s, struct seed *seed)
 {
     int image = maker_add(m, "images", json_pack("{s:i,s:s}", "bufferView", maker_view(m, png, sizeof(png), 0), "mimeType", "image/png"));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resources that belong to the running test and are released after its tear-down, the newest first. Resources of a group's
-   set-up, and of programs without tests, are released when the program exits. Call from any thread. */
+/* Resources of the running test that are released automatically after its tear-down, the newest first. Resources made in the
+   set-up of a group, or in programs without tests, are released when the program exits. Call from any thread. */
 #ifndef TESTS_OWNED_H
 #define TESTS_OWNED_H
 #include <jansson.h>
@@ -13,20 +13,20 @@ struct snapshot;
 struct store;
 struct workers;
 
-/* Hands a resource over to the running test: release(resource) is called once, after the test's tear-down. */
+/* Registers a resource with the running test: release(resource) is called once after the test's tear-down. */
 void owned_add(void (*release)(void *resource), void *resource);
 /* Returns the number of resources that are not released yet. */
 size_t owned_count(void);
-/* Releases all but the `kept` oldest resources. */
+/* Releases the newest resources until only the `kept` oldest ones are left. */
 void owned_release(size_t kept);
 
-/* Each of these functions creates a resource and hands it over with owned_add(), so that its caller need not release it. */
-json_t *test_json(json_t *json); /* hands `json` over and returns it; accepts NULL */
+/* Each of these functions creates a resource and registers it with owned_add(), so the caller must not release it. */
+json_t *test_json(json_t *json); /* registers an existing `json` and returns it; NULL is allowed */
 char *test_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 struct log *test_log(void); /* returns a log that prints errors only */
 struct counters *test_counters(void);
 struct snapshot *test_snapshot(size_t tag_count);
 struct store *test_store(const struct plant *plant);
-struct workers *test_workers(int threads); /* creates a pool of workers; threads 0: one thread per core */
+struct workers *test_workers(int threads); /* creates a pool of worker threads; threads: their number, 0: one per core */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant made in a test, without files. */
+/* Builds a struct plant in memory, member by member, for tests without plant files. */
 #include "plant_by_hand.h"
 
 #include <assert.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Port numbers for programs that cannot choose their own. */
+/* Reserves port numbers for programs that cannot choose a free port themselves. */
 #include "tests/support/ports.h"
 
 #include <netinet/in.h>
@@ -9,8 +9,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* The same numbers as in tests/e2e/support/ports.mjs. All ports lie below the system's own range for outgoing connections
-   (net.ipv4.ip_local_port_range begins at 32768). */
+/* The same numbers as in tests/e2e/support/ports.mjs, so that C and JavaScript tests share the locks. The ports lie below
+   32768, where the system's range for outgoing connections (net.ipv4.ip_local_port_range) begins. */
 enum { FIRST = 20000, COUNT = 1500, EACH = 4, LOCKS = FIRST + COUNT * EACH };
 
 static int listen_at(int port, in_addr_t address)
@@ -30,11 +30,12 @@ int free_port(void)
         unsigned chance = 0;
         if (getrandom(&chance, sizeof(chance), 0) != sizeof(chance))
             break;
-        /* lock, held until the process ends, however it ends */
+        /* a listening socket serves as the lock of this group of ports; it is held until the process ends, however it ends */
         int n = (int)(chance % COUNT), lock = listen_at(LOCKS + n, INADDR_LOOPBACK);
         if (lock < 0)
             continue;
-        int probe = listen_at(FIRST + n * EACH, INADDR_ANY); /* tries the port itself, because another program may listen there */
+        /* also tries to listen on the port itself, because a program that does not use these locks may have it */
+        int probe = listen_at(FIRST + n * EACH, INADDR_ANY);
         if (probe >= 0) {
             close(probe);
             return FIRST + n * EACH;

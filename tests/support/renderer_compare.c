@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A framebuffer with four floats per pixel, and access to the GL backend's settings. */
+/* Draws the field's values with GL into a framebuffer of four floats per pixel, so that tests can compare numbers instead of
+   colours. Also changes settings of the GL backend. */
 #include "tests/support/renderer_compare.h"
 
 #include <limits.h>
@@ -14,8 +15,8 @@ struct measure_target {
     GLuint framebuffer, numbers, depth;
 };
 
-/* Creates the target, clears it to MEASURE_NOTHING and binds it. Logs and returns false if the GPU is out of memory;
-   measure_target_finish() must still be called. */
+/* Creates the framebuffer, binds it and sets all pixels to MEASURE_NOTHING. Logs and returns false if the GPU is out of memory.
+   Call measure_target_finish() in both cases. */
 static bool measure_target_begin(struct measure_target *measure, struct log *log, int width_px, int height_px)
 {
     static const float nothing[4] = { 0, MEASURE_NOTHING, 0, 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of a fuzzer. */
+/* Runs a fuzzer's test function on its stored seed files and on random changes of them, without the fuzzing engine. */
 #include "tests/support/replay.h"
 
 #include <dirent.h>
@@ -13,8 +13,8 @@
 
 #define MAX_BYTES ((size_t)1 << 20)
 
-/* Changes one byte, a run of bytes or a digit, or cuts off the end. Only the last changes the length, so that otherwise lengths
-   in headers stay valid. */
+/* Changes an input randomly: one byte, a run of bytes or a digit, or cuts off the end. Only cutting changes the length;
+   otherwise the lengths stated in the input's headers remain true. Returns the new length. */
 static size_t change(uint8_t *bytes, size_t count)
 {
     if (count == 0)
@@ -47,7 +47,7 @@ static void replay(const char *path, int rounds, int (*feed)(const uint8_t *byte
         uint8_t *bytes = mem_array(count + 1, 1);
         size_t length = count;
         memcpy(bytes, seed, count);
-        srand((unsigned)round); /* each round has its own seed, so that it can be repeated alone */
+        srand((unsigned)round); /* seeds the random numbers with the round's number, so that a failing round can be repeated alone */
         for (int changes = rand() % 4; changes >= 0; changes--)
             length = change(bytes, length);
         feed(bytes, length);

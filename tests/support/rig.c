@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes GL contexts and plants with a renderer, and reads pixels, for GL tests. */
+/* For GL tests: creates GL contexts, sets up plants with a renderer, and reads pixels of frames. */
 #include "tests/support/rig.h"
 
 #include <errno.h>
@@ -51,8 +51,8 @@ int rig_run(struct rig *rig)
     return failed;
 }
 
-/* Returns the folder in which tests/run lets programs share expensive results, named after a hash of the inputs. NULL: nothing
-   is shared. */
+/* Returns a folder, named after a hash of the scene, in which test programs share results that take long to compute; tests/run
+   sets PLANTCAST_SHARED. NULL: results are not shared. The caller frees it. */
 static char *shared_folder(const struct scene *scene)
 {
     const char *shared = getenv("PLANTCAST_SHARED");
@@ -121,7 +121,9 @@ static uint32_t color_hash(uint32_t r, uint32_t g, uint32_t b)
 
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
 {
-    enum { SLOTS = 1024 }; /* hash table by colour with linear probing, which finds the first of equal colours */
+    /* number of entries of a hash table from colour to index in the colour map; linear probing finds the first of several equal
+       colours */
+    enum { SLOTS = 1024 };
     static const struct colormap *known;
     static int16_t places[SLOTS];
     if (known != map) {
@@ -171,7 +173,7 @@ int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deut
     static bool known_deuteranope;
     static double labs[256][3];
     static struct {
-        uint32_t color; /* colour of a pixel, with a further bit that marks the entry as used */
+        uint32_t color; /* cached colour of a pixel; a further bit marks the cache entry as used */
         int nearest;
     } found[1 << 16];
     double lab[3], least = INFINITY;

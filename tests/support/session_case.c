@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fixture of one session on the small scene, without socket, clock or render service. */
+/* cmocka fixture with one session on the small scene (small_scene.h), without a socket, a clock or a render service. */
 #include "tests/support/session_case.h"
 
 #include "base/clock.h"

@@ -48,7 +48,8 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Adds the triangles of a (columns + 1) x (rows + 1) grid of vertices just added row by row. */
+/* Adds the triangles of a grid of columns x rows cells, whose (columns + 1) x (rows + 1) vertices were just added row by row
+   from vertex `first` on. */
 static void add_grid(struct test_shape *shape, uint32_t first, int columns, int rows)
 {
     for (int y = 0; y < rows; y++)
@@ -95,7 +96,9 @@ void shape_box(struct test_shape *shape, uint32_t material, const double low[3],
     end(shape);
 }
 
-struct curve_point { /* a point of a profile curve around the axis: position along the axis, radius, and normal */
+/* a point of the profile that is rotated about the axis: its position along the axis, its distance from the axis, and the
+   normal in these two directions */
+struct curve_point {
     double along, out, normal_along, normal_out;
 };
 

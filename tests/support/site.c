@@ -42,7 +42,7 @@ static char *prepared(const char *path, const char *name)
     return folder;
 }
 
-/* Fills in random readings, each within its group's range. */
+/* Gives each tag a random reading within the range of its group. */
 static void fill(struct site *site)
 {
     for (size_t i = 0; i < site->plant->tag_count; i++) {

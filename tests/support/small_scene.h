@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two assets, two groups, three tags and one source in static memory, without any file: for tests of messages about a scene. */
+/* A scene in static memory, made without files, for tests of messages about a scene: two assets, two groups, three tags and one
+   source. */
 #ifndef TESTS_SMALL_SCENE_H
 #define TESTS_SMALL_SCENE_H
 #include "scene/scene.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plant that each test of a program draws. */
+/* The stand (plant with a renderer) that each test of a program uses. */
 #ifndef TESTS_SUPPORT_STAND_CASE_H
 #define TESTS_SUPPORT_STAND_CASE_H
 #include "tests/support/rig_case.h"
 
-extern struct stand stand; /* made by the set-up of each test */
+extern struct stand stand; /* set up anew for each test by the test's set-up function */
 
 int stand_tear_down(void **state); /* finishes the stand */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared parts of tests of distances along surfaces: an error log, worker threads, and random numbers with a printed seed. */
+/* What tests of distances along surfaces share: a log of errors, worker threads, and random numbers whose seed is printed. */
 #ifndef TESTS_SURFACE_CASE_H
 #define TESTS_SURFACE_CASE_H
 #include "base/log/log.h"
@@ -13,15 +13,15 @@ extern struct log *the_log;
 extern struct workers *workers;
 extern struct cad_random chance;
 
-/* Returns a random number between low and high. */
+/* Returns a random number from low to high. */
 double between(double low, double high);
 
-/* Returns the surface of the shape with default parameters. Fails the test if there is none. */
+/* Returns the surface of a shape, prepared with default parameters. Fails the test if the shape has no surface. */
 struct surface *surface_of(const struct cad *cad);
 
-/* Returns the value at a vertex that results from these readings of all sensors. */
+/* Returns the interpolated value at a vertex for these readings, one per sensor. */
 double influence_value(const struct influence *influence, const double *readings, size_t vertex);
-/* Adds a triangle at x = 5, separate from a shape of size 1. */
+/* Adds a triangle at x = 5, so that it is not connected to the shape, which is about 1 in size. */
 void add_triangle_apart(struct cad *cad);
 
 /* Set-up and tear-down of a cmocka group. */

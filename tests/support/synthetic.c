@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A synthetic plant of point clouds with sensors. */
+/* Makes a synthetic plant whose assets are random point clouds with sensors, for tests that need many vertices and no
+   triangles. */
 #include "tests/support/synthetic.h"
 
 #include <math.h>
@@ -33,7 +34,8 @@ static float along_axes(const float a[3], const float b[3])
 static void build_file(struct synthetic *synthetic, const struct synthetic_params *params)
 {
     static const float box_m[3] = { 10, 6, 4 };
-    static const uint32_t indices[3] = { 0, 0, 0 }; /* a degenerate triangle, because only vertices are used */
+    /* asset files need a primitive, so each asset has one degenerate triangle; tests use the vertices only */
+    static const uint32_t indices[3] = { 0, 0, 0 };
     static const struct asset_primitive primitive = { .index_count = 3 };
     static const struct asset_material material = {
         .roughness = 1,

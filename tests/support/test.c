@@ -7,7 +7,7 @@ enum { MOST = 128 };
 
 static struct {
     struct CMUnitTest tests[MOST];
-    int lines[MOST]; /* source line of each registered test, ascending */
+    int lines[MOST]; /* source lines of the tests registered so far, in ascending order */
     size_t count;
     CMFixtureFunction set_up, tear_down;
     size_t owned_by_group;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* main() for test programs without one: only then does the linker take this object from the archive. */
+/* main() for test programs that do not define it themselves. It is in an archive, from which the linker takes it only if main()
+   is missing. */
 #include "tests/support/test.h"
 
 #pragma weak tests_main

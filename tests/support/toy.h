@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant made in memory, for tests of everything after preprocessing: assets made from shapes, with real asset files. */
+/* A small plant made in memory from simple shapes, with valid asset files, for tests of the code that uses prepared plants. */
 #ifndef TESTS_SUPPORT_TOY_H
 #define TESTS_SUPPORT_TOY_H
 #include "scene/scene.h"
@@ -13,24 +13,29 @@ struct toy {
     struct scene scene;
 };
 
-/* Returns a plant with one group: "temperature", 0..100 degC, Shepard interpolation, distances along surfaces. */
+/* Returns a plant without assets and with one group: id "temperature", range 0..100 degC, Shepard interpolation, distances
+   along surfaces. */
 struct toy *toy_create(void);
 void toy_destroy(struct toy **toy);
-/* Adds an asset; takes the shape's content and leaves it empty. at_m: position of its origin. Sensors: positions in the shape's own
-   frame. Tags are named ASSET-1, ASSET-2, ... Distances are straight lines from the nearest vertex. Returns the asset's index. */
+/* Adds an asset made of `shape`, which is empty afterwards. at_m: position of its origin in the plant. sensors: positions in
+   the shape's frame; their tags are named ASSET-1, ASSET-2 and so on. A vertex's stored distance to a sensor is the
+   straight-line distance to the vertex nearest to the sensor. Returns the asset's index. */
 int toy_add(struct toy *toy, const char *id, struct test_shape *shape, const double at_m[3], const double (*sensors)[3],
             size_t sensor_count);
-/* Adds another instance of asset `of`, with its own tags at the same places; plant_from_shape: column-major, without shear. Returns its
-   index. */
+/* Adds a second instance of asset number `of`, with tags of its own at the same places of the shape. plant_from_shape:
+   column-major transform without shear. Returns the new asset's index. */
 int toy_add_again(struct toy *toy, const char *id, int of, const double plant_from_shape[16]);
-/* Call it after adding the last asset. Returns readings for every tag, all Bad_WaitingForInitialData. */
+/* Returns a snapshot with a reading for every tag, all with quality Bad_WaitingForInitialData. Call it after the last asset was
+   added. */
 struct snapshot *toy_snapshot(const struct toy *toy);
 void toy_set(struct snapshot *snapshot, int tag, double value, uint32_t quality);
 
-/* Sets the eight tags of toy_unit(): one value is beyond the range, one is uncertain and one is bad; `more` is added to all. */
+/* Sets the readings of the eight tags of toy_unit(): one lies beyond the range, one is Uncertain and one is Bad. `more` is
+   added to each value. */
 void toy_fill(struct snapshot *snapshot, double more);
 
-/* Returns a plant with a heat exchanger with 5 sensors, on saddles; a tank with 3 sensors; and pipes and a pump without sensors. */
+/* Returns a plant with four kinds of assets: a heat exchanger on saddles with 5 sensors, a tank with 3 sensors, and pipes and a
+   pump without sensors. */
 struct toy *toy_unit(void);
 
 #endif

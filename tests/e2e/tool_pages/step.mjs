@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Markers and labels stay in step with the picture while the user moves it over a slow link: each is drawn where the frame on
-// the screen shows its point, not where the newest camera would.
+// Markers and labels move together with the picture while the user moves it over a slow link: each is drawn where the frame on
+// the screen shows its point, not where the page's newest camera would show it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
@@ -13,11 +13,13 @@ import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const LEAST_VIEWS = 10, LEAST_RUN_PX = 12, FRAME_MS = 1000 / 60;
-// Encoded edges bleed a little, more so while the picture moves. On a loaded machine, pictures have fewer, larger pixels;
-// PICTURE_PX allows for up to two page pixels per picture pixel, and grows with larger ones.
+// MARK_PX: maximum distance of a marker from its point; PICTURE_PX: maximum distance of the coloured area from the box, both in
+// page pixels. Encoded edges are blurred, more so in moving pictures, which on a loaded machine have fewer and larger pixels:
+// PICTURE_PX allows for two page pixels per picture pixel and grows with larger ones.
 const MARK_PX = 1.5, PICTURE_PX = 5;
-// JPEG codes colour in blocks of 16 pixels, which in a few rows extend some pixels beyond the box. A mesh that stretches over a
-// step in depth would colour whole areas beyond the box.
+// WARPED_PX: distance beyond the box, in page pixels, up to which coloured pixels are normal: JPEG codes colour in blocks of 16
+// pixels, which may extend beyond the box in a few rows. A wrong warp, which stretches across a step in depth, would colour
+// whole areas farther away.
 const WARPED_PX = 8, WARPED_SHARE = 0.002; // WARPED_SHARE: maximum share of coloured pixels that lie farther than WARPED_PX beyond the box
 let plant, relay;
 
@@ -26,7 +28,7 @@ before(async () => {
         return;
     plant = await TinyPlant.running({ fresh: true });
     await plant.tell('set TI-1 94');
-    await plant.tell('set TI-2 94'); // gives the field one colour everywhere
+    await plant.tell('set TI-2 94'); // both sensors have the same value, so that the whole field has one colour
     relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 120 });
 });
 after(async () => {
@@ -34,16 +36,17 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Records for every drawn frame: the positions of markers and box corners by this test's own projection, with that frame's
-// camera and with the page's newest camera; where the page has drawn markers; their pixels; and the coloured area of the
-// picture.
+// Records for every drawn frame: where markers and the box's corners should be, projected by this test's own code with that
+// frame's camera and with the page's newest camera; where the page has drawn the markers; whether the pixels there are white;
+// and the bounds of the picture's coloured area.
 const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
     const { viewport, session, overlay } = globalThis.plantcast, { onDrawn } = viewport, picture = document.getElementById('picture');
     const marks = document.getElementById('overlay'), ratio = devicePixelRatio, { min, max } = session.model.asset('E-101').bounds;
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
     const minus = (a, b) => a.map((v, i) => v - b[i]), dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
     const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d], unit = (a) => a.map((v) => v / Math.hypot(...a));
-    // returns a function that projects a point, in multiples of the picture's height from the picture's centre
+    // Returns a function that projects a point of the plant to the picture: x and y from the picture's centre, in multiples of
+    // the picture's height.
     const seenFrom = ({ eye, target, up, fov }) => (point) => {
         const forward = unit(minus(target, eye)), right = unit(cross(forward, up)), d = minus(point, eye);
         const far = 2 * Math.tan((fov * Math.PI) / 360) * dot(d, forward);
@@ -54,7 +57,8 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
         return [width / 2 + x * height, height / 2 + y * height];
     };
     const bounds = (points) => [0, 1].flatMap((i) => [Math.min(...points.map((p) => p[i])), Math.max(...points.map((p) => p[i]))]);
-    // Only runs of coloured pixels count: single ones are remains of earlier frames in the codec.
+    // Counts only coloured runs of several pixels, because single coloured pixels are traces that the codec leaves of earlier
+    // frames.
     const coloured = () => {
         const { width, height } = picture, { data } = picture.getContext('2d').getImageData(0, 0, width, height), ends = [];
         const leastRun = (LEAST_RUN_PX * width) / viewport.width;
@@ -71,7 +75,7 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
             }
         return ends.length > 100 ? bounds(ends.map(([x, y]) => [(x * viewport.width) / width, (y * viewport.height) / height])) : null;
     };
-    const whiteAt = ([x, y]) => { // whether a marker's white disc is drawn at a position
+    const whiteAt = ([x, y]) => { // returns whether the overlay shows a marker's white disc at this position
         const { data } = marks.getContext('2d').getImageData(Math.round(x * ratio), Math.round(y * ratio), 1, 1);
         return Math.min(...data) > 200;
     };
@@ -108,7 +112,8 @@ async function look(page) {
     await watch(page);
 }
 
-// step(i) moves the pointer on, until enough frames were seen.
+// Calls step(i), which moves the pointer a little further, until frames from at least LEAST_VIEWS different cameras were seen,
+// or 4000 times.
 async function move(page, step) {
     const enough = () => page.evaluate((least) => new Set(globalThis.frames.map(({ eye }) => eye.join())).size >= least, LEAST_VIEWS);
     for (let i = 1; i < sweep(100, 50) || (i < 4000 && !await enough()); i++) {
@@ -140,7 +145,7 @@ const middle = async (page) => {
     return [box.x + box.width / 2, box.y + box.height / 2];
 };
 
-// Without WebGL 2, the page shows the server's pictures as they arrive.
+// Disables WebGL 2, so that the page shows the server's pictures unchanged instead of warping them to its newest camera.
 const withoutWarp = () => { delete globalThis.WebGL2RenderingContext; };
 
 test('markers and labels stay in step while the mouse turns, moves and zooms the picture', options, async (t) => {
@@ -182,8 +187,8 @@ sweep(test, () => {})('markers and labels stay in step with fingers, on a tablet
     }
 });
 
-// Records every drawing of a picture from the page's own camera: how many animation frames after that camera was set, how far
-// the markers are from where that camera has them, and the bounds of the coloured pixels and of the box.
+// Records every picture that the page has warped to its own camera: how many animation frames after that camera was set it was
+// drawn, the positions of the markers, and the runs of coloured pixels.
 const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
     const { viewport, session, overlay } = globalThis.plantcast, { onDrawn } = viewport, cameras = [];
     let frame = 0;
@@ -194,7 +199,7 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
     };
     requestAnimationFrame(count);
     session.on('camera', () => cameras.push({ camera: session.camera, frame }));
-    // Returns runs of coloured pixels as [left, right, top].
+    // Returns the runs of coloured pixels in a canvas as [left, right, top] in page pixels.
     const colouredIn = (canvas) => {
         const { width, height } = canvas, copy = new OffscreenCanvas(width, height).getContext('2d'), runs = [];
         copy.drawImage(canvas, 0, 0);
@@ -218,8 +223,8 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
         copy.drawImage(canvas, 0, 0, width, height);
         return new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer);
     };
-    // Returns how many pixels of the canvas are none of the three that a fade may show: a pixel of the warped picture, a pixel
-    // of the server's picture that replaces it, or a transparent pixel.
+    // While a warped picture is replaced by the server's picture, each pixel may be that of the warped picture, that of the
+    // server's picture, or transparent. Returns how many pixels of the canvas are none of these, that is, mixtures.
     let warpedPixels;
     const countMixed = (canvas) => {
         const server = pixelsOf(viewport.canvas, canvas.width, canvas.height);
@@ -237,7 +242,8 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
         const { canvas } = viewport.warp;
         warpedPixels = pixelsOf(canvas, canvas.width, canvas.height);
         const asked = cameras.find(({ camera }) => camera === session.picture.camera);
-        const isFirst = asked && !asked.isSeen; // a newer picture may be drawn again from a camera that was used before
+        // only the first drawing with a camera measures the delay: later ones draw a newer picture with the same camera
+        const isFirst = asked && !asked.isSeen;
         if (asked)
             asked.isSeen = true;
         globalThis.warped.push({ frames: isFirst ? frame - asked.frame : 0, isNewest: session.picture.camera === session.camera,
@@ -247,8 +253,9 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
     };
 }, LEAST_RUN_PX);
 
-// Ends the counting of watchWarped(). Then counts animation frames, drawings and timers until the server has answered two
-// pings, except the timer that checks whether the server still answers. news: number of other messages from the server.
+// Ends the counting of watchWarped(). Then counts animation frames, drawings and timers of the page until the server has
+// answered two pings; the timer that checks for the server's answers is not counted. news: number of other messages that the
+// server sent meanwhile.
 const still = (page) => page.evaluate(() => new Promise((done) => {
     globalThis.rests = true;
     requestAnimationFrame(done);
@@ -275,7 +282,7 @@ const still = (page) => page.evaluate(() => new Promise((done) => {
     };
 })));
 
-// Returns the share of coloured pixels that lie farther than WARPED_PX beyond the box around these points.
+// Returns the share of coloured pixels that lie more than WARPED_PX outside the bounding rectangle of the points `places`.
 function partBeyond(runs, places) {
     const [[left, top], [right, bottom]] = [[Math.min, -WARPED_PX], [Math.max, WARPED_PX]]
         .map(([most, by]) => [0, 1].map((axis) => most(...places.map((place) => place[axis])) + by));
@@ -287,7 +294,8 @@ function partBeyond(runs, places) {
     return 1 - within / all;
 }
 
-// Hides that the browser emulates WebGL, so that the page uses it for drawing.
+// Replaces the name of the WebGL implementation, so that the page does not notice the browser's software emulation, for which
+// it would not use WebGL.
 const asGpu = () => {
     const { getParameter } = WebGL2RenderingContext.prototype;
     WebGL2RenderingContext.prototype.getParameter = function renamed(name) {
@@ -365,7 +373,7 @@ const followsHand = (painter, ...script) => async (t) => {
         let rest;
         do
             rest = await still(page);
-        while (rest.news > 0); // repeats if a message arrived, for example about a reading that a busy machine read late
+        while (rest.news > 0); // repeats if the server sent a message meanwhile, such as a reading that arrived late on a busy machine
         assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view causes no frames, draws or timers');
         if (painter === 'GlPainter')
             await loseContext(page);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The toolbar's tools: frozen values, a distance, a picture, links with a QR code, following and leading, dark and light.
+// The tools of the page's toolbar: holding the present values, measuring a distance, saving a picture, links with a QR code,
+// following and leading other sessions, and the dark and light themes.
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -41,7 +42,8 @@ const placeOf = (point) => drawnAt(page, point);
 test('a button freezes the values, and lets them go on', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].value === 80);
     const since = await page.evaluate(() => globalThis.plantcast.session.clockUs());
-    await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 5e6, since); // waits until TI-1 has been 80 for 5 s
+    // waits until TI-1 has been 80 for 5 s, so that the instant being held lies within the recorded history
+    await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 5e6, since);
     await page.locator('#hold').click();
     await waitForHealth(page, 'past');
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
@@ -163,7 +165,8 @@ test('the saved picture equals the picture on the screen', options, async () => 
     assert.match(file.suggestedFilename(), /^Two boxes \d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ\.png$/);
     const kept = await readPng(page, readFileSync(await file.path()));
     assert.ok(contrast(kept) > 5);
-    const { mean } = deltaE(shown, kept); // CIELAB difference: only the saved picture contains markers, legend and clock
+    // mean colour difference (CIELAB); it is not 0, because only the saved picture contains markers, legend and clock
+    const { mean } = deltaE(shown, kept);
     assert.ok(mean < 4, `mean difference between the saved and the shown picture: ${mean}`);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'difference', baseline: 'now' }));
     await page.locator('#snapshot').click();
@@ -204,7 +207,8 @@ test('a saved picture has the page\'s theme, and the active notes below', option
     const dark = await save('saved-notes-dark');
     assert.equal(dark.height, light.height);
     assert.ok(Math.max(...at(dark, dark.width - 3, dark.height - 3)) < 80, 'the list of notes is dark');
-    assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'the card is dark'); // the header's card covers this corner of the picture
+    // pixel (12, 12) of the saved picture belongs to the card with the header
+    assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'the card is dark');
     await turn('#f4f5f6');
     await post({ type: 'note', text: `https://permits.example/${'valve-4711-'.repeat(30)}end` });
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 3);
@@ -226,9 +230,10 @@ test('the legend warns that values cannot be read from a glossy look', options, 
     await page.locator('#legend .note').waitFor({ state: 'detached' });
 });
 
-// Returns the text that a camera would read from the QR code on the screen.
+// Takes a screenshot of the QR code and returns the text that it encodes.
 async function scan(where) {
-    // The element around the code stays when the page replaces the code with that of a shorter link.
+    // Photographs #share-code, the element around the code, because the page may replace the code itself with that of a shorter
+    // link at any time.
     const { width, height, rgba } = await readPng(where, await where.locator('#share-code').screenshot());
     return jsqr.default ? jsqr.default(rgba, width, height)?.data : jsqr(rgba, width, height)?.data;
 }
@@ -244,7 +249,7 @@ test('an engineer sets range, factors and one sensor\'s own values, and resets t
     await page.evaluate(() => globalThis.plantcast.showTag(globalThis.plantcast.session.model.tag('TI-1')));
     await page.locator('#picture-toggle').click();
     await page.locator('#range-max').press('Control+a');
-    await page.keyboard.type('62'); // digits typed into a field do not switch the quantity
+    await page.keyboard.type('62'); // the digit keys select a quantity, but not while they are typed into a field
     await page.keyboard.press('Tab');
     await waitForParam('range', [0, 62]);
     assert.equal((await params()).group, 'temperature');
@@ -288,7 +293,7 @@ test('links to the view, the tag and the equipment, each with a QR code that a c
         if (kind === 'This view')
             assert.equal(await sent(), sentBefore, 'a link that the user does not see is not stored');
         await page.locator('#share-kind label', { hasText: kind }).click();
-        if (kind === 'This view') // the server's short link takes the place of the long one
+        if (kind === 'This view') // waits until the page shows the short link from the server instead of the long link
             await page.waitForFunction(() => /\/v\/\w{8}$/.test(document.getElementById('share-link').value));
         const link = await page.locator('#share-link').inputValue();
         await page.waitForFunction(() => document.querySelector('#share-code svg path'));
@@ -316,7 +321,9 @@ test('links to the view, the tag and the equipment, each with a QR code that a c
     await other.page.locator('#toast', { hasText: 'this short link is unknown or no longer stored' }).waitFor();
     await shoot(other.page, 'short-link-unknown');
     await other.close();
-    let requests = 0; // The server never answers the first request for the link: the page starts without it and opens it later.
+    // The test never answers the page's first request for the short link's content. The page must start without it, request it
+    // again and then show the linked view.
+    let requests = 0;
     const late = await openPage(links['This view'], SCREEN, null, (on) => on.route('**/api/v1/link?*', (route) =>
         requests++ > 0 && route.continue()));
     await late.page.waitForURL(/#group=.*colormap=cividis/);
@@ -433,7 +440,8 @@ test('others follow; handing over the lead keeps the shown view', options, async
         await page.locator('#following', { hasText: 'Following the view of another user' }).waitFor();
         await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
         await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
-        await second.page.waitForFunction(() => { // the second session may become the leader before its first picture
+        // The second session may become the leader before it has received its first picture, so the test waits for that.
+        await second.page.waitForFunction(() => {
             const { picture, paramsSeq } = globalThis.plantcast.session;
             return picture?.paramsSeq === paramsSeq;
         });
@@ -454,14 +462,16 @@ test('the theme switches to dark and back to light, and survives a reload', opti
     await page.evaluate(() => {
         const { session } = globalThis.plantcast, { width, height } = session.size;
         session.setParams({ group: 'temperature' });
-        session.setCamera(session.homeIn(width, height)); // shows the whole plant, with no equipment at the left edge
+        // chooses a camera that shows the whole plant, so that the left edge of the picture, which is tested below, shows
+        // background
+        session.setCamera(session.homeIn(width, height));
     });
-    // The code for keys and buttons is loaded when first needed, so the effect may come slightly later.
+    // Waits for the theme, because the page loads the code for keys and buttons only when it is first needed.
     const waitForTheme = (name) => page.waitForFunction((is) => document.documentElement.dataset.theme === is, name);
     await page.keyboard.press('z');
     await waitForTheme('dark');
     await settle(page);
-    await page.waitForFunction(() => { // the background of the picture must be dark, too
+    await page.waitForFunction(() => { // waits until the picture's left edge, which shows background, is dark as well
         const canvas = document.getElementById('picture');
         return Math.max(...canvas.getContext('2d').getImageData(4, Math.floor(canvas.height / 2), 1, 1).data.slice(0, 3)) < 110;
     });

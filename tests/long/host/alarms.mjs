@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Continuously raises alarms in the simulated device, has operators acknowledge each, and clears it. Compares the journals of
-// both cores with what was done.
+// Raises alarms in the simulated device all the time, lets operators acknowledge them, and clears them. Compares the alarm
+// journals of both cores with these actions.
 import { setTimeout as sleep } from 'node:timers/promises';
 import { until } from '../../e2e/support/until.mjs';
 
@@ -9,8 +9,8 @@ const PAUSE_MS = 4 * SHOWN_MS, AGAIN_MS = 5000, EARLIER_MS = 60000;
 const EVENTS = ['raise', 'acknowledge', 'clear'];
 
 export class AlarmCycles {
-    // plant: passes commands to the simulator; operators: acknowledge in turn; tags: names of the tags whose alarms run through
-    // cycles, all at the same time.
+    // plant: passes commands to the device simulator; operators: the operators who acknowledge, in turn; tags: names of the
+    // tags whose alarms are raised, acknowledged and cleared, each tag in its own cycle.
     constructor(plant, operators, tags) {
         Object.assign(this, { began: Date.now(), plant, operators, tags, failures: [], total: 0, notKept: 0, idle: new Set() });
         this.isPaused = this.isOver = false;
@@ -46,7 +46,7 @@ export class AlarmCycles {
         await this.shown(tag, 'is cleared', (state) => state === undefined || state === 'normal');
     }
 
-    // Acknowledges an alarm again and again, as a user does, until the server has confirmed it.
+    // Repeats an acknowledgement, as a user would, until the server has confirmed it.
     async acknowledge(tag, operator) {
         for (const end = performance.now() + SHOWN_MS; performance.now() < end && !this.isOver; await sleep(STEP_MS)) {
             const answer = await operator.acknowledge(tag, KIND);
@@ -79,9 +79,9 @@ export class AlarmCycles {
         this.idle.clear();
     }
 
-    // While paused: compares the cycles since the last comparison with a core's journal, and waits until a standby has received
-    // its rows. Returns { lost, twice }: rows that the journal lacks, and rows that it has too often. off_s: maximum number of
-    // seconds by which a core's clock was slow.
+    // Compares the alarm cycles since the last call with a core's journal; call it while the cycles are paused. Waits until a
+    // standby has received all rows. Returns { lost, twice }: numbers of rows that are missing or repeated in the journal.
+    // off_s: maximum number of seconds by which a core's clock was behind.
     async compare(core, off_s = 0) {
         const since = this.newest.get(core.name) ?? 0, from = new Date(this.began - off_s * 1000 - EARLIER_MS).toISOString();
         for (const end = performance.now() + JOURNAL_MS; ; await sleep(500)) {
@@ -109,8 +109,8 @@ export class AlarmCycles {
     }
 }
 
-// Returns the rows since the time `from` with an id above `since`. The journal lists the newest time first, so rows of a slow
-// clock come after older ones.
+// Returns a core's journal rows from the time `from` on whose id is above `since`. Reads all pages, because rows are sorted by
+// time, and a core whose clock was behind has dated new rows before older ones.
 async function journal(core, from, since) {
     const rows = [];
     for (let before = ''; ;) {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operators without a screen: they connect to the load balancer with the page's own connection code, and record when they were
-// blind.
+// Simulated operators without a screen. They connect to the load balancer with the page's own connection code and record the
+// periods in which they did not see the plant.
 import { Connection } from '../../../clients/web/core/connection.js';
 import { get, PlainClient } from '../../e2e/support/plain_client.mjs';
 
 const PICTURE_MS = 2000, ANSWER_MS = 15000, NOTICED_MS = 1000;
 const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
 
-// PlainClient with the interface of a browser's WebSocket, and with the load balancer's cookie as a browser keeps it.
+// PlainClient with the interface of a browser's WebSocket. It stores the load balancer's cookie and sends it again, as a
+// browser does.
 class PageSocket {
     constructor(port, jar) {
         this.open(port, jar).catch(() => this.end({ code: 1006, reason: '' }));
@@ -43,7 +44,8 @@ class PageSocket {
 }
 
 export class Operator {
-    // watched: name of a tag whose reading changes all the time: while no change arrives, the operator is blind.
+    // watched: name of a tag whose reading changes all the time; the operator counts as not seeing the plant while no change of
+    // this tag arrives.
     constructor({ name, port, token, watched }) {
         Object.assign(this, { name, watched, tags: [], bad: new Set(), alarms: new Map(), live: false, frameAt: 0, gaps: [], seq: 0 });
         this.visits = 0; // number of connections that opened
@@ -89,7 +91,9 @@ export class Operator {
         }
     }
 
-    // An operator sees the plant while changed good readings and pictures keep arriving.
+    // Called when readings or frames arrive. Notes that the operator sees the plant now, if the watched tag is good and has
+    // changed since the last call and a frame arrived recently. Records the period since the operator last saw the plant if it
+    // was noticeable.
     look() {
         const now = performance.now();
         if (!this.live || this.bad.has(this.watched) || !this.changed || now - this.frameAt > PICTURE_MS)
@@ -101,15 +105,16 @@ export class Operator {
     }
     get sees() { return performance.now() - this.seenAt < PICTURE_MS; }
 
-    // Returns the longest time in milliseconds in which this operator saw no live plant. Considers times that ended after
-    // `since` or have not ended yet.
+    // Returns the longest period in milliseconds in which this operator did not see the plant, of those that ended after
+    // `since` or still last.
     longestBlind(since) {
         const now = performance.now();
         return Math.max(0, ...[...this.gaps, [this.seenAt, now]].filter(([, to]) => to >= since)
             .map(([from, to]) => to - Math.max(from, since)));
     }
 
-    // Resolves with the server's answer, or null if the connection was lost or no answer came.
+    // Resolves with the server's answer to the acknowledgement, or with null if the connection was lost or no answer arrived in
+    // time.
     acknowledge(tag, kind) {
         const seq = ++this.seq;
         return new Promise((done) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A real Prometheus with the shipped rules and configuration, where a minute is shortened to a second; and the memory and
-// descriptors of processes.
+// Runs a real Prometheus with the shipped rules and configuration, but with all durations divided by 60. Also samples memory
+// and descriptors of processes.
 import { spawn } from 'node:child_process';
 import { copyFileSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -8,12 +8,13 @@ import { freePort } from '../../e2e/support/ports.mjs';
 
 const SHIPPED = resolve('deploy/prometheus'), UNITS_S = { s: 1, m: 60, h: 3600, d: 86400 }, POLL_MS = 500, FASTER = 60;
 
-// Divides the durations of `for:` and of ranges by 60.
+// Returns the rules with the durations of `for:` and of time ranges divided by 60, but at least 1 s.
 const hasten = (rules) => rules.replaceAll(/(for: |\[)(\d+)([smhd])(:1m)?/g, (whole, before, n, unit, step) =>
     `${before}${Math.max(1000, Math.round(n * UNITS_S[unit] * 1000 / FASTER))}ms${step ? ':1s' : ''}`);
 
 export class Alerts {
-    // targets: [{ port, node, scheme }]; ca: certificates of the https targets.
+    // Starts Prometheus in a folder. targets: [{ port, node, scheme }], the daemons that it reads; ca: certificate authorities
+    // (PEM) of the https targets.
     static async start(folder, targets, token, ca) {
         const alerts = new Alerts(), port = await freePort();
         Object.assign(alerts, { port, firing: new Map(), fired: [] });
@@ -47,9 +48,9 @@ export class Alerts {
             if (!firing.has(name))
                 this.firing.delete(name);
     }
-    // Returns the names of the alerts that began to fire at or after the time `at`.
+    // Returns the names of the alerts that began to fire at the time `at` or later.
     since(at) { return new Set(this.fired.filter((one) => one.at >= at).map(({ name }) => name)); }
-    // Returns the number of targets that Prometheus reads.
+    // Returns the number of daemons that Prometheus can read at present.
     async read() { return (await this.ask('targets')).data.activeTargets.filter(({ health }) => health === 'up').length; }
 
     async end() {
@@ -78,7 +79,8 @@ export class Footprint {
             } catch { /* the process has ended */ }
         }
     }
-    // Returns per process the medians of the [first third, last third] of the samples since the process started.
+    // Returns for each process and quantity (memory, descriptors, threads) the medians [of the first third, of the last third]
+    // of its samples, without those of its first 20 s.
     rows() {
         return [...this.samples].map(([name, all]) => {
             const settled = all.filter(({ age_s }) => age_s > 20), third = Math.ceil(settled.length / 3);
