@@ -26,7 +26,7 @@ enum gl_object_kind { BUFFER, TEXTURE };
 struct faults {
     /* --- below: written by the test */
     uint32_t losses;      /* number of contexts to destroy, counted from the beginning; a loss begins while `lost` is smaller */
-    uint32_t loss_calls;  /* number of GL calls that still succeed after a loss was requested */
+    uint32_t loss_calls;  /* a requested loss happens with this GL call after the request; 0, 1: the next one */
     uint32_t refusals;    /* this many further creations of a context fail; the library counts down */
     uint32_t hardware;    /* nonzero: contexts claim to be rendered by a GPU, not in software; set before the first context is created */
     uint64_t room_bytes;  /* limit on the bytes of all buffers and textures; 0: unlimited */

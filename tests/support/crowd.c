@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the plant file and the model of a plant with many equal assets, then prepares and loads the plant. */
+/* Writes the plant file and the tag list of a plant with many equal assets, then prepares and loads the plant. */
 #include "tests/support/crowd.h"
 
 #include <errno.h>

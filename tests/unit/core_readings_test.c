@@ -132,8 +132,8 @@ TEST(late_readings_are_older)
     way_finish(&way);
 }
 
-/* A renderer's store shows the same readings as the core's, whichever of the two was started first. When the link is lost, all
-   readings become Bad, also those that are then sent again unchanged. */
+/* A renderer's store shows readings as the core sent them, however old they are: it makes none stale by itself. When the link
+   is lost, it makes them Bad, until the core sends them again. */
 TEST(a_store_shows_what_the_other_shows)
 {
     struct plant *plant = plant_by_hand_create(2);

@@ -174,7 +174,7 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     /* sensor 4 is lost: from the edge of the disc that sensor 3 covers to that of sensor 5, the field is linear */
     assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4);
     assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
-    /* halfway to sensor 3, sensor 5 has half of the weight of the lost one, so its uncertain reading makes the value uncertain
+    /* sensor 5, one of the two whose readings fill the lost sensor's gap, is Uncertain: the values in the gap become uncertain
        */
     u.snapshot->readings[5].quality = QUALITY_UNCERTAIN;
     assert_true(look(&u, place_of(4) - 0.3)->uncertain > 127);
@@ -326,8 +326,7 @@ CASE(test_picks_look_at_the_readings_that_matter)
     finish(&u);
 }
 
-/* Distances computed by the paper's heat method agree with exact ones within 6 cm on a strip whose width is that of its cells.
-   */
+/* Distances computed by the paper's heat method agree with exact ones within 6 cm on a strip 10 m long and 0.1 m wide. */
 CASE(test_distances_by_heat)
 {
     struct plant_in_use u;
@@ -449,7 +448,8 @@ CASE(test_directions)
     assert_false(points_at(&u, 4.5).known);
     assert_true(points_at(&u, 5.5).known);
     lost->quality = QUALITY_GOOD;
-    say(&u, "V", 1, 0.1), say(&u, "W", 1, 5); /* this vector is perpendicular to the strip, so it has no direction along the surface */
+    /* this vector is almost perpendicular to the strip, so it has no direction along the surface */
+    say(&u, "V", 1, 0.1), say(&u, "W", 1, 5);
     assert_false(points_at(&u, 4.5).known);
     finish(&u);
     write_directions(c, true);

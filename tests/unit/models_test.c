@@ -127,7 +127,7 @@ static void plant_in_five_parts(void **state)
 {
     json_t *report = prepare(*state, "plm_plant_5parts");
     assert_int_equal((int)prep_case_number(report, "models.0.skipped_lines"), 1);
-    /* part 1, with flanges thinner than the tolerance for joining, must be one connected surface */
+    /* this asset's flanges are thinner than the tolerance for joining; its surface must be one connected piece all the same */
     assert_int_equal((int)prep_case_number(report, "assets.1.surface.components_after"), 1);
 }
 

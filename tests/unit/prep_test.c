@@ -423,7 +423,7 @@ CASE(a_new_revision_costs_what_it_changes)
     assert_states(s, "unchanged", "shared", "built"); /* the second plate is elsewhere */
     assert_states(s, "unchanged", "shared", "unchanged");
     write_model(s, moved_node);
-    /* the node TT-2, which gives the position of a sensor of B, has moved; A shares B's file, so it is built again */
+    /* the node TT-2, at which A and B each have a sensor, has moved, so the file that both share is built again */
     assert_states(s, "built", "shared", "unchanged");
     write_model(s, next_nodes);
     assert_states(s, "built", "shared", "unchanged");

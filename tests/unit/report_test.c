@@ -72,7 +72,8 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         { "assets.0.surface.samples", 5000, 100000 },
         { "assets.0.surface.hidden_vertices", 0, 0 },
         { "assets.0.surface.unreachable_vertices", 0, 0 },
-        /* k, the number of joined points that are compared, is 0: the boxes have no open edges, so nothing has to be joined */
+        /* k, the number of neighbours per point with which gaps are searched, is 0: the boxes have no open edges, so nothing is
+           searched or joined */
         { "assets.0.surface.k", 0, 0 },
         { "assets.0.skipped_lines", 0, 0 },
         { "assets.0.sensors.0.surface_distance_m", 0, 1e-6 },

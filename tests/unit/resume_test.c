@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-prep is interrupted while it prepares a large facility (signals, kill -9 at any moment) and run again: it must
-   continue with what was done. */
+/* plantcast-prep is killed or interrupted by a signal while it prepares a large facility, and is run again: it must keep the
+   assets that were finished and prepare only the others. */
 #include "tests/support/test.h"
 #include <dirent.h>
 #include <errno.h>

@@ -85,7 +85,8 @@ TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
     assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6);
     assert_true(fabs(gaps.farthest_at_m[0] - 101) < 1e-5 && fabs(gaps.farthest_at_m[1] - 4) < 1e-5);
     assert_true(fabs(gaps.farthest_at_m[2] - 7) < 1e-5);
-    /* Walking along the surface from one sensor to the next, the longest distance is 4 m, between the first two sensors. */
+    /* next_m, the largest distance from a sensor to its nearest other one along the surface: 4 m, between the first two. Those
+       are 1.1 m apart only through the plate. */
     assert_true(fabs(gaps.next_m - 4) < 1e-6);
     assert_int_equal(gaps.next_tags[0], 0);
     assert_int_equal(gaps.next_tags[1], 1);

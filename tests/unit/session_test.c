@@ -62,8 +62,8 @@ static void greet(struct session_case *f)
     expect(f, "welcome status tags ");
 }
 
-/* Takes the session's next request for a frame, like the render service. Returns false if there is none, or if the session only
-   wants a frame that replaces another one. */
+/* Takes the session's next request for a frame, like the render service. Returns false if there is none, or if it may only
+   replace an earlier request: none is waiting here, so the render service would decline it. */
 static bool ask(struct session_case *f, struct frame_request *request)
 {
     if (!session_next_request(f->session, f->now_ns, request) || request->only_replace)

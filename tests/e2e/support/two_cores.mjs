@@ -13,8 +13,7 @@ import { promise } from './promise.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
 
 export const TAKE_OVER_MS = 5000;
-// address from which the standby connects to the leader; it differs from 127.0.0.1 so that the leader's log and limits can tell
-// them apart
+// address from which each core connects to the other one, so that tests/faults/late_peer.c can delay just these connections
 export const STANDBY_HOST = '127.0.0.9';
 
 // Returns why these tests cannot run on this machine; false: they can.
