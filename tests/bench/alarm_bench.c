@@ -40,7 +40,7 @@ struct alarm_bench {
     struct alarms *alarms;
     struct sample_event *events;
     struct snapshot *snapshot;
-    int64_t second_ns; /* time at which the next simulated second begins */
+    int64_t second_ns; /* simulated time, in ns, at which the next simulated second begins */
     int changes;
 };
 
@@ -61,8 +61,8 @@ static double second(struct alarm_bench *bench)
     return (double)(clock_work_ns() - begun_ns) / 1e6;
 }
 
-/* Each second FLOOD_HZ tags exceed a limit, and those of the second before return within theirs. Returns the largest number of
-   milliseconds of work per second. */
+/* Simulates an alarm flood: in each second FLOOD_HZ tags exceed a limit, and those of the second before return within their
+   limits. Returns the work for the worst second, in milliseconds. */
 static double flood(struct alarm_bench *bench)
 {
     double worst_ms = 0;
@@ -120,7 +120,8 @@ static void count_row(void *arg, const struct journal_row *r)
     ++*(int *)arg;
 }
 
-/* Measures the query for the states of all alarms at an instant, and the query for a page of the journal from that instant. */
+/* Measures two queries of the journal for instants in the past: the states of all alarms at the instant, and the page of rows
+   before it. */
 static bool look_back(void)
 {
     char *folder = temp_folder();

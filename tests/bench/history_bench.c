@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of the historian, printed as one JSON line per row. */
+/* Cost of recording and querying history, in processor time and bytes on the disk; prints one JSON object per line. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +36,8 @@ static double noise(void)
     return (double)rand() / RAND_MAX - 0.5;
 }
 
-/* Writes values that drift and have noise, like a transmitter's. wander: drift in units per second. */
+/* Writes one sample of each tag to the store. Values drift at random by up to `wander` units per second and have noise, like
+   those of transmitters. */
 static void write_values(struct store *store, struct sample *samples, double wander, double noise_size)
 {
     for (int i = 0; i < TAGS; i++) {

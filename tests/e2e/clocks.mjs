@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The clocks of a core, a renderer and a page differ by an hour: ages are still those of the readings, and all times follow the
-// core's clock.
+// The clocks of a core, a renderer and a page differ by an hour: the shown age of readings must still be right, and all times
+// must follow the core's clock.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';

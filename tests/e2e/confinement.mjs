@@ -13,8 +13,8 @@ import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 import { zip } from './support/zip.mjs';
 
 const ESCAPE = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/escape');
-// each step of a reader is ended after --timeout, here 10 s: if a run takes longer than this, the limit did not work, however
-// busy the machine
+// Upper bound for a whole run, in seconds. Each step of a reader is ended after --timeout (10 s here), so a longer run means
+// that the timeout did not work, even on a busy machine.
 const ENDLESS_S = 200;
 const absent = [...missing(), ...['plantcast-import', 'plantcast-match'].filter((name) => !existsSync(join(BIN, name)))];
 absent.push(...[ESCAPE, `${ESCAPE}.so`].filter((path) => !existsSync(path)));
@@ -24,7 +24,7 @@ const ASK = 'import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))';
 const abi = Number(spawnSync('/usr/bin/python3', ['-c', ASK], { encoding: 'utf8' }).stdout);
 const unguarded = skip || (abi >= 2 ? false : `this kernel has ABI ${abi} of Landlock; 2 is needed to hold all of this back`);
 
-// Returns a folder with the programs in which the mesh reader is replaced.
+// Returns a folder with copies of our programs, in which the program `reader` takes the place of the mesh reader.
 function programs(folder, reader, ...more) {
     const bin = join(folder, 'bin');
     mkdirSync(bin);
@@ -183,7 +183,9 @@ test('without Landlock, models are read under the system call filter, and a warn
         assert.match(stderr, missingLine);
         const got = Object.entries(attempts(stdout)).filter(([, how]) => how === 'succeeded').map(([name]) => name);
         console.log(`# by system calls alone, these are not held back: ${got.join(', ')}`);
-        for (const name of got) // without Landlock, a process can reach files, and the daemon's process where it is root; nothing else
+        // On a kernel without Landlock, a compromised reader can reach files and start programs, and, if it is root, open the
+        // daemon's process. It must not succeed with anything else.
+        for (const name of got)
             assert.match(name, /^(read|list|create|append|mkdir|rename|open|program|shell)-?/);
     } finally {
         await plant.destroy();

@@ -45,8 +45,8 @@ const body = async (node, path, token) => {
     const answer = await node.fetch(path, token);
     return [answer.status, answer.headers.get('content-type'), await answer.text()];
 };
-// Returns the answers of both nodes, read while the core's answer did not change: it includes the first live row after the
-// range, which is written at an unknown time.
+// Returns the answers of the core and of the renderer to the same request. Repeats until the core answers the same before and
+// after the renderer: answers end with the first row after the range, and the core may record that row at any moment.
 async function bothAt(path) {
     for (;;) {
         const earlier = await body(core, path), here = await body(renderer, path), there = await body(core, path);
@@ -156,8 +156,8 @@ test('"an hour ago" follows the core\'s clock, even if the renderer\'s clock is 
     await off.stop();
 });
 
-// Returns the points of the range, without the first live row after it, which the answer also has and which is written at an
-// unknown time.
+// Returns the recorded points within the range. The answer also has the first point after the range, which the core may record
+// at any moment, so it is left out.
 const recorded = async (path) => {
     const { series, to_us: end } = JSON.parse((await body(renderer, path))[2]);
     return series.map(({ points }) => points.filter(([us]) => us <= end));

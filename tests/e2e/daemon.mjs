@@ -30,7 +30,7 @@ after(() => plant?.destroy());
 
 const valueOf = (message, index) => message.values.find((row) => row[0] === index);
 
-// Waits until the newest row of a tag satisfies the condition, and returns it.
+// Waits until the newest row that the client got for a tag satisfies question(row). Returns that row.
 const tagUntil = (client, index, what, question, timeoutMs) => client.until(`tag ${index}: ${what}`, () => {
     const rows = client.texts.filter((m) => m.type === 'tags').map((m) => valueOf(m, index)).filter(Boolean);
     const row = rows.at(-1);

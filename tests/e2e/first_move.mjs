@@ -77,7 +77,8 @@ test('the picture of the first camera move is as good as a refined one within a 
     t.diagnostic(said.join('; '));
     const good = seen[alike.findIndex((ssim) => ssim >= LEAST)], first = alike[seen.findIndex(({ still }) => still)];
     assert.ok(first >= LEAST, `the picture is refined at once, not in two stages: ${said.join('; ')}`);
-    // The first previews of a new page are small, because its bandwidth is still unknown.
+    // Until SMALL_MS the page may get smaller previews, because the server does not know its bandwidth yet; later pictures must
+    // have the full size.
     assert.ok(seen.every((one) => one.fullWidth === image.width || one.at <= SMALL_MS),
         `the picture has the viewport's size: ${said.join('; ')}`);
     assert.ok(good.at <= WITHIN_MS, said.join('; '));

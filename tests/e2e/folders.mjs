@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Root runs backup, restore and token in a folder that the daemon may write: symlinks and other users' files cannot redirect
-// them, and other users cannot read their results. Folders as in deploy/pages/SERVICE.md.
+// Root runs `plantcast backup`, `restore` and `token` in a folder in which the daemon's user may write, with owners as in
+// deploy/pages/SERVICE.md. Symlinks and files of that user must not make root write elsewhere, and other users must not be able
+// to read the results.
 import assert from 'node:assert/strict';
 import {
     chmodSync, chownSync, existsSync, linkSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,

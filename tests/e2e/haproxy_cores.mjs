@@ -13,7 +13,7 @@ import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/
 const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 240000 };
 const CHECKS_MS = 1500; // the proxy checks its servers once a second
 const HOST = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
-let server, two, renderer, proxy, plain; // plain: a proxy in front of the two cores only, without renderers
+let server, two, renderer, proxy, plain; // plain: a second HAProxy, which balances the two cores only and has no renderers
 
 before(async () => {
     if (skip)
@@ -38,7 +38,7 @@ after(async () => {
 });
 
 const ask = (path, token = two.nodes.tokens.viewer) => get(proxy.port, path, 'GET', `Authorization: Bearer ${token}\r\n`);
-// Returns the cores to which the proxy sends requests.
+// Returns the names of the cores that HAProxy considers usable (`UP`) and sends requests to, joined by commas.
 const chosen = async () => {
     const { core, standby } = await proxy.servers('core');
     return [[core, 'one'], [standby, 'two']].filter(([{ status }]) => /^UP/.test(status)).map(([, name]) => name).join();

@@ -123,7 +123,8 @@ test('hands can teleport on the floor, select equipment, read a sensor, use the 
     options, () => withHeadset(async (page) => {
     await enterVr(page);
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0]);
-    await aimAt(page, [-0.8, -1.2, -0.8]); // the floor is where the user stands, 1.6 m below the eyes
+    // aims at a point on the floor, 1.6 m below the eyes, and pulls the trigger, which moves the user there
+    await aimAt(page, [-0.8, -1.2, -0.8]);
     await pull(page);
     await page.waitForFunction(() => Math.abs(globalThis.plantcast.modules.there('enterVr').headset.rig.at[0] + 0.8) < 0.05);
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0]);
@@ -176,7 +177,8 @@ test('pictures without depth are not shown, and a message says so; a locked sess
     await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
     await page.evaluate(() => {
         globalThis.plantcast.session.on('frame', (frame) => Object.assign(frame, { depth: globalThis.isMended ? frame.depth : null }));
-        globalThis.device.quaternion.set(0, Math.sin(0.1), 0, Math.cos(0.1)); // turns the head, so that the page requests another picture
+        // turns the head by 0.2 radians, so that the page requests another picture
+        globalThis.device.quaternion.set(0, Math.sin(0.1), 0, Math.cos(0.1));
     });
     await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.warning?.[1].includes('no depth'));
     const depths = await page.evaluate(() => {

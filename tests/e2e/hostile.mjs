@@ -19,8 +19,8 @@ const noDemo = missingDemo();
 const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000, PATIENCE_MS = 60000;
 const PINGS = 4000, MESSAGES_PER_S = 1000;
 const HELLO = { type: 'hello', width: 320, height: 180, codecs: ['jpeg'] };
-const LEAST_CPU_S = 0.4; // minimum processor seconds of one viewer that gets all its frames
-const MOST_TIMES = 5; // all clients together may cost at most this many times one viewer's processor time
+const LEAST_CPU_S = 0.4; // processor time of a viewer that gets all its frames, in seconds, is taken as at least this
+const MOST_TIMES = 5; // the bad clients together may make the daemon use this many times the processor time that one viewer costs
 let plant, quiet;
 
 before(async () => {

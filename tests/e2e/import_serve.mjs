@@ -467,7 +467,7 @@ test('a tag can be placed by hand in the engineer\'s panel, and then counts as p
     await engineer.getByRole('button', { name: 'Discard all' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 0);
     await page.locator('#import-toggle').click();
-    // Isolates the tag's equipment, then restores what was shown before.
+    // `Place by hand` isolates the tag's equipment in the picture; closing the panel shows again what was shown before.
     await page.getByRole('button', { name: 'Place by hand' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.params.isolate?.[0] === 'E-101');
     await page.locator('#import-toggle').click();
@@ -584,7 +584,8 @@ test('a data source is entered, its values are seen, it is corrected, and it sur
         await live('3 of 3 tags have values');
         await arrive(desk);
         await shoot(desk, 'import-13-values');
-        // Imported again in other units: values continue, and a page that connects later knows the new units too.
+        // The user changes the model's unit and imports again: values continue, and a page that connects later gets sizes in
+        // the new unit, too.
         await desk.locator('#import .measures summary').click();
         await desk.locator('#import .measures select').first().selectOption('ft');
         await desk.getByRole('button', { name: 'Apply' }).click();
@@ -598,7 +599,8 @@ test('a data source is entered, its values are seen, it is corrected, and it sur
         await desk.waitForFunction(() => document.querySelector('#import .measures select')?.value === 'ft');
         for (const query of ['host=a%20b', 'host=--x', 'port=1', 'host=a&port=70000', 'host=a&order=XYZ', 'host=a&unit=256'])
             assert.equal((await own.post(`/source?${query}`)).status, 400, query);
-        // An import without a tag list is refused, because it would lose the plant's source.
+        // An import after the tag list was removed is refused, because the new plant file would lack the data source that the
+        // list brought.
         assert.equal((await own.post('/remove?name=tags.csv')).status, 200);
         const sources = /^sources:\n(  .*\n)+/m.exec(own.read('plant.yaml'))[0];
         await own.post('/run?what=anew');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every action is answered either once it is on disk or with "not kept". For each kind of action: one answered as done survives
-// a kill -9 at that moment; on a full disk, programs and the page report it as not kept.
+// Users' actions must not be lost. Each is answered either once it is stored on disk or with `not kept`. Tested for each kind
+// of action: one answered as done survives a kill -9 at that moment; if the disk is full, programs and the page say that it is
+// not kept.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { appendFileSync, chmodSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statfsSync, truncateSync,
@@ -135,7 +136,7 @@ const ACTIONS = [
     }, 'tags_saved', 'reload', () => readFileSync(path('tags.csv'), 'utf8').includes(',-0.5,0.25,0,')],
 ];
 
-// Sends one action. Returns its answer.
+// Connects as an engineer and sends one action. Returns the answer and the client.
 async function act(message, type, seq) {
     const client = await enter();
     client.say({ ...(typeof message === 'function' ? await message(client) : message), seq });
@@ -311,7 +312,7 @@ test('while the disk hangs, each action is answered "not kept", and other client
         const sent = await fetch(`http://127.0.0.1:${own.port}/api/v1/import/upload?name=part.obj`, { method: 'POST', body: 'v 0 0 0' });
         assert.deepEqual([sent.status, /does not answer/.test((await sent.json()).unaudited)], [200, true],
             'the upload is stored, but has no line in the trail');
-        // The client disconnects at once: the audit trail still says that its action was not kept.
+        // A client sends an action and disconnects at once: the audit trail must still say later that the action was not kept.
         leaver.say({ ...onAlarm({ ...shelve, reason: 'leaves at once' }), seq: 1 });
         leaver.close();
         const answerTo = (seq) => client.until('alarmed', ({ texts }) => texts.find((one) => one.type === 'alarmed' && one.seq === seq));

@@ -73,7 +73,8 @@ test('when all clients have left, the daemon keeps no caches and is as small as 
         await sleep(250);
     const now = megabytes('VmRSS');
     t.diagnostic(`${now.toFixed(0)} MB; ${start.toFixed(0)} MB at first; ${told(all)}`);
-    // on a loaded machine, threads may free memory after the heap was trimmed
+    // compares the sizes only in long runs, on an idle machine: on a loaded one, threads may free memory after the daemon has
+    // returned free memory to the system
     if (sweep(true, false))
         assert.ok(now <= GROWN * start, `${now} MB now, ${start} MB at the start: ${told(all)}`);
     one = await Curious.come(port, dice(SEED));

@@ -307,7 +307,7 @@ receivers: [{ name: hook, webhook_configs: [{ url: "http://127.0.0.1:${hook.port
         await until('none stands any more', async () => (await alerts()).length === 0);
     } finally {
         manager.kill();
-        await ended; // waits for the program's end, because it writes to its folder until then
+        await ended; // waits until the daemon has ended, because until then it writes to the folder that is removed next
         await hook.close();
         await plant.destroy();
     }

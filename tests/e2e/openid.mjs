@@ -292,7 +292,8 @@ function askFrom(localAddress, where, headers = {}) {
     });
 }
 
-// Begins a login as an attacker would. Returns a function that delivers an answer with the right state and cookie.
+// Begins a login from this address as an attacker does. Returns a function that delivers a forged answer of the provider, with
+// the state and cookie of this login.
 async function beginFrom(localAddress) {
     const begun = await askFrom(localAddress, '/login'), cookie = begun.headers['set-cookie'][0].split(';')[0];
     const state = new URL(begun.headers.location).searchParams.get('state');
@@ -300,7 +301,8 @@ async function beginFrom(localAddress) {
 }
 
 const refusals = () => trail().filter((line) => line.event === 'login' && line.result === 'refused').length;
-// The trail has at most two summaries per minute: of tokens that were not checked, and of the provider's answers.
+// Largest number of lines by which the audit trail may summarise refused logins since then: two at once (one for tokens that
+// were not checked, one for answers of the provider) and two per minute.
 const sumsSince = (began) => 2 + 2 * Math.floor((performance.now() - began) / 60000);
 
 test('thousands of forged sign-in answers leave one log line, and lock nobody out', { skip, timeout: 120000 }, async () => {
@@ -361,7 +363,7 @@ test('with a slow provider, waiting codes are bounded, and the rights of 40 user
     const people = async () => Number(/^plantcast_openid_people (\d+)/m.exec(await (await metrics()).text())[1]);
     t.after(() => { Object.assign(provider, { delay_ms: 0, sub: 's1', codesWait: null }); provider.claims.groups = ['operators']; });
     for (let i = 0; i < 40; i++) {
-        provider.sub = `s${i % 4}`; // a user may have at most 16 sessions
+        provider.sub = `s${i % 4}`; // uses four users for 40 sessions, because a user may have at most 16
         assert.equal((await new Browser().signIn()).status, 303);
     }
     assert.ok(await people() >= 40);
@@ -522,7 +524,7 @@ test('with the independent provider oidc-provider, code flow, token refresh and 
     try {
         const browser = new Browser();
         let url = new URL((await browser.at('/login')).headers.get('location'));
-        // The provider's development pages: log-in, then consent.
+        // follows oidc-provider's built-in pages, log-in and then consent, until it redirects back to the daemon
         for (let i = 0; i < 12 && url.port !== String(port); i++) {
             const page = await browser.get(url);
             const next = page.headers.get('location');

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three real plants, from two systems' exports to a picture with live values; counts what a user types and edits.
+// A new user's way with three real plants: from exports of two control systems to a picture with live values. Counts the
+// commands that the user types and the lines edited.
 import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -43,7 +44,8 @@ for (const { plant, model, format, equipment } of sweep(PLANTS, PLANTS.slice(0, 
         const folder = mkdtempSync(join(tmpdir(), 'plantcast-own-')), out = join(folder, 'plant'), list = join(folder, 'export');
         const walk = new Walk(), programs = [];
         try {
-            // Makes the control system's export: names of the plant's own equipment in various spellings, and foreign names.
+            // Makes the tag list that a control system would export: names of equipment in the model in various spellings, and
+            // some names that the model lacks.
             const names = runProgram('plantcast', ['nodes', join(DATA, model), '--json'], 100000).out;
             const named = [...new Set([...names.matchAll(/"name":\s*"([^"\\]{4,60})"/g)].map(([, name]) => name))];
             const wanted = named.filter((name) => (equipment.length > 0 ? /Boiler|Pump|Fan|Valve/.test(name) : /\d{3}/.test(name)));

@@ -22,7 +22,8 @@ before(async () => {
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
     plant.keepFresh();
-    // A tag without a position, a comment in a user-defined column, and numbers in various notations.
+    // Gives the tag list what saving must keep or fill in: a tag without a position, an unknown column with a comment, and
+    // numbers such as 0.500.
     const list = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Remark\n');
     writeFileSync(tagsFile, list.replace('0.5,0,0,600\n', '0.500,0.00,0,600,"# by Kim; ""new"""\n')
         + 'TI-9,400007,Float,°C,spare,temperature,,,,,600,\n');
@@ -198,7 +199,8 @@ test('a list that somebody else changed meanwhile is not overwritten: the other 
     engineer.close();
 });
 
-// Saving replaces the file behind a symlink and keeps versions next to that file, so restoring must look there.
+// If the tag list is a symlink, saving replaces the file to which it points and keeps earlier versions next to that file:
+// restoring must look for them there.
 test('restoring accepts the version name that saving reported, also when the tag list is a symlink', options, async () => {
     const engineer = await enter(), now = readFileSync(tagsFile, 'utf8'), real = join(plant.folder, 'lists-v1.csv');
     const before = now.replace('TI-9', 'TI-8');

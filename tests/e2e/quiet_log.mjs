@@ -96,9 +96,9 @@ test('a device that stays lost is not logged again and again', options, async ()
 test('the log of a busy day stays under 10 MB, also with a device that flaps all day', options, () => {
     for (const [what, { bytes, lines }] of Object.entries(costs))
         console.log(`# ${what}: ${bytes.toFixed(0)} bytes, ${lines.toFixed(1)} lines`);
-    // A day of each plant: 40 people and walls that reconnect 50 times each, a scraper and programs that poll every 5 s, a
-    // permanent alarm flood as defined by ISA-18.2 (10 alarms in 10 minutes), a wrong token per minute, a reload per hour, and
-    // a cable that is unplugged 100 times.
+    // How often each kind of event happens on a busy day: 40 people and walls that reconnect 50 times each, a scraper and
+    // programs that poll every 5 s, a permanent alarm flood by ISA-18.2 (10 alarms in 10 minutes), a wrong token per minute, a
+    // reload per hour, a cable unplugged 100 times.
     const day = { session: 2000, 'picture or question': DAY_S / 5, 'alarm that comes and goes': DAY_S / 60, 'wrong token': DAY_S / 60,
         reload: 24, 'device that is lost and comes back': 100, 'second of a lost device': DAY_S, '10 s of changing readings': DAY_S / 10 };
     assert.deepEqual(Object.keys(day).sort(), Object.keys(costs).sort());

@@ -23,7 +23,8 @@ const DESCENDANT_MS = 2000;
 let plant, runtime;
 const running = new Set();
 
-// Starts plantcastd under a service manager: { lines of the manager, err of the daemon, pid, order(), ended }.
+// Starts plantcastd under a fake service manager. Returns { out: lines of the manager, err: stderr of the daemon, pid,
+// order(line): sends the manager a command, ended: a promise of the exit code }.
 function serve(args, managed = []) {
     const child = spawn('tests/support/service_manager.py', [...managed, join(BIN, 'plantcastd'), plant.file, ...args],
         { stdio: 'pipe', env: { ...process.env, RUNTIME_DIRECTORY: runtime } });
@@ -105,7 +106,7 @@ test('a start that prepares the plant asks for more time meanwhile, and ends on 
         const port = await freePort(), service = serve(['--port', String(port)]);
         // reported twice while plantcast-prep runs
         await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/);
-        // and the journal has a line, for people
+        // the log, too, says that the plant is being prepared, and for how long
         await service.logged(/^plantcastd: preparing the plant, for \d+ s so far$/m);
         await assert.rejects(get(port, '/readyz'), { code: 'ECONNREFUSED' }, 'the daemon is not ready yet');
         assert.doesNotMatch(service.out, /READY=1/);

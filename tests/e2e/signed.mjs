@@ -224,7 +224,7 @@ function probe(folder, least, ...args) {
     }
 }
 const FLAG = { still: 2, signed: 64 };
-let frame; // a refined frame of a session
+let frame; // PNG file of a signed refined frame that a session got; the following tests alter it
 
 test('a session that requests signed frames gets refined frames signed, and they can be drawn again', { skip }, () => {
     const { names } = probe(path('refined'), 1, '--motion', 'still');
@@ -294,7 +294,8 @@ test('a session requests signed frames, and is told why a frame is not signed', 
     client.say({ type: 'camera', seq: 2, eye: [4, -3, 2], target: [1, 0, 0], up: [0.2, 0.1, 1], fov: 40 });
     client.say({ type: 'sign', frames: 'refined' });
     const signed = await client.frameWhere('a signed frame', (one) => one.flags & FLAG.signed && one.camera_seq === 2);
-    const { code, out, err } = redraw(signed.payload); // the signed view was split, clipped and tilted
+    // redraws the signed frame of the view set up above, which is split, clipped and tilted
+    const { code, out, err } = redraw(signed.payload);
     assert.equal(code, 0, out + err);
     client.say({ type: 'params', seq: 3, split: null, show: 'difference', baseline: 'now' });
     assert.match((await client.text('error')).text, /has no name/);
@@ -332,7 +333,7 @@ test('the page saves the screen\'s picture, signed, and one with legend and mark
         assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256,
             'the signed pixels are those on the screen');
         await plant.tell('set TI-1 70');
-        // the session continues as before, with unsigned frames
+        // after one signed frame the session gets unsigned frames again
         await page.waitForFunction(() => !(globalThis.plantcast.session.picture.flags & 64));
         await plant.tell('set TI-1 80');
         const whole = await save('again'), { code, out, err } = redraw(whole);

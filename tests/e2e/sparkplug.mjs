@@ -87,7 +87,7 @@ test('births and data of every number type are read, by name and by alias', opti
     await until('TI-1', { ...good, value: 21.25 });
     await until('XS-1', { ...good, value: 0 });
     await until('TI-2', { quality_name: 'Uncertain_NoCommunicationLastUsableValue', value: 3.5 });
-    await until('PI-1', { ...good, value: 5 }); // historical metrics do not change the current value
+    await until('PI-1', { ...good, value: 5 }); // PI-1 keeps its value: the metric marked as historical must not change it
     assert.equal(await metric('historical_total'), 1);
     node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 3, type: 'UInt16', value: null, isNull: true },
         { alias: 4, type: 'Boolean', value: true, properties: { Quality: { type: 'Int32', value: 0 } } }] });
@@ -107,7 +107,8 @@ test('births and data of every number type are read, by name and by alias', opti
 
 test('the death of a device or a node makes all its tags Bad at once', options, async (t) => {
     await plant.run('payload: sparkplug', ROWS);
-    const node = await startNode({ mqttOptions: { reconnectPeriod: 0 } }); // the client does not reconnect by itself
+    // reconnectPeriod 0: the node does not reconnect by itself after it has been killed
+    const node = await startNode({ mqttOptions: { reconnectPeriod: 0 } });
     await until('XS-1', { ...good, value: 1 });
     let died = performance.now();
     node.publishDeviceDeath('skid', { timestamp: Date.now() });

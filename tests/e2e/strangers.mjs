@@ -315,7 +315,8 @@ test(ENDING, { skip, timeout: 200000 }, async () => {
 
 test('over TLS, slow requests are ended, too; a connection without a request yet stays open', { skip, timeout: 200000 }, async () => {
     await serve(...tls, '--limit', 'patience=60');
-    // twice the 2 s after which the server ends an incomplete request head
+    // idleMs: how long a connection waits before it sends its request; twice the 2 s after which an incomplete request is
+    // ended, to show that the limit counts from the first byte
     const head = 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n', idleMs = 4000;
     const [stuck, idle] = await Promise.all([speak(`${head}Acc: 1\r\n\r\n`, true), speak(`${head}\r\n`, true, idleMs)]);
     assert.match(stuck, /^HTTP\/1\.[01] 408 /);

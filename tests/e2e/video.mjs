@@ -30,8 +30,8 @@ async function startVideo(...args) {
     return program;
 }
 
-// BITS: length of the time in the time code that plantcast-video draws as a row of blocks. codeOf() returns { tenths (of
-// seconds since 1970), card (true: the frame shows a text card), sound (true: the parity is right) }.
+// plantcast-video encodes the time in a row of black and white blocks. BITS: number of blocks for the time. codeOf(row) returns
+// { tenths: tenths of seconds since 1970; card: whether the frame shows a text card; sound: whether the parity is right }.
 const BITS = 36, BLOCKS = BITS + 4;
 function codeOf(row) {
     const bits = [...row].map((value) => (value > 127 ? 1 : 0));
@@ -274,7 +274,8 @@ test('cards, strip and legend are in the requested language', options, async () 
         await program.stop();
         return picture;
     };
-    // The words on a card are large.
+    // Compares pictures in English, Korean and German: the boxes with words must differ by language. On a card, whose words are
+    // large, a smaller picture suffices.
     for (const [card, boxes, size, args] of [[true, [HEADLINE], [640, 360], ['--view', 'none']], [false, [LEGEND, AGE], [1280, 720], []]]) {
         const [english, again, korean, german] = [await see('en', card, ...size, ...args), await see('en', card, ...size, ...args),
             await see('ko', card, ...size, ...args), await see('de', card, ...size, ...args)];
@@ -303,7 +304,7 @@ test('a token restricted to one view shows that view and no other; revoking the 
         assert.equal(reader.frames.some(({ card }) => !card), shown);
         if (shown) {
             const refused = readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1;
-            // waits longer than the 5 s after which a permitted client would request views again
+            // waits 6 s: a client that was permitted to list views would request them every 5 s, and this one must not
             await new Promise((done) => setTimeout(done, 6000));
             assert.equal(readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1, refused);
             assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'lobby']).code, 0);

@@ -168,7 +168,8 @@ test('a second display shows its own panes', options, async () => {
     await gone.close();
 });
 
-// The daemon would not start with such a wall, but a display keeps its panes for a while after a reload.
+// Makes the panes name tags that the plant lacks. The daemon would refuse to start with such a wall, but after a reload that
+// removes tags, a display keeps its panes for a while.
 test('tags that the plant lacks are named in tiles and trends', options, async () => {
     const openWith = (names, display) => openPage(`${plant.url}wall.html?wall=room&display=${display}`,
         { viewport: { width: 960, height: 540 } }, null, (one) => one.route(/api\/v1\/walls/, async (route) => {
@@ -249,7 +250,8 @@ test('a view that names things the plant lacks is not shown, and is reported', o
     await other.close();
 });
 
-// The tour pauses while an alarm waits, so the test acknowledges any alarm here, such as one after a late answer of the PLC.
+// A tour pauses while an alarm calls for attention. So that this does not disturb the test, any alarm (e.g. after a late answer
+// of the PLC) is acknowledged at once.
 test('a tour shows each view for its time, with its text', options, async () => {
     await page.evaluate(() => {
         const { session } = globalThis.wall;

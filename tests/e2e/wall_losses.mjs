@@ -34,7 +34,8 @@ after(async () => {
     await plant?.stop();
 });
 
-// Returns the times of the pane's picture and of the texts next to it, for the current connection.
+// Returns the times of the readings in the pane's picture and in the texts next to it; 0: not received on the current
+// connection yet.
 const shown = () => wall.page.evaluate(() => {
     const inner = document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session, { session } = globalThis.wall;
     return { picture: inner?.isCurrent ? inner.picture?.dataTimeUs ?? 0 : 0, words: session.isCurrent ? session.freshAt : 0 };

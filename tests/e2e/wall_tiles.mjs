@@ -90,7 +90,8 @@ async function moveAll(clients, leader, isEnough) {
     return took;
 }
 
-// Moves a client's camera until a matching picture arrives. Returns the numbers of that frame and its camera.
+// Moves a client's camera step by step until a frame arrives that satisfies wanted(); still: a refined frame, otherwise a
+// preview. Returns the frame's and the camera's sequence numbers.
 async function moveUntil(client, wanted, still) {
     for (let seq = 1; seq < 200; seq++) {
         client.say(camera(seq, 0.3));
@@ -117,7 +118,8 @@ async function whole(width, height, still) {
     return canvas;
 }
 
-// The burn-in shift moves all tiles within the large picture; it depends only on the clock.
+// To prevent burn-in, all tiles are shifted together within a picture that is larger by MARGIN on each side. The shift depends
+// only on the clock.
 const MARGIN = 3, shiftNow = () => burnShift(Date.now() * 1000), margins = (size) => size + 2 * MARGIN;
 
 // Returns the shift of newly started pictures; waits if one with the previous shift may still be under way.
@@ -127,7 +129,8 @@ async function shiftHeld() {
     return shiftNow();
 }
 
-// Compares while readings and shift stand still, and only full-size pictures, not the smaller previews of a loaded machine.
+// Compares the tiles of a wall with the picture of a single client, pixel by pixel: a preview, then a refined frame. Meanwhile
+// readings and burn-in shift must not change; on a loaded machine smaller previews are skipped.
 async function compare(wall, columns, rows, [across, down]) {
     const width = columns * WIDTH + (columns - 1) * across, height = rows * HEIGHT + (rows - 1) * down;
     for (const still of [false, true]) {

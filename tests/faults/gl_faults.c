@@ -281,7 +281,9 @@ static const GLubyte *GLAD_API_PTR call_glGetString(GLenum name)
 #define ENTRY(name) { #name, (GLADapiproc)call_##name, (GLADapiproc *)&real_##name }
 static const struct {
     const char *name;
-    GLADapiproc ours, *real; /* ours: replaces the real function; real: receives the real function's address, NULL: it is already known */
+    /* ours: function of this library that replaces the real one; real: where to store the real one's address; NULL: it is
+       stored already */
+    GLADapiproc ours, *real;
 } functions[] = {
     { "eglCreateContext", (GLADapiproc)create_context, NULL },
     { "eglDestroyContext", (GLADapiproc)destroy_context, NULL },

@@ -50,7 +50,7 @@ static long long late_ms(void)
     return text ? atoll(text) : 0;
 }
 
-/* Returns the milliseconds until the socket may be reported writable. */
+/* Returns for how many more milliseconds the socket must be reported as not writable; 0 or less: it may be reported. */
 static long long wait_ms(int fd)
 {
     long long now = now_ms(), none = 0;

@@ -75,7 +75,7 @@ static void check_model(const struct gltf_model *model)
     }
 }
 
-/* Checks that the reader of asset files accepts an asset laid out as a file. */
+/* Lays the extracted geometry out as an asset file and asserts that the reader of asset files accepts it. */
 static void check_asset(const struct geometry *g)
 {
     struct asset_parts parts = {

@@ -117,7 +117,7 @@ static void read_json(const uint8_t *bytes, size_t count)
     json_decref(root);
 }
 
-/* Splits the input at a zero byte into a path and a payload from which the path selects. */
+/* Splits the input at its first zero byte into a JSON path and a payload, and selects a value from the payload by the path. */
 static void select_by_path(const uint8_t *bytes, size_t count)
 {
     static const struct plant_mqtt plain = { .payload = MQTT_JSON };

@@ -13,7 +13,7 @@
 #include "value/quality.h"
 
 enum { WIDTH_PX = 320, HEIGHT_PX = 180, TEXELS_PX = 8, PICTURES = 12 };
-/* fraction of a refined frame's pixels that may differ: at silhouettes, where texture samples are taken depends on the drawing order */
+/* fraction of a refined frame's pixels that may differ: at silhouettes the drawing order decides where a texture is sampled */
 static const double RIM_PART = 0.01;
 static struct rig rig;
 static uint64_t seed;
@@ -160,7 +160,8 @@ static int count_different(const struct frame *a, const struct frame *b)
     return count;
 }
 
-/* Compares batches with single draws: with culled clusters, with all clusters, and with occlusion culling. */
+/* Batched drawing must give the same pictures as drawing asset by asset: with culling of clusters, without it, and with
+   occlusion culling. */
 TEST(test_together_as_one_by_one)
 {
     for (int way = 0; way < 3; way++) {
@@ -264,7 +265,7 @@ static struct calls count_calls(struct stand *stand, enum tier tier, int least, 
     return calls;
 }
 
-/* Changed readings need one upload per asset. */
+/* Many assets that share a model need no more GL calls than a few, except one upload per asset whose readings have changed. */
 TEST(test_more_assets_are_no_more_calls)
 {
     enum { FEW = 12, MANY = 60, ROUNDS = 4, ROUND_CALLS = 24, ROUND_DRAWS = 3 };

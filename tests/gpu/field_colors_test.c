@@ -329,7 +329,7 @@ TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, stand_tear_down)
     }
 }
 
-/* Matches the colour of alarms of priority 3, a magenta that is far from the field's colours. */
+/* Returns whether the pixel has the colour of alarms of priority 3, a magenta that no colour of the field resembles. */
 static bool is_alarm_color(const uint8_t *bgrx)
 {
     return bgrx[2] > 150 && bgrx[2] - bgrx[1] > 80 && bgrx[0] > 130;
@@ -388,7 +388,7 @@ TEST_WITH(test_operator_sees_limits, set_up, stand_tear_down)
         const uint8_t *within = frame_pixel(frame, 6, SIDE_PX - 7), *beyond = frame_pixel(frame, SIDE_PX - 4, SIDE_PX * 3 / 4);
         const uint8_t *without = frame_pixel(frame, SIDE_PX / 2, 6);
         assert_true(is_grey(within) && within[0] > 180);
-        /* colour of values beyond H: sand, with some more red than blue */
+        /* expects the colour for values beyond H: sand, in which red exceeds blue a little */
         assert_true(beyond[2] - beyond[0] > 20 && beyond[2] - beyond[0] < 80);
         assert_true(is_grey(without) && without[0] <= colormap_no_limits[0][0] && without[0] >= colormap_no_limits[1][0]);
         frame_unref(&frame);
@@ -462,7 +462,8 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, stand_tear_down)
     struct frame *plain = stand_draw(&stand, &view), *before = stand_draw(&stand, &view), *begun = stand_draw(&stand, &view);
     overlay_draw(plain, &stand.toy->scene, stand.snapshot, NULL);
     overlay_draw(before, &stand.toy->scene, stand.snapshot, loop_checks);
-    /* no loop check has begun, so no marker shows whether its sensor was checked */
+    /* as long as no tag was checked, the frame is the same as without loop checks: no marker shows whether its tag was checked
+       */
     assert_memory_equal(plain->bgrx, before->bgrx, (size_t)WIDE_PX * (size_t)plain->stride_bytes);
     assert_null(
         loop_checks_add(loop_checks, 0, &(struct loop_check){ .state = LOOP_CHECK_PASSED, .value = 10, .expected = 10, .tolerance = 1 }));

@@ -124,7 +124,8 @@ TEST(test_openness_is_kept)
     rmdir(folder);
 }
 
-/* A wall whose corners lie inside other bodies: its middle has the right brightness and is not as dark as its corners. */
+/* A large wall whose corners lie inside other bodies, where no light arrives: its middle must be as bright as computed for it
+   and not as dark as the corners. */
 TEST(test_large_faces_are_lit_within)
 {
     static const double here[3] = { 0, 0, 0 };
@@ -155,7 +156,7 @@ TEST(test_large_faces_are_lit_within)
     toy_destroy(&toy);
 }
 
-/* Folder with the cached openness of one sky, shared by the tests that are not about sky light. */
+/* folder with the cached openness for the default sky, which speeds up the tests that do not test sky light */
 static char *openness_folder;
 
 static int keep_openness(void **state)
@@ -232,7 +233,7 @@ TEST_WITH(test_one_light_stays, keep_openness, forget_openness)
         light_drop(&light, &usual);
         assert_true(light.bytes == bake_bytes(&gpu_scene));
         assert_true((light_near(&light, &usual)->key.towards[0] == usual.towards[0]) == cached);
-        light_drop(&light, &others[0]); /* drops all lights but this one, also the default light */
+        light_drop(&light, &others[0]); /* light_drop() with another light keeps that one and drops all others, also the default light */
         light_get(&light, &others[0]);
         light_drop(&light, &others[0]);
     }

@@ -147,7 +147,8 @@ TEST(test_bytes_of_its_own)
     }
 }
 
-/* Vertex data used in place reflects later changes of the caller's memory; data that had to be copied does not. */
+/* Where the GPU can read the program's memory (reads_in_place), vertex data is not copied: later changes in that memory must be
+   visible to the GPU. Data that had to be copied must not change. */
 TEST(test_what_is_kept_is_read_in_place)
 {
     static float back_m[COUNT][3];

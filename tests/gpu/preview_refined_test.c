@@ -167,7 +167,7 @@ struct textured_plate {
     float (*texcoords)[2];
     struct stand stand;
     struct view view;
-    bool floor; /* true: a floor, three times as wide as the plate, lies 1 m below it */
+    bool floor; /* true: adds a floor 1 m below the plate, three times as wide */
 };
 
 /* Makes a horizontal square of 2 m, x and y from -1 to 1, seen from above; the texture's columns run along x and its rows along y. */
@@ -266,7 +266,9 @@ TEST(test_metal_and_roughness)
         memcpy(plate.texels[i], i % CELLS < CELLS / 2 ? (uint8_t[4]){ 0, 255, 0, 255 } : (uint8_t[4]){ 0, 60, 255, 255 }, 4);
     plate_init(&plate, NULL, 0);
     halves(&plate, TIER_REFINED, left, right);
-    assert_true(left[0] > right[0] + 8); /* the sun lights the dielectric; a metal mirrors only the sky */
+    /* the left half is a dielectric, which the sun lights; the right half is a metal, which only mirrors the sky and so is
+       darker */
+    assert_true(left[0] > right[0] + 8);
     plate_finish(&plate);
 }
 

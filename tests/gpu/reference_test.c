@@ -37,7 +37,8 @@ static bool has_value(const float pixel[4])
 
 struct pixels_seen { /* values of all pixels of a picture, as one camera sees them */
     const struct view *view;
-    /* by pixel: drawn values; reference values on the displayed level; reference values on the finest level */
+    /* by pixel: shown: values as drawn; here: values computed per fragment on the level that is drawn; finest: values computed
+       per fragment on the finest level */
     float (*shown)[4], (*here)[4], (*finest)[4];
     bool shown_is_finest;
 };
@@ -176,7 +177,7 @@ static void look_at_some_asset(struct site *site, double away, struct view *view
 
 struct reference_display { /* parameters with which one case shows a plant */
     int group;
-    int number, each; /* number of this case; the default run tries every each-th case */
+    int number, each; /* number of the case; the default run tests only every each-th one */
     enum interpolation interpolation;
     enum distance_mode distance;
     enum tier tier;
@@ -313,7 +314,8 @@ TEST(test_plant_room)
     struct site site;
     assert_true(site_init(&site, &rig, "tests/plants/plant_room.yaml", "plant_room"));
     compare_group(&site, 0, 0, 4, 0, &(struct bounds){ 0.001, 0.001, 0.008 });
-    /* mode paper is refused for assets whose single sensors have no subdivision */
+    /* 8: number of cases that must be refused, those with mode paper, because the plant's single sensors have no subdivided
+       triangles */
     compare_group(&site, 1, 2, 4, 8, &(struct bounds){ 0.001, 0.001, 0.008 });
     site_finish(&site);
 }

@@ -305,7 +305,8 @@ static long brightness(const struct frame *frame)
     return sum;
 }
 
-/* More lights than fit into the cache: each of them gives the same frame when used again. */
+/* Requests five lights in turn, more than fit into the cache, then again: each must give the same frame as the first time,
+   although it was evicted meanwhile. */
 TEST_WITH(test_light_can_be_chosen, reset, NULL)
 {
     long first[5];
@@ -323,7 +324,7 @@ TEST_WITH(test_light_can_be_chosen, reset, NULL)
         }
 }
 
-/* All window sizes share the default light; otherwise each size would need its own baked light. */
+/* The default light does not depend on the window's size: otherwise each size would need a light of its own to be baked. */
 TEST_WITH(test_default_light_is_one, reset, NULL)
 {
     struct view wide, tall;

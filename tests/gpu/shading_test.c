@@ -119,7 +119,7 @@ static double measure(const struct view *view, double p95[WAYS])
     return worst;
 }
 
-/* distance: at 1, the whole plant fills the image. */
+/* Makes the default view, from `distance` times its distance; at 1 the whole plant fills the image. */
 static void look_from(double distance, struct view *view)
 {
     view_default(&stand.toy->scene, WIDTH, HEIGHT, view);

@@ -67,7 +67,8 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
     return frame;
 }
 
-/* Two render jobs are in progress at once, so the second is a new job that has never drawn anything. */
+/* A view in which nothing is visible, drawn while another frame is still being drawn in steps, so that a new job has to be made
+   for it. */
 TEST(test_nothing_in_sight)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 320, 180);
@@ -135,8 +136,8 @@ TEST(test_thin_poles_have_no_beads)
     stand = others;
 }
 
-/* A frame drawn in steps shows the readings from its beginning, even where the field is evaluated per pixel, whatever other
-   frames show in between. */
+/* A refined frame drawn in steps must show the readings of its first step, also where the field is evaluated per pixel,
+   although other frames drawn between its steps show newer ones. */
 TEST(test_readings_change_between_steps)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 160, 90), moving;

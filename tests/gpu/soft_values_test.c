@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Software frames of whole plants compared with the values that reference_test verifies: in the flat look each pixel's colour
-   is read back as a value, in previews and refined frames, on every drawn level. Values are equal where a pixel and its
-   neighbours show one surface. Elsewhere rounding decides in a preview, and a refined frame antialiases rims and surfaces
-   smaller than a pixel. */
+/* Software frames of whole plants in the flat look: each pixel's colour is read back as a value and compared with the values
+   that reference_test verifies, for previews and refined frames and every level drawn. Where a pixel and its neighbours show
+   one surface, the values must be equal. Elsewhere (at rims and on surfaces smaller than a pixel) a preview may differ by
+   rounding, and a refined frame mixes colours. */
 #include "tests/support/test.h"
 
 #include "tests/support/planned.h"

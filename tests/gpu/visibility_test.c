@@ -45,7 +45,7 @@ static int count_value(const struct frame *frame, double value)
     return count;
 }
 
-enum { ROUNDING = 3 }; /* largest difference between a GL frame and a software frame */
+enum { ROUNDING = 3 }; /* largest difference of a channel that counts as equal between frames drawn by GL and in software */
 
 static int count_farther(const struct frame *a, const struct frame *b, int most)
 {
@@ -124,7 +124,7 @@ TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
     view.visibility = (struct visibility){ 0 };
     assert_true(content() == whole);
     view.visibility.isolated = (struct asset_set){ 0 };
-    for (int i = 0; i < 5; i++) /* isolating all assets equals isolating none */
+    for (int i = 0; i < 5; i++) /* isolating all five assets must give the same frame as isolating none */
         asset_set_add(&view.visibility.isolated, i);
     struct frame *all = stand_draw(&stand, &view);
     view.visibility = (struct visibility){ 0 };
@@ -161,7 +161,8 @@ TEST_WITH(test_ghosts_change_few_colours, reset, NULL)
     }
 }
 
-/* On a plane at a grazing angle, depth changes fast from pixel to pixel, which must not count as an outline. */
+/* A ghosted plane at a grazing angle: depth differs much from pixel to pixel, but the plane must stay transparent and not be
+   filled with outlines. */
 TEST_WITH(test_a_steep_ghost_is_seen_through, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { -8, -1, 1.5 }, .target_m = { 0, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
@@ -221,14 +222,15 @@ TEST_WITH(test_a_cut_opens_a_neutral_inside, reset, NULL)
             }
             assert_true(brightest > darkest + 5);
             assert_int_equal(whole->marker_count, 8);
-            assert_int_equal(cut->marker_count, 5); /* two markers on top of the exchanger, and those of the tank */
+            /* the other markers of the exchanger were clipped away: two on its top are left, and the tank's three */
+            assert_int_equal(cut->marker_count, 5);
             frame_unref(&whole);
             frame_unref(&cut);
         }
 }
 
-/* Makes a body from -1 to 1 with another asset inside, each with a sensor. hollow: the body's walls are 0.2 thick; open: one of
-   its many triangles is missing. */
+/* Makes a plant of a box BODY from -1 to 1 and a box CORE inside it, each with a sensor. hollow: BODY has walls 0.2 thick;
+   open: one of its triangles is missing. */
 static struct toy *nested(bool hollow, bool open)
 {
     static const double sensors[2][1][3] = { { { 1, 0, 0 } }, { { 0, 0, 0.5 } } };
@@ -307,7 +309,8 @@ TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
     }
 }
 
-/* Clipped parts hide nothing, and parts behind the plane stay unchanged. */
+/* A part that is clipped away must not hide what lies behind it, and parts on the other side of the plane must look the same as
+   before. */
 TEST_WITH(test_a_cut_leaves_the_rest_alone, reset, NULL)
 {
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 50 } } };
@@ -363,7 +366,8 @@ TEST_WITH(test_orthographic_markers_stand_where_they_should, reset, NULL)
         assert_int_equal(frame->markers[0].occluded, 0); /* on the exchanger's southern side */
         assert_true(count_value(frame, 30) > 3000);
         frame_unref(&frame);
-        view.camera.eye_m[1] = -0.1; /* the eye is in the middle of the plant, yet nothing in front of it is cut off */
+        /* in an orthographic view with the eye amid the plant, parts in front of the eye must still be drawn */
+        view.camera.eye_m[1] = -0.1;
         frame = stand_draw(&stand, &view);
         assert_int_equal(frame->markers[0].occluded, 0);
         frame_unref(&frame);

@@ -37,7 +37,7 @@ struct facility_options {
 struct facility {
     struct facility_options options;
     struct cad_random random;
-    FILE *bytes; /* file with the bytes of the binary chunk */
+    FILE *bytes; /* temporary file that collects the bytes of the GLB's binary chunk */
     size_t byte_count, triangles;
     long views, accessors, meshes, nodes;
     struct text view_json, accessor_json, mesh_json, node_json, roots, yaml, csv;
@@ -90,7 +90,9 @@ static long add_mesh(struct facility *f, const struct pipe_mesh *mesh)
 
 /* --- shapes made by sweeping a circle ---------------------------------------------------------------------------------------------- */
 
-struct pipe_ring { /* centre, direction, and one direction in the ring's plane */
+/* a ring of a swept shape: its centre, the direction of the axis, a direction in the ring's plane from which its vertices are
+   counted, and its radius */
+struct pipe_ring {
     double centre[3], along[3], side[3], radius;
 };
 

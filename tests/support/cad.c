@@ -126,12 +126,13 @@ static void on_torus(const double size[3], double u, double v, double out[3])
     out[2] = size[0] * sin(2 * PI * v);
 }
 
-/* Pipe whose axis follows an arc about (0, 1), then the mirror image of that arc at its end. */
+/* Shape of a pipe of radius size[0]: its axis follows an arc of 135 degrees about (0, 1), then that arc once more, rotated by
+   half a turn about its end, so that the pipe is S-shaped. */
 static void on_bent_pipe(const double size[3], double u, double v, double out[3])
 {
     const double bend = 0.75 * PI;
     double s = (u < 0.5 ? u : 1 - u) * 2 * bend, x = sin(s), y = 1 - cos(s), nx = -sin(s), ny = cos(s);
-    if (u >= 0.5) { /* the second bend is the first one rotated by half a turn about its end */
+    if (u >= 0.5) { /* second half: the first bend, rotated by half a turn about its end */
         x = 2 * sin(bend) - x;
         y = 2 * (1 - cos(bend)) - y;
     }
@@ -455,7 +456,8 @@ static int *choose_patches(const struct cad *from, struct cad_random *random)
     return patch;
 }
 
-/* Moves vertices on the seams between patches towards the centre of one of their triangles, which opens gaps between the patches. */
+/* Splits the shape into patches with vertices of their own, as CAD exports have them. At the seams, moves vertices towards the
+   centre of one of their triangles, which opens gaps between patches. */
 static void break_to_patches(struct cad *to, const struct cad *from, struct cad_random *random, uint32_t *vertex_of)
 {
     int *patch = choose_patches(from, random), *owner = mem_array(from->vertex_count, sizeof(*owner));

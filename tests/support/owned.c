@@ -20,7 +20,7 @@ static struct {
         void *resource;
     } *items;
     size_t count, capacity;
-    pid_t process; /* id of the process that owns the resources: a forked child releases none of its parent's */
+    pid_t process; /* process that owns the resources; in a forked child they are not released, because its parent still uses them */
     pthread_mutex_t lock;
 } owned = { .lock = PTHREAD_MUTEX_INITIALIZER };
 

@@ -81,7 +81,7 @@ static struct plant plant = {
     .source_count = 1,
     .tag_count = 3,
 };
-/* The part of an asset file that distances need: three vertices and two sensors. */
+/* Parts of an asset file that the field needs: three vertices, two sensors, and their distances. */
 static struct asset_header header = { .vertex_count = 3, .sensor_count = 2 };
 static const float positions_m[3][3] = { { -2.5f, 0, 2.375f }, { 2.5f, 0, 2.375f }, { 0, 0, 0.5f } };
 static const struct asset_sensor file_sensors[2] = { { .surface_m = { -2.5f, 0, 2.375f } }, { .surface_m = { 2.5f, 0, 2.375f } } };

@@ -17,7 +17,8 @@
 
 struct distance_truth {
     double sources[SOURCES][3];
-    double *distances[SOURCES]; /* exact distances by vertex of the clean shape; NaN: the vertex is not on the outer surface */
+    /* by source: exact distances to the vertices of the clean shape; NaN: the vertex is not on the outer surface */
+    double *distances[SOURCES];
 };
 
 static struct oracle_mesh mesh_of(const struct cad *cad, size_t first_vertex, size_t vertex_count, size_t first_triangle,

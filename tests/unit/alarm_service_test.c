@@ -209,7 +209,8 @@ static double counted(struct alarm_service_setup *s, const char *name)
     return (double)*counters_add(s->counters, name, "counter", "");
 }
 
-/* A thousand tags of a device that does not answer: each alarm is journalled, and only one needs acknowledgement. */
+/* The device of a thousand tags does not answer: each tag's alarm is journalled, but only the device's one calls for
+   acknowledgement. */
 CASE(a_lost_device_is_no_flood)
 {
     for (int i = 0; i < TAGS; i++)

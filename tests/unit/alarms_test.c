@@ -144,7 +144,7 @@ TEST(delays_are_monotonic_and_exact)
     begin(&s, ALARMS_LOCAL);
     hear(&s, 9, 0, 50, QUALITY_GOOD);
     hear(&s, 10, 1, 6, QUALITY_GOOD);
-    /* the wall clock jumps forward by an hour; this hour must not count towards the delay */
+    /* the wall clock jumps ahead by an hour, while the monotonic clock goes on by a second: PT's delay of 2 s is not over */
     s.snapshot->taken_utc_ns = UTC + 4000 * S;
     s.snapshot->taken_mono_ns = 11 * S;
     alarms_tick(s.alarms, s.snapshot);
@@ -285,7 +285,7 @@ TEST(what_was_kept_is_taken_up)
     for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
         alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
                        alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), (struct instant){ 5 * S, UTC + 40 * S });
-    assert_told(&next, ""); /* restoring reports no transition, because no event is known between the two runs */
+    assert_told(&next, ""); /* restoring alarms after a restart reports no transition: what happened between the two runs is unknown */
     assert_string_equal(word(&next, 0, ALARM_HH), "unacknowledged");
     assert_string_equal(word(&next, 0, ALARM_H), "shelved");
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
@@ -318,7 +318,7 @@ TEST(a_reload_keeps_what_stays)
     struct stage s, next;
     begin(&s, ALARMS_LOCAL);
     hear(&s, 1, 0, 95, QUALITY_GOOD);
-    hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT's on-delay of 2 s is still running */
+    hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT has just exceeded its limit: its delay of 2 s is running when the plant is reloaded */
     begin(&next, ALARMS_LOCAL);
     set_unit(&s, "°C");
     set_unit(&next, "°F");
@@ -583,7 +583,8 @@ TEST(what_a_device_carries_outlives_us)
     end(&s);
 }
 
-/* A server may add info bits to a status code, such as those of a limit. */
+/* OPC UA servers may set info bits in a status code, such as `limit reached`: names and meanings of qualities must not depend
+   on them. */
 TEST(info_bits_do_not_hide_a_quality)
 {
     assert_string_equal(quality_name(QUALITY_UNCERTAIN_UNITS_EXCEEDED | 0x0500), "Uncertain_EngineeringUnitsExceeded");
@@ -620,7 +621,8 @@ TEST(a_device_without_limits_has_an_alarm)
     end(&s);
 }
 
-/* A broker or server that sends only changes: its tags keep their last values while it is gone, so the source itself needs an alarm. */
+/* If a source sends only changes, its tags do not become stale and keep their last values while it is lost. Therefore the
+   source itself must have an alarm. */
 TEST(a_lost_source_that_never_gets_stale_has_an_alarm)
 {
     struct stage s = { .plant = NULL };

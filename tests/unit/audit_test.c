@@ -149,7 +149,8 @@ TEST(test_lines_removed_and_moved)
     mem_free(bytes);
 }
 
-/* A daemon that starts with a truncated audit trail reports the gap, and the hash chain keeps showing it. */
+/* When a daemon starts with a truncated audit trail, it reports the gap and goes on; verifying the trail must still find the
+   gap later. */
 TEST(test_next_start)
 {
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *finding;

@@ -250,8 +250,8 @@ static bool finds_memory(void)
     return opens(path, O_RDONLY);
 }
 
-/* Bits for what a confined process managed to do: read a forbidden file, empty one, signal its parent, change other forbidden
-   files or folders, and everything that it is allowed to do. */
+/* bits for what a confined process managed to do: READ_SECRET, EMPTY_SECRET: read or truncate the forbidden file; SIGNAL:
+   signal its parent; ALTER: change other forbidden files or folders; ALLOWED: do everything that is allowed */
 enum { READ_SECRET = 1, EMPTY_SECRET = 2, SIGNAL = 4, ALTER = 8, ALLOWED = 16 };
 
 static int attempt_all(void)
@@ -374,7 +374,7 @@ static int use_cgroup(const char *service)
         for (;;)
             pause();
     cgroup_add(path, pid);
-    cgroup_destroy(&path); /* ends processes left in the cgroup */
+    cgroup_destroy(&path); /* destroying the cgroup must kill the process that is left in it */
     return waitpid(pid, &status, 0) == pid && WIFSIGNALED(status) && !path ? 0 : 7;
 }
 

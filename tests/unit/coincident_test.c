@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which of two assets with coincident faces is visible, and that picking agrees with the picture. */
+/* Assets whose faces coincide: which of the two is in front, and that picking hits the same one as pictures show. */
 #include "scene/coincident.h"
 
 #include "tests/support/test.h"

@@ -213,13 +213,14 @@ TEST(a_plane_is_one_surface_and_takes_few_bytes)
     mem_free(picture.depth);
 }
 
-/* The ground begins behind a wall and ends in the background. */
+/* A picture with a wall at the left and, behind it, the ground, which reaches up to the background. Depth grids include the
+   ground where nothing else is visible. */
 TEST(the_ground_is_behind_surfaces)
 {
     struct depth_lens lens = perspective;
     struct depth_picture picture = picture_of(64, 64);
     lens.has_ground = true;
-    lens.ground[1] = 0.01; /* depth of the ground: 0.01 y */
+    lens.ground[1] = 0.01; /* depth of the ground at the pixel row y: 0.01 y */
     lens.ground_from_pixel[0][0] = 1 / 64.0; /* the ground is visible only in the upper half of the picture */
     lens.ground_from_pixel[1][1] = 1 / 32.0;
     lens.ground_from_pixel[2][2] = 1;

@@ -55,7 +55,8 @@ static double change_at(const double *predicted, int hours, int hour)
     return sum / count;
 }
 
-/* Reference fit: the change over time, where each hour is weighted by 1 / (1 + (change / twice the usual change)^2). */
+/* Reference for drift_fit(): plain weighted least squares. The weight of an hour is 1 / (1 + (change / twice the usual
+   change)^2), so that hours of fast changes count little. */
 static double slow_change(const double *values, const double *predicted, const double *nearest, int hours)
 {
     double a[UNKNOWNS][UNKNOWNS + 1] = { 0 }, changes[DRIFT_HOURS], lagging = predicted[0];
@@ -97,7 +98,8 @@ TEST(test_fit_is_least_squares)
         assert_int_equal(drift.hours, DRIFT_HOURS - (DRIFT_HOURS + 8 - round % 9) / 9);
         assert_true(fabs(drift.change - slow_change(values, predicted, nearest, DRIFT_HOURS)) < 1e-6);
         assert_true(fabs(drift.change - change) < 10 * drift.error);
-        /* noise / sqrt(3): deviation of evenly distributed noise */
+        /* the scatter found must be that of the added noise, which is evenly distributed within +-noise and so has the
+           deviation noise / sqrt(3) */
         assert_true(fabs(drift.scatter - hypot(noise / sqrt(3), 0.01)) < 0.2 * drift.scatter);
         if (fabs(change) > 4 * drift.scatter && fabs(change) > 10 * drift.error)
             assert_int_equal(drift.verdict, DRIFT_FOUND);
@@ -434,7 +436,7 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 }
 
 struct drift_detection {
-    int hours;      /* hour of the week in which the added drift was found; 0: not found */
+    int hours;      /* number of hours after the beginning of the week at which the drift was found; 0: not found */
     double drifted; /* amount drifted by that hour */
     double limit;   /* smallest distance so far between the drifting reading and its alarm limit; negative: beyond the limit */
 };
@@ -481,7 +483,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
        the recorded process has a fault */
     static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
-    int others = 0; /* number of sensors wrongly found to drift, instead of the drifting one or in addition to it */
+    int others = 0; /* how often a sensor without drift was found to drift while another one really did */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
         struct recorded_series *s = &all_series[k];
         if (least[k][0] == 0)

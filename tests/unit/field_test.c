@@ -124,7 +124,8 @@ static struct vertex_truth truth_at(const struct synthetic *plant, const struct 
         truth.near_tie |= s.distance_m[i] > params->reach_m - 1e-5;
         bool at_the_rim = s.distance_m[i] > nearest_usable && nearest_usable > 0.999 * params->reach_m; /* both have hardly any weight */
         truth.near_tie |= at_the_rim && s.distance_m[i] < params->reach_m;
-        /* near the radius R, the weight 1 - d/R raised to a small power is mostly rounding error */
+        /* just inside the radius R, 1 - d/R is mostly rounding error, which a small power enlarges: does not compare such
+           vertices */
         truth.near_tie |= paper && fabs(s.distance_m[i] - radius_m) < 1e-4 * radius_m;
     }
     for (size_t i = 0; i < count; i++) {
@@ -1015,7 +1016,8 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
     field_set_cache_limit(tight, 1);
     for (int tick = 0; tick < 60; tick++) {
-        /* limit in bytes: sometimes too small for all columns (cached weights of the sensors); everything else takes some 450,000 */
+        /* limit of the cache in bytes: in most rounds enough for half of all columns (weights of a sensor at all vertices) and
+           the 450,000 bytes that the rest takes, in the others for everything */
         size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns;
         field_set_cache_limit(half, bound);
         rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -1382,7 +1384,7 @@ TEST(test_distance_from_one_sensor)
     field_default_range(&rig.plant->scene, &rig.params, &low, &high);
     assert_true(low == 0 && high >= (double)most * (1 - 1e-6) && high < 1.06 * (double)most);
     uint64_t version = way->version;
-    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* distances do not depend on readings: a Bad sensor still has its position */
+    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* the displayed distances must not change: sensor 4 is Bad now, but is still there */
     assert_int_equal(field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot)->version, version);
     rig_finish(&rig);
 }
@@ -1509,7 +1511,8 @@ TEST(test_overrides_are_bounded_and_ordered)
         assert_true(field_params_override(&turned, (struct field_override){ FIELD_OVERRIDES - 1 - i, (float)(FIELD_OVERRIDES - 1 - i) / 10,
                                                                             FIELD_AS_CONFIGURED }));
     }
-    assert_true(field_params_equal(&rig.params, &turned)); /* the order in which the items were added does not matter */
+    /* the overrides of single sensors were added in another order, but the parameters are equal */
+    assert_true(field_params_equal(&rig.params, &turned));
     assert_null(field_params_wrong(&rig.plant->plant, &rig.params));
     assert_false(field_params_override(&rig.params, (struct field_override){ FIELD_OVERRIDES, 1, 1 }));
     assert_true(field_params_override(&rig.params, (struct field_override){ 7, 1, 1 }));

@@ -459,7 +459,8 @@ CASE(what_nothing_needs_any_more_is_removed)
 #define MANY 65
 #define STEP (1 / 255.0)
 
-/* Returns a list of MANY tags of one group around the ring; `first` chooses the position of tag s0, and the others stay. */
+/* Returns the rows of MANY tags of one group, placed around the ring. `first` selects the position of tag s0; the other tags
+   are always at the same ones. */
 static char *many_tags(int first)
 {
     struct text rows = { 0 };

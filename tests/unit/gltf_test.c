@@ -147,7 +147,7 @@ CASE(nodes_are_put_in_place)
     assert_string_equal(l->model.nodes[1].name, "b");
     assert_int_equal(l->model.nodes[1].parent, 0);
     assert_float_equal(l->model.nodes[1].world[13], 4, 1e-12);
-    assert_float_equal(l->model.nodes[2].world[1], 2, 1e-6); /* the node's matrix turns the x axis to y and doubles it */
+    assert_float_equal(l->model.nodes[2].world[1], 2, 1e-6); /* the node's matrix maps the x axis to the y axis and doubles it */
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
                  "{\"attributes\":{\"TRANSLATION\":11}}}}]," MESH(SQUARE) ACCESSORS "}");
     assert_int_equal(l->model.node_count, 3);
@@ -319,12 +319,14 @@ CASE(nodes_are_chosen_by_pattern_and_taken_once)
 {
     good(l, FACILITY);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
-    assert_int_equal(g.primitive_count, 3); /* the node "seal" lies below two matching nodes, but its triangles are taken only once */
+    /* the node "P-101B/seal" lies below "P-101B": both match the pattern, but its triangles must be taken only once */
+    assert_int_equal(g.primitive_count, 3);
     assert_string_equal(g.names.at + g.primitives[2].name, "P-101B/seal");
     geometry_finish(&g);
     g = cut(l, &(struct geometry_params){ .nodes = "E-7", .unit_m = 1, .up = AXIS_Z });
     assert_float_equal(g.origin_m[0], 1000000.5, 0);
-    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* the model is a million metres away, yet its vertices are exact */
+    /* coordinates of a million metres lose no precision: positions are stored relative to the asset's origin */
+    assert_float_equal(g.positions_m[0][0], -0.5, 0);
     geometry_finish(&g);
     char why[MODEL_WHY_BYTES];
     assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "X*", .unit_m = 1 }, why));
@@ -336,11 +338,12 @@ CASE(units_and_axes_are_turned_to_metres_and_z_up)
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"p\",\"mesh\":0,\"translation\":[0,0,7000]}]," MESH(SQUARE) ACCESSORS
          "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 0.001, .up = AXIS_Y });
-    assert_float_equal(g.origin_m[1], -7, 1e-9);     /* z of the model is -y of the asset */
-    assert_float_equal(g.origin_m[2], 0.0005, 1e-9); /* y of the model is z of the asset */
+    assert_float_equal(g.origin_m[1], -7, 1e-9);     /* the model has y up, so its z axis becomes -y of the asset */
+    assert_float_equal(g.origin_m[2], 0.0005, 1e-9); /* and its y axis becomes z of the asset */
     float n[3];
     face_normal(&g, 0, n);
-    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f); /* the face pointed to +z in the model and points to -y here */
+    /* a face that pointed to +z in the model must point to -y in the asset */
+    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f);
     geometry_finish(&g);
 }
 
@@ -379,7 +382,7 @@ CASE(a_nodes_place_is_the_middle_of_its_meshes)
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_float_equal(place[2], 1, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "P-101B", place, why));
-    assert_float_equal(place[2], 0.5, 1e-9); /* the pump's box includes its seal */
+    assert_float_equal(place[2], 0.5, 1e-9); /* the node's position is the centre of its box, which includes the seal below it */
     assert_true(geometry_node_place(&l->model, &params, "P-101A", place, why));
     assert_false(geometry_node_place(&l->model, &params, "TT-1", place, why));
 }

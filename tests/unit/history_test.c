@@ -346,7 +346,8 @@ CASE(points_that_are_months_apart_are_found)
         assert_int_equal(series.buckets.count, i < 65 ? 2 + (i == -120) : 1);
         history_series_finish(&series);
     }
-    /* a month in between is unreadable: its reading is unknown, all others are returned */
+    /* One month file between two others is cut off and unreadable: readings in that month must be unknown, all others returned.
+       */
     char *august = temp_path(s->folder, "history-2026-08.sqlite");
     assert_int_equal(truncate(august, 100), 0);
     history_reader_destroy(&s->reader);
@@ -824,7 +825,7 @@ CASE(gaps_are_told_in_order_and_joined)
     assert_true(gaps.at[0].from_us == october && gaps.at[0].to_us == october + 10 * S);
     assert_true(gaps.at[1].from_us == october + 200 * S && gaps.at[1].to_us == NOVEMBER + 86600 * S);
     mem_free(gaps.at);
-    /* an hour within a gap that began in the previous month: the gap is found in that month's file */
+    /* asks for an hour in November within a gap that began in October and is noted in October's file */
     assert_int_equal(history_gaps(s->reader, NOVEMBER + 3600 * S, NOVEMBER + 7200 * S, &gaps), 0);
     assert_int_equal(gaps.count, 1);
     mem_free(gaps.at);
@@ -1013,7 +1014,7 @@ CASE(old_and_large_months_go)
         char *name = test_printf("history-2026-%02d.sqlite", m);
         make_month(s, name, 1000);
     }
-    /* keeping 100 days before November deletes months that ended before 24 July */
+    /* With a limit of 100 days, months that ended before 24 July are deleted on 1 November. */
     int64_t unsent;
     assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 100 }, NOVEMBER, &unsent), 3000);
     int *months = month_list(s->folder, &count);
@@ -1083,7 +1084,8 @@ static void check_what_is_left(struct history_setup *s, int64_t last_us)
     history_reader_destroy(&reader);
 }
 
-/* Records three times the allowed size: the newest points stay, and the file never exceeds the limit by much. */
+/* A single month grows to three times the allowed size: it must lose its oldest points and keep the newest, and must not exceed
+   the limit by much at any time. */
 CASE(a_month_that_is_too_large_loses_its_beginning)
 {
     int64_t from_us = NOVEMBER;

@@ -357,7 +357,8 @@ CASE(test_distances_by_heat)
     u.params.distance = DISTANCE_HEAT;
     assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "geodesic: heat"));
     finish(&u);
-    write_plant(c, "", ", geodesic: heat", 3); /* the plant file asks for heat distances that were not prepared */
+    /* the plant file now asks for heat distances, which were not prepared, so the plant is refused */
+    write_plant(c, "", ", geodesic: heat", 3);
     assert_false(use(&u, c));
     write_plant(c, "", ", geodesic: diffusion", 3);
     prep_case_expect(c, "$PLANT", 1);
@@ -537,7 +538,8 @@ static double predicted_of(const struct plant_in_use *u, size_t sensor, double *
     return predicted;
 }
 
-/* The prediction from the other sensors is computed at most once per second for all callers. */
+/* neighbours_look() predicts a sensor from the others at most once per second, and gives the cached prediction to all callers
+   in between. */
 CASE(test_what_others_say_is_kept_for_a_second)
 {
     struct plant_in_use u;
@@ -837,7 +839,7 @@ CASE(test_damaged_file)
         assert_true(use(&u, c));
         finish(&u);
     }
-    write_plant(c, "", "", 2); /* the plant file no longer asks for the prepared interpolation */
+    write_plant(c, "", "", 2); /* after the interpolation was removed from the plant file, preparing deletes its file */
     prep_case_expect(c, "$PLANT", 0);
     assert_int_not_equal(access(path, F_OK), 0);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* No distance along a surface is shorter than the straight line: tested on shapes with every fault of CAD exports, and on real
-   models (shared/data/models). */
+/* Distances along a surface must never be shorter than the straight line. Tested on shapes with every fault that CAD exports
+   have, and on real models (shared/data/models). */
 #include "surface/surface.h"
 
 #include "tests/support/test.h"

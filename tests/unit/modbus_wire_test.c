@@ -58,7 +58,8 @@ static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     use_wire(s, wire);
     s->plant->sources[0].timeout_ms = 200;
-    /* late answers arrive after the next request, which follows a timeout of 0.2 s and at most 0.75 s of backoff */
+    /* an answer comes 1 s late, after the next request: that is sent after a timeout of 0.2 s and a backoff of at most 0.75 s
+       */
     s->device.late_ms = 1000;
     modbus_case_start(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
@@ -186,7 +187,7 @@ CASE(the_second_host_stands_in)
     modbus_case_expect(s, 0, QUALITY_GOOD, 2); /* immediately, without a backoff */
     assert_true(second.requests > 0);
     assert_int_equal(host_of(s), 2);
-    device_start(&s->device); /* the first host is back, but the source stays with the second as long as that one answers */
+    device_start(&s->device); /* the first host works again, but the source must stay with the second one as long as that answers */
     for (int asked = second.requests + 10; second.requests < asked;)
         sleep_ns(10 * NS_PER_MS);
     assert_int_equal(s->device.requests, first_asked);
@@ -238,7 +239,8 @@ CASE(busy_is_asked_again_soon)
     s->plant->sources[0].poll_ms = 20000;
     s->device.bad_code = 6;
     modbus_case_serve(s);
-    while (s->device.requests < 2) /* the first request was refused; the second comes long before the next poll */
+    /* after a request was refused with exception 6 (busy), the next one must follow long before the poll interval has passed */
+    while (s->device.requests < 2)
         sleep_ns(5 * NS_PER_MS);
     s->device.bad_code = 0;
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);

@@ -30,7 +30,7 @@ TEST(it_is_kept_and_never_shared)
     node_id_release(&node);
 }
 
-/* The same text in another file, as made by `cp -a`. */
+/* Copies the file with the id to another one, as `cp -a` of the folder does: the copy must get another id. */
 TEST(a_copy_is_another)
 {
     struct node_id node = { 0 };

@@ -129,7 +129,7 @@ CASE(test_signatures)
     char *token = sign(f->other, "RS256", "k2", CLAIMS), *middle = strchr(token, '.') + 10;
     *middle = *middle == 'A' ? 'B' : 'A';
     expect(f, token, "n1", NULL, "");
-    /* elliptic curve keys, and a key with another purpose */
+    /* two keys that must not be used for the signature: one with an elliptic curve, one that is meant for encryption */
     cjose_jwk_t *curve = cjose_jwk_create_EC_random(CJOSE_JWK_EC_P_256, NULL);
     cjose_jwk_set_kid(curve, "e1", 2, NULL);
     json_t *jwk = public_part(curve);

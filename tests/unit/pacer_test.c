@@ -345,7 +345,8 @@ TEST(who_see_the_same_take_one_step)
     assert_int_equal(common, 1);
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
                      QUALITY_LADDER_STEPS - 1);
-    seen.unit_bytes = 90e3; /* bytes per frame: too many for 500 clients but not for 100 */
+    /* with frames of 90 kB the server has bandwidth for 100 clients, but not for 500, which must get a lower quality */
+    seen.unit_bytes = 90e3;
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 100 }), 0);
     int crowd = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 500 });
     assert_true(crowd > 0 && quality_ladder_rung(&seen, crowd).scale == 1);

@@ -57,7 +57,8 @@ static int chroma_of(const uint8_t bgr[3], int c)
     return (int)lround(of[c]) + 128;
 }
 
-/* Lines one pixel wide, vertical and horizontal, at every position within a block. */
+/* Coloured lines one pixel wide, vertical or horizontal, at each position relative to the 2 x 2 blocks that share a chroma
+   value, must keep their colour. */
 TEST(thin_lines_keep_their_colour)
 {
     for (int turn = 0; turn < 2; turn++)
@@ -103,7 +104,7 @@ static void plain(const struct frame_bytes *of, uint8_t *bytes)
                p->height_px);
 }
 
-/* Frames of any size, split into rows in any way. */
+/* Frames of any size, converted in any number of bands of rows, must give the same planes. */
 TEST(cuts_make_no_difference)
 {
     static const int sizes[][2] = { { 1, 1 }, { 2, 3 }, { 31, 17 }, { 130, 95 }, { 333, 77 } };

@@ -125,7 +125,8 @@ CASE(a_plant_is_prepared)
     assert_null(strchr(s->err.at, '\r'));
     assert_null(strchr(s->err.at, 27));
     char *a = file_of(s, 0), *b = file_of(s, 1), *c = file_of(s, 2);
-    assert_string_equal(a, b); /* two instances of one mesh, with sensors at the same positions on it */
+    /* A and B are instances of one mesh with sensors at the same positions on it, so they share one asset file */
+    assert_string_equal(a, b);
     assert_string_not_equal(a, c);
     struct folder_file file;
     char why[200], *folder = temp_path(s->folder, "plant.prepared");
@@ -295,7 +296,8 @@ CASE(distances_are_printed)
     for (char *line = strchr(s->out.at, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         double x, y, z, geodesic_m, euclidean_m;
         assert_int_equal(sscanf(line, "%lf,%lf,%lf,%lf,%lf", &x, &y, &z, &geodesic_m, &euclidean_m), 5);
-        assert_float_equal(euclidean_m, hypot(x - 10, y), 1e-5); /* in the plant frame, B stands at x = 10 */
+        /* expects distances from T3, which is on B at x = 10 in the plant frame */
+        assert_float_equal(euclidean_m, hypot(x - 10, y), 1e-5);
         assert_float_equal(geodesic_m, euclidean_m, 1e-3);
         lines++;
     }

@@ -494,7 +494,7 @@ CASE(a_view_that_cannot_be_drawn_is_said_once)
     show(f);
 }
 
-/* No data changes, but a frame that failed for lack of memory is requested again at intervals. */
+/* A frame could not be drawn for lack of memory: although nothing changes, the session must request it again at intervals. */
 CASE(a_view_that_cannot_be_drawn_is_tried_again)
 {
     struct frame_request request;
@@ -685,7 +685,7 @@ CASE(data_does_not_wait_for_the_first_refined_picture)
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
-    for (int i = 0; i < 5; i++) { /* on this slow link a single frame of 20 kB fills the window */
+    for (int i = 0; i < 5; i++) { /* the link is so slow that one frame of 20 kB fills the window, so no further frame may be requested */
         session_on_data(f->session, f->now_ns += 3 * NS_PER_S);
         assert_true(ask(f, &data) && (i > 0 || (data.view.tier == TIER_REFINED && data.or_moving)));
         session_on_data(f->session, f->now_ns += 100 * MS);
@@ -1117,7 +1117,8 @@ CASE(a_follower_is_shown_its_leaders_view)
     request = show(f);
     assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 9);
     session_follow(f->session, leader, f->now_ns);
-    session_leader_gone(f->session, f->now_ns); /* the leader has gone: the last frame keeps its size and is marked */
+    /* the session that this one follows ends: the last frame keeps its size, and the client is told that the leader is gone */
+    session_leader_gone(f->session, f->now_ns);
     following = hear(f);
     assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);
     assert_true(json_is_true(json_object_get(following, "gone")));

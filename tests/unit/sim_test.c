@@ -288,7 +288,8 @@ TEST(wide_series)
     assert_true(series_at(&series, 200, false) == -2);
     series_finish(&series);
     assert_false(series_read(&series, path, "d", &found, why));
-    assert_non_null(strstr(why, ":4: d: expected a number")); /* line 3 has a status word instead of a number, which is not an error */
+    /* the error is in line 4; line 3 has a status word instead of a number, which is allowed */
+    assert_non_null(strstr(why, ":4: d: expected a number"));
     series_finish(&series);
     assert_true(series_read(&series, path, "c", &found, why));
     assert_false(found);

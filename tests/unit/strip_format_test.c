@@ -70,7 +70,7 @@ TEST(test_long_names_and_nonsense)
     uint8_t code[STRIP_BYTES];
     struct strip strip, odd = { .min = 1, .max = 2, .log = true, .group = "" };
     int mended;
-    memcpy(odd.group, "temperaturtemperatur12°", 22); /* the name is cut to 22 bytes, in the middle of its last character */
+    memcpy(odd.group, "temperaturtemperatur12°", 22); /* a name that was cut to 22 bytes within its last character, "°" of two bytes */
     odd.group[21] = "°"[0];
     memcpy(odd.unit, "kJ/(kg K)", 10);
     strip_encode(&odd, code);

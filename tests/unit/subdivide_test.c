@@ -502,7 +502,7 @@ static void assert_pixels(const struct prepared_body *body, size_t number, const
     say_errors(body, number, name, "at the outline", errors[1], counts[1]);
     assert_true(counts[0] + counts[1] > PIXELS * 9 / 10);
     bool large = counts[0] > PIXELS / 2; /* large: most pixels are away from outlines; otherwise the body is only a few pixels wide */
-    bool some = counts[0] > PIXELS / 50; /* with fewer pixels inside the outline, percentages are meaningless */
+    bool some = counts[0] > PIXELS / 50; /* some: enough pixels away from outlines for a percentage to mean anything */
     size_t most_of_1000 = large ? 995 : counts[0] > PIXELS / 10 ? 980 : 950;
     assert_true(!some || errors[0][counts[0] * most_of_1000 / 1000] <= 1 / 255.0);
     assert_true(!large || errors[0][counts[0] * 999 / 1000] <= most / 255.0);

@@ -88,7 +88,9 @@ static bool is_blocked(const double slot[3], const double a[3], const double b[3
 {
     double low = 0, high = 1, dx = b[0] - a[0], dy = b[1] - a[1];
     const double from[3] = { a[0] - slot[0], slot[1] - a[0], slot[2] - a[1] }, slope[3] = { dx, -dx, -dy };
-    for (int i = 0; i < 3; i++) { /* finds the part of the line that is inside the slot: where from + t slope > 0 for all three sides */
+    /* narrows [low, high] to the part of the line inside the slot: where from + t slope > 0 for each of the slot's three sides
+       */
+    for (int i = 0; i < 3; i++) {
         if (slope[i] == 0 && from[i] <= 1e-6)
             return false;
         if (slope[i] > 0)
@@ -310,7 +312,8 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam));
     assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
     for (size_t v = sphere_count; v < both.vertex_count; v++)
-        /* the pipe's hidden end inside the sphere has distances too: triangles that cross the sphere's shell need them */
+        /* hidden vertices of the pipe need distances, too, because triangles that pass through the sphere's shell have corners
+           there */
         assert_true(isfinite(distances[v]));
     surface_destroy(&surface);
     cad_finish(&both);
@@ -425,7 +428,8 @@ TEST(a_sensor_is_dropped_onto_the_surface)
     float *distances = distances_from(surface, &plate, 0.4, 0.7, 0.05);
     for (size_t v = 0; v < plate.vertex_count; v++) {
         double truth = hypot((double)plate.positions[v][0] - 0.4, (double)plate.positions[v][1] - 0.7);
-        assert_float_equal(distances[v], truth, 1e-4); /* the distance is 0 at the source's own vertex and grows from there */
+        /* expects the straight-line distance from the source, (0.4, 0.7) on the plate, at each vertex */
+        assert_float_equal(distances[v], truth, 1e-4);
     }
     surface_destroy(&surface);
     cad_finish(&plate);
@@ -569,8 +573,8 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
         /* random states that make plates on which the propagation of distances once failed: here, a triangle's corner lies
            behind an end of the opposite edge */
         { 1, 5, 1558015352152668877u },
-        { 5, 5, 12376468115645539828u }, /* the source lies exactly on an edge */
-        { 1, 6, 15378426302762057891u }, /* an edge whose farther end is reached before the nearer one */
+        { 5, 5, 12376468115645539828u }, /* here, the source lies exactly on an edge */
+        { 1, 6, 15378426302762057891u }, /* here, an edge is reached at its farther end before its nearer one */
     };
     struct cad_random usual;
     double worst = 0;

@@ -254,7 +254,8 @@ CASE(addresses_and_types_are_checked)
           { "tags.csv", 10, 3, "float64 needs 4 registers" });
     plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Address'" });
-    plant_case_load(c, yaml_no_source, "Tag Name\nA\n"); /* without sources in the plant file, values arrive by other means */
+    /* the plant file has no sources, so tags need no address: their values arrive by other means */
+    plant_case_load(c, yaml_no_source, "Tag Name\nA\n");
     plant_case_assert_loaded(c, 0);
     assert_int_equal(c->plant->tags[0].source, -1);
 }
@@ -449,7 +450,8 @@ CASE(units_agree_with_the_group)
                     "C,40001,temp,E-101,N,°c\n"
                     "D,40001,temp,E-101,N,°F\n"
                     "E,40001,temp,E-101,N,\n");
-    plant_case_assert_loaded(c, 0); /* conversions and refused units are tested in units_test */
+    /* this list is accepted; conversions of units, and units that are refused, are tested in units_test */
+    plant_case_assert_loaded(c, 0);
 }
 
 /* A plant file without valid groups gives one error, not one per row. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The positions from which the camera looks at a tag: the distance, and the sides that are tried.
+// Flights to a tag: from which distance and from which sides the camera may look at the tag.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { approachDistance, approaches, atDistance, distanceBounds, fillOf, silhouetteOf } from '../../clients/web/core/approach.js';

@@ -19,8 +19,8 @@ const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-pra
 const COLOURS = { type: 'rule', values: ['color-contrast', 'link-in-text-block'] };
 const WALKS = sweep([['dark', RULES], ['light', RULES]], [['dark', RULES, 'light']]);
 const THEMES = { dark: RULES, light: sweep(RULES, COLOURS) };
-// The part of the page that each step opens, by the step's name: only this part is checked after the step, unless stated
-// otherwise.
+// A step of the walk through the page, and the part of the page that it opens. After the step, axe-core checks only this part,
+// unless a call says otherwise.
 const PARTS = {
     card: '#card', place: '#place', picture: '#picture-panel', split: '#split-bar', views: '#views', display: '#display',
     trend: '.lower', alarms: '#alarms', shelve: '#shelve',
@@ -176,7 +176,7 @@ for (const [row, theme] of Object.keys(THEMES).entries()) {
     });
 }
 
-// Parts of the page that a key opens: [key, part, further button to press in it].
+// [key to press, selector of the part of the page that it opens, selector of a button to press within that part]
 const OPENED = [['e', '#alarms'], ['e', '#alarms', '#journal-tab'], ['v', '#views'], ['p', '#picture-panel'], ['y', '#timeline'],
     ['b', '#assets'], ['k', '#share'], ['?', '#help']];
 test('on a phone a screen reader announces every control, table and dialog by name; alarms are in a live region', options, async () => {

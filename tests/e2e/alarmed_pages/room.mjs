@@ -29,7 +29,8 @@ before(async () => {
         [, url] = await alarmed();
 });
 
-// Returns elements that should not overlap the picture or extend beyond it but do, and missing parts of the legend.
+// Returns the layout faults: elements that cover the picture, or leave it, although they should not, and missing parts of the
+// legend.
 const amiss = (page) => page.evaluate(() => {
     const box = (element) => element.getBoundingClientRect(), picture = box(document.getElementById('viewport'));
     const shown = (selector) => [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && box(e).width > 0);
@@ -245,7 +246,8 @@ test('after a resize, the old picture stays undistorted and its marks stay in pl
     }
 });
 
-// The row of quantities scrolls when dragged; keys and server messages bring the selected one into view.
+// With more quantities than fit, the row of their names can be dragged sideways; if a key or a server message selects one that
+// is out of view, the row moves to show it.
 test('with seven quantities, the name of each is complete', options, async () => {
     const names = ['Differential pressure', 'Volume flow', 'Level', 'Vibration velocity', 'Electrical power'];
     const [many, address] = await startAlarmed((file) => writeFileSync(file, readFileSync(file, 'utf8').replace(/^sources:/m,
@@ -294,7 +296,7 @@ const collisions = (page) => page.evaluate((selector) => {
     return found;
 }, PARTS);
 const inkOf = (page, name = '--ink') => page.evaluate((of) => getComputedStyle(document.documentElement).getPropertyValue(of), name);
-// A desk of 1280 x 800 or 1280 x 1024 in CSS pixels.
+// Window sizes of a desk of 1280 x 800 or 1280 x 1024 pixels at a browser zoom of 200 % or 400 %, in CSS pixels.
 const ZOOMED = { '200 %': { width: 640, height: 400 }, '400 %': { width: 320, height: 256 } };
 for (const [zoom, viewport] of Object.entries(ZOOMED))
     test(`at ${zoom} zoom no part of the page covers another, and the page scrolls in one direction`, options, async () => {
@@ -336,7 +338,8 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
             await press('y');
             await call('showTrend');
             await page.locator('#trend-chart canvas').waitFor();
-            await page.waitForFunction(() => { // the chart lies above the time bar, complete and with room for its curve
+            // waits until the trend chart lies completely above the time bar, with at least 40 pixels for its curve
+            await page.waitForFunction(() => {
                 const box = (of) => document.querySelector(of).getBoundingClientRect(), chart = box('#trend-chart canvas');
                 return box('#trend-chart .u-over').height >= 40 && box('#timeline').height > 0 && chart.bottom <= box('#timeline').top + 1;
             });
@@ -387,7 +390,9 @@ test('on every screen a button tells what the alarm filter hides, and clears the
                     await button.waitFor({ state: 'hidden' });
                     await setField(page, { 'alarms-words': 'TI', 'alarms-which': 'gone', 'alarms-priority': '1' });
                     await button.getByText('0/1 · “TI” · Gegangen · Priorität 1').waitFor();
-                    if (height > 300) // at 400 % zoom, the page scrolls
+                    // at 400 % zoom (256 pixels high) the button may be out of view, because the page scrolls, so its text is
+                    // checked only elsewhere
+                    if (height > 300)
                         await becomes(async () => await readable(page, '#alarms-applied') !== '', true, name);
                     await shoot(page, `filtered-${width}${time ? '-time' : ''}`);
                     await button.click();

@@ -73,7 +73,7 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
         try {
             await waitForPicture(page);
             assert.equal(await page.evaluate(() => document.documentElement.lang), lang);
-            if (sweep(true, false)) // by default accessible.mjs checks all panels in German
+            if (sweep(true, false)) // opens every panel only in long runs; in the default run accessible.mjs opens them all in German
                 await everyPanel(page, look);
             else
                 await page.evaluate(() => { // selects an asset, so that its readings are listed

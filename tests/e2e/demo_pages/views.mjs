@@ -35,7 +35,8 @@ const arrive = async (is, what) => {
 };
 const waitFor = (f, what) => page.waitForFunction(f, what);
 
-// Returns a position on the page that shows equipment with a field and no marker.
+// Returns the position on the page of the middle of an asset's bounding box; a click there hits the asset's field and no
+// marker.
 const middleOf = async (id) => drawnAt(page, await page.evaluate((asset) => {
     const { min, max } = globalThis.plantcast.session.model.asset(asset).bounds;
     return min.map((m, i) => (m + max[i]) / 2);

@@ -149,7 +149,8 @@ test('shelving needs a reason and hides the alarm', options, async () => {
     await row.waitFor();
     await row.filter({ hasText: /Shelved.*until \d\d:\d\d, by local, transmitter is being changed/s }).waitFor();
     await row.locator('button[data-action="unshelve"]').click();
-    await page.locator(`#alarms-list tr[data-alarm="${id}"].calls`).waitFor(); /* the alarm is listed again as if it were new */
+    /* after unshelving, the alarm is listed as one that calls for attention, like a new one */
+    await page.locator(`#alarms-list tr[data-alarm="${id}"].calls`).waitFor();
 });
 
 test('a click on an alarm flies to its tag in the tag\'s group, and a return to normal is shown', options, async () => {
@@ -200,7 +201,7 @@ test('a tag has one row and counts once; a returned alarm is not active, and is 
         const found = await ring(LOW);
         return found?.state === 'returned' && found;
     });
-    // The ring of a returned alarm is white where an active alarm's ring shows the colour of its priority.
+    // reads a pixel of the ring: a returned alarm's ring is white where an active one's has the colour of the priority
     const [r, g, b] = await page.evaluate(({ x, y }) => {
         const box = document.getElementById('viewport').getBoundingClientRect(), { canvas, unit } = globalThis.plantcast.overlay;
         const ratio = canvas.width / box.width;
@@ -344,7 +345,8 @@ test('the list\'s edge can be dragged and moved by keys; its size survives a rel
         assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `the list's edge moved from ${usual} to ${dragged}`);
         await edge.press('ArrowLeft');
         assert.equal(await width(), dragged + 40);
-        for (const screen of [740, 1280]) { // a narrow window does not change the stored width
+        // while the window is only 740 pixels wide the panel is narrower, but its stored width must not change
+        for (const screen of [740, 1280]) {
             await on.setViewportSize({ width: screen, height: 800 });
             await on.reload();
             await opened();
@@ -406,8 +408,8 @@ test('the moment before an alarm opens half a minute before it, at its place, an
     const row = page.locator('#alarms-list tr').first(), name = await row.locator('td[data-col=tag]').textContent();
     const raisedUs = await page.evaluate((of) =>
         globalThis.plantcast.session.model.alarms.list().find(({ tag }) => tag.name === of).raisedUs, name);
-    // waits until the alarm is 4 s old: the history of an instant is complete only after 3 s, and until then the server shows
-    // an earlier one
+    // Waits until the alarm is 4 s old. The history of an instant is complete after 3 s; for a newer instant the server would
+    // show an earlier one.
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 4e6, raisedUs);
     await row.locator('.moment-go').click();
     await page.waitForFunction(() => globalThis.plantcast.session.time.atUs !== null);

@@ -61,7 +61,7 @@ test('a click puts an unplaced tag onto the surface, and its field appears', opt
     await says('#engineer .tags li', 'TI-9 spare.*not placed');
     await page.locator('#engineer .tags button').first().click();
     await says('#engineer .hint', '^TI-9: click on the surface');
-    await land(page); // waits until the picture stands still, because the panel's opening has moved it
+    await land(page); // opening the panel has moved the picture: waits until the camera stands still
     const { x, y } = await at([0.2, -0.5, 0.2]);
     await page.mouse.click(x, y);
     await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}distances along the surface');
@@ -131,7 +131,8 @@ test('saving the list first shows the changes, then makes the list active', opti
     await ready(page);
     instant = new Date().toISOString();
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 3e6, Date.now() * 1000);
-    plain = await until('equal pictures', async () => { // the history of an instant may take longer to be complete on a busy machine
+    // requests the picture until two in a row are equal: on a busy machine the history of an instant may be completed late
+    plain = await until('equal pictures', async () => {
         const one = await snapshot();
         return one.equals(await snapshot()) && one;
     });

@@ -94,7 +94,7 @@ test('a note appears in the past only at instants when it existed', options, asy
     const pins = () => page.evaluate(() => [...document.querySelectorAll('.note-pin')].map(({ textContent }) => textContent));
     const waitForPins = (...texts) => page.waitForFunction((wanted) => [...document.querySelectorAll('.note-pin')]
         .map(({ textContent }) => textContent).join('|') === wanted, texts.join('|'));
-    const later = async (us) => { // history of an instant is complete after 3 s
+    const later = async (us) => { // waits until the history of the instant `us` is complete, which takes 3 s
         await page.waitForFunction((then) => globalThis.plantcast.session.clockUs() > then + 3.5e6, us);
         return us;
     };
@@ -184,7 +184,8 @@ test('note pins are complete, and cover no other pin, no legend and not the righ
             await becomes(amiss, [], `${size.width}${split ? ', split' : ''}`);
         }
     }
-    await page.evaluate(async () => { // moves the camera down until the notes' point is at the picture's upper edge
+    // moves the camera downwards until the point to which the notes belong is at the upper edge of the picture
+    await page.evaluate(async () => {
         const { projector } = await import('/core/camera.js'), { session, viewport } = globalThis.plantcast;
         const { position } = session.model.tag('TI-1'), lower = ([x, y, z]) => [x, y, z - 0.01];
         let { camera } = session;

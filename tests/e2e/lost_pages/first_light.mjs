@@ -56,7 +56,7 @@ test('live frames arrive, and the page says that they are live', options, async 
     const picture = await grab(page);
     assert.ok(contrast(picture) > 10, `contrast of the picture is ${contrast(picture)}`);
     const box = await page.locator('#viewport').boundingBox();
-    await waitForWhole(Math.round(box.width), Math.round(box.height)); // the picture has one pixel per screen pixel
+    await waitForWhole(Math.round(box.width), Math.round(box.height)); // waits for a picture with one pixel per pixel of the screen
     await page.locator('#clock', { hasText: /^\w{3} \d+, \d{4} \d\d:\d\d:\d\d UTC/ }).waitFor();
     await page.locator('#age', { hasText: /^\d+(\.\d)? s$/ }).waitFor();
     await shoot(page, 'desktop');

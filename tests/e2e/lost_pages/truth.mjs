@@ -130,7 +130,8 @@ test('a tablet with a wrong date still shows correct ages and the plant\'s time'
         assert.ok(await far() < -3 * 86400e3 + 60000, 'the tablet\'s date is wrong');
         const told = () => page.evaluate(() => ({ clock: document.getElementById('clock').textContent,
             age: document.getElementById('age').textContent }));
-        // the age must stay right even when the clock is set back; setting it forward would look like a sleep
+        // Sets the page's clock back by an hour again and again: the shown age must not change. Setting it forward would count
+        // as sleep of the computer.
         const ages = await page.evaluate(() => new Promise((done) => {
             const seen = [], timer = setInterval(() => {
                 seen.push(document.getElementById('age').textContent);
@@ -185,7 +186,7 @@ test('a slow link that stalls: the last picture stays, marked as old, and the vi
             return { camera, selected: params.selected, group: params.group };
         });
         const was = await view();
-        relay.child.kill('SIGSTOP'); // no data arrives, and the connection stays open
+        relay.child.kill('SIGSTOP'); // stops the relay: the connection stays open, but no data arrives
         try {
             await page.waitForFunction(() => document.getElementById('viewport').classList.contains('is-old'));
             await page.locator('#banner', { hasText: /This picture is [\d.]+ s old/ }).waitFor();

@@ -44,7 +44,7 @@ async function meet(before = 0) {
 test('a server that announces false sizes is disconnected, named, and costs no memory', options, async () => {
     const real = server.port;
     server.port = await freePort();
-    const before = await meet(); // memory while nothing listens at the server's port
+    const before = await meet(); // peak memory of a daemon whose server does not listen, in MB, for comparison
     await plant.daemon.stop();
     for (const [name, lies] of Object.entries(LIES)) {
         const liar = await tellLies(server.port, lies);
@@ -140,7 +140,8 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         assert.equal(plant.daemon.said.match(/timestamps are/g).length, 1, 'the clock difference is logged once');
     });
 
-// If the server's clock is slow, new certificates are not valid yet: neither the server's nor the client's.
+// The server's clock may be before the beginning of new certificates, its own and the client's, so that they are not valid by
+// that clock. The daemon must connect all the same, and report it.
 test('a server whose clock is before its certificate is read and reported; a certificate not yet valid is refused by name',
     clocks, async () => {
     const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;

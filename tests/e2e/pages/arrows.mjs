@@ -71,7 +71,7 @@ tags: tags.csv
     await plant.startDaemon();
     for (const [i, degrees] of SENSORS.entries()) {
         await plant.tell(`set ${speedTag(degrees)} ${6 + 2 * i}`);
-        // the direction: counter-clockwise around the tank, seen from above
+        // sets directions that run counter-clockwise around the tank, seen from above
         await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`);
     }
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { ...DESKTOP, ...FLYING });

@@ -40,7 +40,8 @@ after(async () => {
     await plant?.stop();
 });
 
-// Counts clicks here and not in the page, because the browser's driver repeats a click on an element that moves.
+// Clicks on an element and counts it. Clicks are counted here, not in the page, because the browser's driver clicks again if an
+// element moves.
 const click = (what, text) => {
     clicks++;
     return page.locator(what, text ? { hasText: text } : {}).first().click();

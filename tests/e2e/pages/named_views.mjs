@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Named views: those in the plant file and those that users save on the page, shared by all users, in one order, with earlier
-// versions.
+// Named views, in the plant file or saved by users on the page: all users see them, in the same order, and earlier versions of
+// a saved view can be restored.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { land, openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';

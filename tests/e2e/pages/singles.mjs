@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A group with a single sensor on an asset, whose triangles were not refined. What cannot be drawn correctly on them is refused
-// for every client, with a hint, and is drawn once the plant file requests refinement.
+// Single sensors: if an asset has only one sensor of a group, its triangles are not refined, and some displays would be wrong
+// on them. Every client is refused these with a hint; once the plant file asks for refinement (singles: cut), they are drawn.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -40,7 +40,7 @@ test('for a single sensor, paper style and distances are refused until the plant
         const refused = runProgram('plantcast', [...args, '--interpolation', 'paper']);
         assert.deepEqual([refused.code, PAPER.test(refused.err)], [2, true], refused.err);
 
-        // The page returns to its last view and shows why.
+        // When a change is refused, the page shows why and returns to the view before it.
         await ask({ group: 'pressure' });
         await shown('pressure', 'shepard');
         await ask({ interpolation: 'paper' });

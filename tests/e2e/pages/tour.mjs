@@ -16,8 +16,8 @@ const options = { skip: why ?? false, timeout: 280000 };
 const HOT = 'TE-101', MOST_MS = 180000;
 let plant, browser, page, began;
 
-// Records fifty minutes for each tag near its value, and freezes the values, because otherwise pictures would be drawn all the
-// time.
+// Imports fifty minutes of history for each tag, near its present value, then freezes the simulated values, because each change
+// would cause a new picture.
 async function remember({ file, ask }) {
     const folder = dirname(file), now = Math.floor(Date.now() / 1000), lines = ['Tag,Time,Value,Quality'];
     const rows = readFileSync(join(folder, 'tags.csv'), 'utf8').trim().split('\n').slice(1), names = rows.map((row) => row.split(',')[0]);

@@ -41,7 +41,8 @@ export class BareRoot {
         writeFileSync(this.path(name), text, { mode });
     }
 
-    // Returns the command line that runs a shell command as user root of this root folder; its programs end with it.
+    // Returns [program, arguments] that run a shell command as root within this root folder. When that command ends, all
+    // programs that it started are killed.
     line(command) {
         const binds = [['/usr', 'usr'], [TOP, TOP], [BIN, BIN], ['/dev', 'dev'], ['/proc', 'proc']]
             .map(([from, to]) => `mount --rbind ${from} ${join(this.folder, to)}`).join(' && ');
@@ -50,7 +51,7 @@ export class BareRoot {
             `PATH=${BIN}:/usr/sbin:/usr/bin HOME=/root LC_ALL=C.UTF-8 /bin/sh -euc "$1"`, 'sh', command]];
     }
 
-    // Runs a command: { code, out, err }.
+    // Runs a shell command within this root folder. Returns { code, out, err }.
     run(command, timeout = 120000) {
         const [program, args] = this.line(command);
         const { status, stdout, stderr } = spawnSync(program, args, { encoding: 'utf8', timeout });

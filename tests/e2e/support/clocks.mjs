@@ -11,7 +11,7 @@ const starter = (by) => ['env', ...Object.entries(variables(by)).map(([name, val
 // Returns the command prefix that starts a program with its clock this many seconds ahead.
 export const withClockOff = (seconds) => starter({ CLOCK_OFF_S: String(seconds) });
 
-// A clock that the test sets while programs use it.
+// A wrong clock whose offset the test can change while programs run with it (set(seconds)).
 export class SetClock {
     constructor(file) {
         this.file = file;

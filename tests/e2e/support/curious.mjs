@@ -6,7 +6,8 @@ import { http, PlainClient } from './plain_client.mjs';
 
 const SIZES = [[640, 360], [1280, 720], [1366, 768], [1920, 1080], [390, 844], [1024, 1366]];
 const PATIENCE_MS = 120000, QUIET_MS = 10000;
-const REFINED_MS = 30000; // maximum wait for a refined picture: a busy machine may for a while show only previews of new readings
+// after this time any picture will do, because on a busy machine readings may change so often that only previews come
+const REFINED_MS = 30000;
 const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
 // Returns a generator of numbers 0 <= x < 1 that repeats for the same seed (mulberry32).
@@ -79,7 +80,7 @@ export class Curious {
             Math.max(1, target[2] + z * zoom + rise)];
     }
 
-    // Drags, and waits for each picture, so that as many are drawn as a person would see.
+    // Drags the camera in steps and waits for a picture after each, so that as many pictures are drawn as a person would see.
     async drag(pictures) {
         const turn = this.between(-0.08, 0.08), rise = this.between(-0.4, 0.4);
         for (let n = 0; n < pictures; n++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links that can be cut, and a tap before a device, in a separate thread, so that a test that waits for a program does not
-// delay them.
+// Network links that tests can cut, and a tap in front of a device that records who polls. They run in a thread of their own,
+// so that a test that blocks while it waits for a program does not delay the traffic.
 import { connect, createServer } from 'node:net';
 import { isMainThread, parentPort, Worker } from 'node:worker_threads';
 import { CuttableLink } from './postgres_server.mjs';
@@ -8,7 +8,7 @@ import { CuttableLink } from './postgres_server.mjs';
 // current time in ms on a time base that is the same in all threads; performance.now() alone differs by thread
 const now = () => performance.timeOrigin + performance.now();
 
-// Relays requests to the device, and records the first and last request of each connection.
+// Opens the tap: relays connections to the device and records in pollers[] the times of the first and last request of each.
 async function openTap(pollers, port, devicePort) {
     const server = createServer((near) => {
         const far = connect(devicePort, '127.0.0.1');

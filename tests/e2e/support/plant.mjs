@@ -109,8 +109,8 @@ export async function startPlant(more = '', arrange = () => {}, flags = []) {
         async startDaemon() {
             daemon = await startDaemon();
         },
-        // Freezes every tag at its current value, and waits until the daemon has read it: from then on nothing changes by
-        // itself. Waits for two readings, because the device may have answered the request for the first before the freeze.
+        // Freezes each tag at its present value and waits until the daemon has read it twice: the first of these readings may
+        // have been requested before the freeze. From then on no value changes by itself.
         async freeze(tags) {
             for (const tag of tags)
                 await plant.ask(`set ${tag} ${await plant.ask(`get ${tag}`)}`);

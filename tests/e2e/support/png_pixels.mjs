@@ -32,7 +32,7 @@ export function pixelsOf(png) {
     return { width, height, rgb };
 }
 
-// The picture that a client with the codec "png" shows after all of these frames.
+// The picture that a client with the codec "png" shows: draw() adds each received frame, a whole picture or a part of it.
 export class Canvas {
     constructor() {
         Object.assign(this, { width: 0, height: 0, rgb: Buffer.alloc(0) });

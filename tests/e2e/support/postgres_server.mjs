@@ -48,7 +48,8 @@ export class PostgresServer {
         rmSync(join(this.data, 'postmaster.pid'), { force: true });
         this.child = spawn(join(FOLDER, 'postgres'), ['-D', this.data, '-p', String(this.port), '-h', '127.0.0.1', '-k', this.folder,
             '-c', 'shared_buffers=16MB', '-c', 'max_connections=20',
-            '-c', 'fsync=off', // no fsync: a slow disk would delay a lease renewal beyond the time that a leader may act
+            // does not wait for the disk: a slow disk would delay renewing the lease until the leader has to give up its role
+            '-c', 'fsync=off',
         ], { stdio: ['ignore', 'pipe', 'pipe'], cwd: this.folder, ...as });
         this.said = '';
         for (const pipe of [this.child.stdout, this.child.stderr])
@@ -175,7 +176,8 @@ export class CuttableLink {
             far.on('data', (bytes) => near.write(bytes));
             near.on('data', (bytes) => {
                 count += bytes.length;
-                if (link.cutAfter && count >= link.cutAfter) { // cuts the link after the server has received part of the message
+                // forwards half of these bytes and then cuts the link, so that the server gets only part of the message
+                if (link.cutAfter && count >= link.cutAfter) {
                     far.write(bytes.subarray(0, bytes.length / 2), () => link.cut());
                     link.cutAfter = 0;
                 } else {

@@ -60,7 +60,7 @@ TI-1,400001,Float,°C,left,temperature,E-101,0.5,0,0,1
 TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1
 PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 `;
-const BOXES = { 'E-101': 'TI-1,TI-2', 'P-101A': 'PI-1' }; // assets of the plant, and the sensors on each
+const BOXES = { 'E-101': 'TI-1,TI-2', 'P-101A': 'PI-1' }; // sensors on each asset of the plant, by the asset's name
 
 // Runs a program that ends by itself: { code, out, err }.
 export function runProgram(name, args, timeout = 120000) {
@@ -130,8 +130,8 @@ export class TinyPlant {
         return plant;
     }
 
-    // Returns a prepared plant with running simulator and daemon, one side warm and one cold. fresh: its readings stay good
-    // even on a busy machine.
+    // Returns a prepared plant whose simulator and daemon run, with one warm end and one cold end. fresh: gives readings and
+    // the device more time, so that readings stay good on a busy machine.
     static async running({ fresh = false } = {}) {
         const plant = await TinyPlant.create();
         if (fresh)
@@ -197,14 +197,14 @@ export class TinyPlant {
         return { own: join(this.prepared, 'openness'), shared: join(process.env.PLANTCAST_SHARED, `tiny-${name}`) };
     }
 
-    // Gives every tag a limit of 90, for local alarms.
+    // Adds `alarms: local` to the plant file, and a high limit of 90 to each tag.
     addAlarms() {
         const tags = join(this.folder, 'tags.csv');
         appendFileSync(this.file, 'alarms: local\n');
         writeFileSync(tags, readFileSync(tags, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
     }
 
-    // Prevents stale or Bad readings when the machine is busy.
+    // Lets readings be 600 s old and the device answer late, so that no reading becomes stale or Bad on a busy machine.
     keepFresh() {
         const tags = join(this.folder, 'tags.csv');
         writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1$/gm, ',600'));

@@ -25,7 +25,7 @@ export function missingTwoCores() {
     return missingPostgres() ?? (canMount ? false : 'nothing can be mounted here');
 }
 
-// Returns how often a core began to poll devices.
+// Returns how many times this core has begun to lead, i.e. to poll devices, according to its log.
 export const terms = (core) => core.program.said.match(/polls devices and owns the alarms/g)?.length ?? 0;
 export const kill = (core, signal) => () => core.program.child.kill(signal);
 
@@ -43,8 +43,8 @@ export class TwoCores {
         }
         return two;
     }
-    // Starts a database and two cores, of which one leads and the other follows. prepare: called before the cores start. destroy() ends the
-    // database too.
+    // Starts a PostgreSQL server and two cores; waits until one leads and the other follows. prepare: called before the cores
+    // start. `two.destroy()` ends the server, too.
     static async running(prepare = () => {}, ...more) {
         const server = await PostgresServer.start();
         let two = server;
@@ -76,7 +76,7 @@ export class TwoCores {
   deadband_percent: 0
   postgres: { url: "${url}", login: login }
 ${more}`);
-        // two.yaml differs only in its port, so the prepared equipment is copied
+        // the second core's plant file differs only in its port, so it gets a copy of the first one's prepared assets
         cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true });
         const prepared = runProgram('plantcast-prep', [this.file]);
         if (prepared.code !== 0)
@@ -133,7 +133,7 @@ ${more}`);
             return false;
         }
     }
-    // Waits; on failure adds both cores' output to the error's text.
+    // Waits as until() does; if that fails, adds the output and state of both cores to the error.
     async waitsFor(what, good, seconds) {
         try {
             return await until(what, good, seconds);

@@ -13,7 +13,7 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const BEGIN_S = Math.floor(Date.now() / 1000) - 3000;
 let plant, browser, page;
 
-// A slow wave, in which TI-1 is faulty from minute 20 to 25.
+// Returns a CSV file of history: each tag follows a slow wave, and TI-1 is Bad from minute 20 to 25.
 function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let s = 0; s <= 2900; s += 5) {
@@ -322,7 +322,7 @@ test('in the dark theme the chart is dark, and its lines and limits are legible'
     const rgbOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
     const { ground, lines, limit, grave, ink } = await page.evaluate(() => globalThis.plantcast.trends.look);
     await page.waitForFunction((is) => getComputedStyle(document.getElementById('trends')).backgroundColor === is,
-        `rgb(${rgbOf(ground).join(', ')})`); // waits for the panel's style sheet, which gives the panel the colour `ground`
+        `rgb(${rgbOf(ground).join(', ')})`); // waits until the style sheet of the new theme has given the panel its background
     assert.ok(Math.max(...rgbOf(ground)) < 90, ground);
     for (const colour of [...lines, limit, grave, ink])
         assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `contrast of ${colour} on ${ground} is too low`);
@@ -426,7 +426,8 @@ test('alarms are marked on the time bar where they were raised', options, async 
     if (await page.locator('#timeline').isVisible())
         await page.locator('#time-toggle').click();
     await page.locator('#time-toggle').click();
-    // The mark may not be the first: marks close together are merged into one, which lists them in order of time.
+    // finds a mark on the time slider that lists an alarm of TI-2; other alarms may precede it there, because marks close
+    // together are merged into one
     const mark = page.locator('#time-track .alarm title', { hasText: /\bTI-2 HH?, \d\d:\d\d:\d\d/ }).first();
     await mark.waitFor({ state: 'attached' });
     assert.match(await page.locator('#time-alarms').textContent(), /^\d+ alarms? raised$/);
@@ -436,8 +437,8 @@ test('alarms are marked on the time bar where they were raised', options, async 
 
 const instantOf = (us) => page.waitForFunction((to) => globalThis.plantcast.session.time.atUs === to, us);
 const timeText = (us) => new Date(us / 1000).toISOString().slice(0, 19);
-// Returns an instant `s` seconds after the history begins, or one second later if that is a full minute: Chromium drops seconds
-// of :00 from a date field.
+// Returns the instant (BEGIN_S + s) in microseconds, or one second later if it is a full minute, because Chromium's date field
+// drops seconds of :00.
 const afterBegin = (s) => (BEGIN_S + s + ((BEGIN_S + s) % 60 === 0)) * 1e6;
 
 test('marks and buttons lead to an alarm\'s instant, from alarm to alarm, and to a date', options, async () => {

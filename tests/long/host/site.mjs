@@ -50,7 +50,7 @@ export class Site {
         for (const step of [this.startServer, this.makeTwo, this.startCores, this.startRenderers, this.balance, this.watch]) {
             this.mustGoOn();
             const done = step.call(this), isMaking = !this.two;
-            // stops waiting when destroy() is called, except during the steps before the cores exist
+            // if destroy() is called meanwhile, stops waiting for this step, except for the first ones, which make the cores
             await (isMaking ? done : Promise.race([done, end]));
         }
     }
