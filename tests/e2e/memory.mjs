@@ -20,7 +20,7 @@ let plant, port, start, one;
 const status = () => readFileSync(`/proc/${plant.pid}/status`, 'utf8');
 const megabytes = (name) => Number(status().match(new RegExp(`${name}:\\s+(\\d+)`))[1]) / 1024;
 
-// Returns memory gauges in MB, by their label.
+// Returns the sizes in MB that the daemon reports under plantcast_memory_bytes, by label, and their limit as `bound`.
 async function gauges() {
     const { body } = await get(port, '/metrics'), found = {};
     for (const [, name, of, value] of body.toString().matchAll(/^plantcast_memory(_bound)?_bytes(?:\{of="(.*)"\})? (\d+)$/gm))

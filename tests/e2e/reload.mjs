@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plant reload while clients are connected: completely or not at all, and no client is disconnected.
+// Reloading the plant file and tag list while clients are connected: a reload takes effect completely or, if anything is wrong,
+// not at all, and no client is disconnected.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { closeSync, constants, openSync, readFileSync, renameSync, writeFileSync } from 'node:fs';

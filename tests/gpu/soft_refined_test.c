@@ -211,7 +211,8 @@ TEST(test_new_readings_are_a_new_picture)
     frame_unref(&last);
 }
 
-/* Recolouring with isolines, their labels, ghosts and a section. */
+/* When readings change, a refined frame is recoloured instead of drawn again. With isolines, their labels, a ghost and a
+   section, the result must equal a newly drawn frame. */
 TEST(test_lines_again)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 501, 300);
@@ -234,7 +235,8 @@ TEST(test_lines_again)
     toy_fill(stand.snapshot, 0);
 }
 
-/* Recolouring in the glossy look, where field colours are mixed with light. */
+/* Recolouring frames of the glossy look, in which field colours are mixed with light: the result must equal a newly drawn
+   frame. */
 TEST(test_glossy_again)
 {
     for (int i = 0; i < 4; i++) {

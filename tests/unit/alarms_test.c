@@ -75,7 +75,7 @@ static void hear(struct stage *s, int second, int tag, double value, uint32_t qu
     alarms_put(s->alarms, &(struct sample_event){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S }, 1);
 }
 
-/* Sends one sample event for each of the five tags at once, as a lost link does. */
+/* Gives all five tags this value and quality, in one call, as when a device is lost or comes back. */
 static void hear_all(struct stage *s, int second, double value, uint32_t quality)
 {
     struct sample_event heard[5];
@@ -109,7 +109,7 @@ static enum refusal_code act(struct stage *s, int second, int tag, enum alarm_ki
     return alarms_act(s->alarms, alarms_find(s->alarms, tag, kind), &wish, at(second));
 }
 
-/* Compares the alarm notifications since the last call with `wanted`. */
+/* Asserts that the alarm events since the last call, one line each, equal `wanted`. */
 static void assert_told(struct stage *s, const char *wanted)
 {
     assert_string_equal(s->log, wanted);
@@ -198,7 +198,8 @@ TEST(shelves_end_and_come_back)
     const struct alarm *alarm = alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H));
     assert_string_equal(alarm->reason, "transmitter is being changed");
     assert_true(alarm->until.utc_ns == UTC + 62 * S);
-    assert_int_equal(act(&s, 30, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE); /* shelves the alarm again, for longer */
+    /* the alarm is shelved already; shelving again extends the time */
+    assert_int_equal(act(&s, 30, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE);
     tick(&s, 61);
     s.log[0] = 0;
     tick(&s, 90);
@@ -530,7 +531,7 @@ TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
     end(&s);
 }
 
-/* One of two units behind a gateway fails: only that unit gets an alarm. */
+/* TT and PT belong to different units behind one gateway: if one unit fails, only that unit gets an alarm. */
 TEST(units_are_devices_of_their_own)
 {
     struct stage s;
@@ -550,7 +551,8 @@ TEST(units_are_devices_of_their_own)
     end(&s);
 }
 
-/* A restart and a reload while a device is lost: no alarm is raised again, and the device's alarm still covers the same tag alarms. */
+/* Restart and reload while a device is lost: the device's alarm must not be raised again, and must still cover the alarms of
+   its tags. */
 TEST(what_a_device_carries_outlives_us)
 {
     struct stage s, next;
@@ -604,7 +606,7 @@ TEST(a_device_without_limits_has_an_alarm)
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
     s.snapshot = test_snapshot(5);
     hear_all(&s, 1, 50, QUALITY_GOOD);
-    /* readings after one missed poll: Uncertain, with the last values */
+    /* after one missed poll the readings keep their values but are Uncertain */
     hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
     tick(&s, 14);
     hear_all(&s, 15, 50, QUALITY_BAD_COMMUNICATION_ERROR);

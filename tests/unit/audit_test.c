@@ -218,7 +218,8 @@ TEST(test_rotation)
     text_finish(&lines);
 }
 
-/* While the file cannot grow, no partial line is written; once it can grow again, no line is missing. */
+/* While the file cannot grow (full disk), appending fails and must leave no partial line. Once it can grow again, the next line
+   must follow the last complete one, without a gap in the chain. */
 TEST(test_full_disk)
 {
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *later;

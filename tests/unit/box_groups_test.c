@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups of overlapping boxes, compared with a test of each pair. */
+/* Grouping of boxes that overlap, directly or through others: compared with testing each pair of boxes. */
 #include "preprocess/levels/box_groups.h"
 
 #include "tests/support/test.h"

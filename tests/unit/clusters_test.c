@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clusters of a torus with two materials: no triangle is lost, clusters are small, and the expected number is culled in views
-   from outside. */
+/* Splitting a mesh into clusters that can be culled: each triangle must be in one cluster, clusters must be small, and seen
+   from outside about as many as expected must be culled. The mesh is a torus of two materials. */
 #include "preprocess/levels/clusters.h"
 
 #include "tests/support/test.h"

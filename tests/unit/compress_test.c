@@ -98,7 +98,8 @@ TEST(a_failed_write_ends_the_compression)
     assert_int_equal(compress_parts(&(struct atomic_file_part){ content, sizeof(content) }, 1, refuse, &put), -ENOSPC);
 }
 
-/* The layout of each chunk is chosen by its contents: indices become small as differences, floats in planes, text as it is. */
+/* Compression chooses the layout of each chunk by its contents: differences for indices, byte planes for floats, nothing for
+   text. Each kind must become as small as expected. */
 TEST(each_kind_of_array_becomes_small)
 {
     uint32_t *words = mem_array(COUNT, sizeof(*words));

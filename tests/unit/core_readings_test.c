@@ -104,7 +104,7 @@ TEST(nonsense_is_refused)
 
 /* Sends all readings at core_ns by the core's clock; they arrive at now_ns by the renderer's. Asserts that the renderer finds
    them delayed by late_ns, give or take clock drift. */
-#define DRIFT_NS (S / 500) /* nanoseconds that two clocks may drift apart between two messages */
+#define DRIFT_NS (S / 500) /* delay in ns that may seem to exist between two messages because the two clocks drift apart */
 
 static void assert_late(struct readings_path *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
 {

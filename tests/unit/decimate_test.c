@@ -39,7 +39,7 @@ static void set_corner(struct flat_plate *plate, size_t tri, int corner, uint32_
     plate->mesh.tris[tri][corner] = point;
 }
 
-/* Adds a copy of triangle `of` with `point` in place of one corner. */
+/* Adds a triangle like number `of`, but with the vertex `point` as its corner number `corner`. */
 static void add_piece(struct flat_plate *plate, size_t of, int corner, uint32_t point)
 {
     struct trimesh *mesh = &plate->mesh;
@@ -178,7 +178,7 @@ TEST(a_fold_stays_where_it_is)
     trimesh_finish(&plate.mesh);
 }
 
-/* Decimation must not move a border within a plane, neither between two parts nor between visible and hidden triangles. */
+/* Within a plane, decimation must not move the border between two parts, nor that between visible and hidden triangles. */
 TEST(a_border_stays_where_it_is)
 {
     for (int hides = 0; hides < 2; hides++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Depth grids: cells compared with a brute-force search, also at sizes that are no multiple of a cell, and codes after a round trip. */
+/* Depth grids: the cells that the server finds are compared with a brute-force search, also for pictures whose size is no
+   multiple of a cell; encoded and decoded again, they must be the same. */
 #include "tests/support/test.h"
 
 #include "render/soft/depth_cells.h"
@@ -28,7 +29,8 @@ static struct depth_picture picture_of(int width_px, int height_px)
     return picture;
 }
 
-/* A plane over each rectangle of a random patchwork, with background between some rectangles. */
+/* Makes a picture of depths: random rectangles, each a slanted plane; every fifth one, like the rest of the picture, is
+   background. */
 static struct depth_picture patchwork(int width_px, int height_px)
 {
     struct depth_picture picture = picture_of(width_px, height_px);
@@ -48,7 +50,8 @@ static struct depth_cell *cells_of(const struct depth_picture *picture, const st
     int columns = depth_cells_along(picture->width_px), rows = depth_cells_along(picture->height_px), half = columns / 2;
     struct depth_cell *cells = mem_array((size_t)(columns * rows), sizeof(*cells));
     const struct depth_source source = { picture->depth, picture->pitch_px, picture->width_px, picture->height_px, lens };
-    depth_cells_find(&source, 0, rows, 0, half, cells); /* finds the cells in two calls, as for a picture that is drawn in tiles */
+    /* finds the left and the right half of the cells in two calls, as for a picture that is drawn in tiles */
+    depth_cells_find(&source, 0, rows, 0, half, cells);
     depth_cells_find(&source, 0, rows, half, columns, cells);
     return cells;
 }

@@ -78,7 +78,7 @@ TEST(jpeg_keeps_the_picture)
 {
     check_jpeg(320, 200, 78, false, 24, 16);
     check_jpeg(320, 200, 95, true, 12, 0);
-    check_jpeg(333, 77, 78, false, 30, 16); /* the size is no multiple of a block */
+    check_jpeg(333, 77, 78, false, 30, 16); /* a size that is no multiple of JPEG's blocks */
     check_jpeg(16, 16, 90, true, 40, 8);
 }
 
@@ -117,7 +117,8 @@ static double lines_off(const struct frame *frame, const uint8_t *bytes, size_t 
     return sum / lines;
 }
 
-static size_t head_of(const uint8_t *bytes, size_t count) /* returns the length of the header, up to the picture itself */
+/* returns the number of bytes before the marker that begins the picture's data */
+static size_t head_of(const uint8_t *bytes, size_t count)
 {
     size_t at = 0;
     while (at + 1 < count && !(bytes[at] == 0xff && bytes[at + 1] == 0xda))

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field compared with plain double-precision loops, and each rule that keeps it exact. */
+/* The field (values at vertices, interpolated from readings): compared with plain loops in double precision, and tests of each
+   rule by which updates and caches keep it exact. */
 #include "tests/support/test.h"
 #include <float.h>
 #include <malloc.h>
@@ -20,7 +21,7 @@ struct vertex_truth {
 };
 
 #define MAX_SENSORS 4096
-struct vertex_sight { /* distances from one vertex to its sensors */
+struct vertex_sight { /* the configured sensors as seen from one vertex: distance, weight, and whether each sensor counts */
     double distance_m[MAX_SENSORS], weight[MAX_SENSORS], term[MAX_SENSORS];
     bool usable[MAX_SENSORS], configured[MAX_SENSORS];
 };
@@ -453,7 +454,8 @@ static void assert_even(const struct field_rig *rig, float value)
             fail_msg("vertex %zu of %zu: %g, no data %d", j, scalars->count, (double)scalars->at[j].value, scalars->at[j].no_data);
 }
 
-/* A sensor whose position is only assumed colours the whole asset uniformly, in every mode of the group or the user. */
+/* If the only sensor's position is assumed, the whole asset must show its reading, whatever interpolation, distance and reach
+   the group or the user has chosen. */
 TEST(test_an_assumed_place_is_the_whole_asset_evenly)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
@@ -1248,8 +1250,8 @@ TEST(test_a_prefix_costs_less)
     rig_finish(&rig);
 }
 
-/* A field of straight-line distances to few sensors is evaluated per pixel, so neither pictures nor picks compute its values at
-   vertices. */
+/* A field of straight-line distances to few sensors is evaluated per pixel. Neither a picture nor a pick may then compute the
+   values at vertices. */
 TEST(test_a_pick_of_an_exact_field_computes_no_vertex)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20));

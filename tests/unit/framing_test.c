@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Framing of cameras: the whole target is visible and fills the image, from the requested side. */
+/* Framing: cameras that show a whole target (plant, asset or tag) from a requested side and fill the image with it. */
 #include "scene/framing.h"
 
 #include "tests/support/test.h"
@@ -10,7 +10,7 @@
 #include "tests/support/small_scene.h"
 #include "tests/support/toy.h"
 
-/* Returns the part of the image that a box covers, -1 to 1 on each axis. */
+/* Returns the rectangle of the image that the box covers, in coordinates from -1 to 1. */
 static struct camera_window taken(const struct camera *camera, double aspect, const double min[3], const double max[3])
 {
     struct camera_window out = { INFINITY, -INFINITY, INFINITY, -INFINITY };
@@ -34,7 +34,8 @@ static struct camera_window taken(const struct camera *camera, double aspect, co
     return out;
 }
 
-/* Returns how close a box comes to the image edge: the largest projected coordinate of its corners; 1 is on the edge. */
+/* Returns the largest absolute image coordinate of the box's corners: 1 means that the box just reaches an edge of the image.
+   */
 static double reach(const struct camera *camera, double aspect, const double min[3], const double max[3])
 {
     struct camera_window box = taken(camera, aspect, min, max);
@@ -241,7 +242,7 @@ TEST(what_belongs_together_stays)
     add_box(toy, "PLATE", (double[3]){ 0.18, 0.15, 0.02 }, (double[3]){ 0, 0, 0 });
     add_box(toy, "BRACKET", (double[3]){ 0.05, 0.05, 0.08 }, (double[3]){ 0.06, 0.05, 0.02 });
     expect_framed(toy, 0);
-    toy = toy_create(); /* triangles of a long pipe span the gap between its flanges */
+    toy = toy_create(); /* a long pipe with flanges at its ends: the pipe's triangles connect the flanges, so neither counts as a stray */
     add_box(toy, "FLANGE-1", (double[3]){ 0.05, 0.5, 0.5 }, (double[3]){ 0, 0, 0 });
     add_box(toy, "PIPE", (double[3]){ 200, 0.3, 0.3 }, (double[3]){ 0.05, 0.1, 0.1 });
     add_box(toy, "FLANGE-2", (double[3]){ 0.05, 0.5, 0.5 }, (double[3]){ 200.05, 0, 0 });

@@ -128,7 +128,7 @@ static json_t *prepare_first(struct prep_case *c)
     return made.first;
 }
 
-/* Prepares `tags` into an empty folder, unless already done. Returns the index in made.fresh. */
+/* Makes sure that `tags` has been prepared once into an empty folder. Returns the index of the result in made.fresh[]. */
 static size_t prepare_fresh(struct prep_case *c, const char *tags)
 {
     bool model_read;

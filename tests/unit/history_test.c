@@ -148,7 +148,8 @@ CASE(one_instant_is_as_it_was)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
 }
 
-/* A source that sends only changes is silent for hours, then its value rises each second, then it is silent again. */
+/* A source that sends only changes: nothing for hours, then a value each second, then nothing again. While nothing is sent, the
+   last value must hold, and no sloping line may lead to the next one. */
 CASE(a_value_that_is_not_sent_again_holds)
 {
     const struct history_point sent[] = { { NOVEMBER, 10, 0 },           { NOVEMBER + 7200 * S, 20, 0 }, { NOVEMBER + 7201 * S, 25, 0 },
@@ -224,7 +225,8 @@ CASE(a_line_does_not_slope_over_a_long_silence)
         reading = recorded_at(s, sent, 2, 598);
         assert_float_equal(reading.value, 10, 1e-9);
     }
-    /* a publisher that sends every five minutes, as `Scan Rate` states: a pause of ten minutes means one missing message */
+    /* this publisher sends every five minutes (Scan Rate): with only one message missing within ten minutes, a line connects
+       the samples */
     send_by(s, "mqtt", MQTT_JSON, 300000, 3600);
     assert_float_equal(recorded_at(s, sent, 2, 300).value, 50, 1e-9);
 }
@@ -366,7 +368,8 @@ static void set_zone(const char *zone)
     tzset();
 }
 
-/* The time zone changes during recording, and recording crosses a month border and the end of summer time. */
+/* While the historian records, the machine's time zone changes, summer time ends and a new month begins: points must be stored
+   and found as if nothing had happened. */
 CASE(time_zones_do_not_touch_what_is_recorded)
 {
     const char *const zones[] = { "Pacific/Kiritimati", "Europe/Berlin", "America/Adak", "UTC" }, *before = getenv("TZ");
@@ -585,7 +588,8 @@ CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
     }
 }
 
-/* A steady tag has few points: the bucket before the requested span provides the tag's value at its beginning. */
+/* A tag with few points: the bucket before the requested time span must be in the result, because it gives the value at the
+   beginning of the span. */
 CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
 {
     enum { COUNT = 400, APART_S = 1000 };
@@ -918,7 +922,7 @@ static const char version_1[] =
     "INSERT INTO event VALUES(1793491200000000, 'gap', 'not recorded for 3 s');"
     "PRAGMA user_version = 1; PRAGMA application_id = 1346586697; PRAGMA journal_mode = WAL;";
 
-/* Asserts the rows of a query, joined into one text. */
+/* Runs an SQL query and asserts that its rows, joined into one text, equal `wanted`. */
 static void assert_rows(sqlite3 *db, const char *query, const char *wanted)
 {
     struct text found = { 0 };
@@ -964,7 +968,7 @@ CASE(an_older_version_is_read_and_brought_up)
     assert_int_equal(month_file_tidy(file), 0);
     month_file_close(&file);
     assert_rows(db, "SELECT id FROM tag WHERE name = 'TT-1'", "7; ");
-    for (int i = 0; i < 2; i++) { /* the reader opened before the upgrade reads the new version */
+    for (int i = 0; i < 2; i++) { /* a reader that was opened before the upgrade must read the upgraded file */
         assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + (i ? 50 : 35) * S, snapshot), 0);
         assert_true(snapshot->readings[0].value == (i ? 24 : 13));
     }
@@ -1035,7 +1039,7 @@ CASE(old_and_large_months_go)
 enum { LOT = 60000 };
 static const int64_t LIMIT = 700000;
 
-/* Records two tags with one point per second, none on a straight line between its neighbours. */
+/* Records LOT points of two tags, one per second. No point lies on the line between its neighbours, so none can be left out. */
 static void record_a_lot(struct history_setup *s, int64_t from_us)
 {
     int error;
@@ -1104,7 +1108,8 @@ CASE(a_month_that_is_too_large_loses_its_beginning)
     check_what_is_left(s, from_us + (LOT - 1) * US_PER_S);
 }
 
-/* When the next month begins, the previous month is not deleted at once: it shrinks as the new month needs space. */
+/* In December, November's file is too large: it must not be deleted at once, but lose its oldest points as far as the limit
+   requires. */
 CASE(a_month_that_is_over_shrinks)
 {
     int64_t december_us = month_begin_us(month_of(NOVEMBER) + 1);
@@ -1189,7 +1194,8 @@ CASE(months_wait_for_what_is_to_be_sent)
     mem_free(month_list(s->folder, &count));
     /* two of the three month files are left: the one whose points had all been sent was deleted for its age */
     assert_int_equal(count, 2);
-    /* an oversized month file loses its oldest points; unsent ones among them are counted */
+    /* a month file above the size limit loses its oldest points; `unsent` counts those that had not been sent to the database
+       */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
     assert_int_equal(waiting, 20000);
     limits.bytes = (double)size_of_month(s, month_begin_us(november + 1)) * 0.7;

@@ -106,7 +106,7 @@ CASE(long_rows_are_taken)
     assert_int_equal(s->counts.samples, 5);
     assert_int_equal(s->counts.tags, 2);
     struct history_series series = read_series(s, "h", "FT-1");
-    assert_int_equal(series.points.count, 5); /* five points, including one without a value, after which the line ends */
+    assert_int_equal(series.points.count, 5); /* four values, and a point without a value that ends the line before a gap */
     /* both rows have the same local time, which occurs twice in that night, so they are an hour apart */
     assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S);
     assert_true(series.points.at[1].value == 2.5);
@@ -249,7 +249,7 @@ CASE(two_samples_alone_are_no_line)
     assert_int_equal(s->counts.gaps, 0);
 }
 
-/* Rollup buckets and hourly means have no data within a gap, either. */
+/* Within a gap, rollups and hourly means have no data. */
 CASE(a_gap_is_no_data_in_rollups)
 {
     double means[60];

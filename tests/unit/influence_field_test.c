@@ -92,7 +92,8 @@ static bool use(struct plant_in_use *u, const struct prep_case *c)
     return true;
 }
 
-/* Prepares and opens a plant with these keys for the asset and the group. */
+/* Prepares a plant with `sensors` sensors, in which `wall` and `group` are appended to the asset's and the group's keys, and
+   opens it. */
 static void begin(struct plant_in_use *u, struct prep_case *c, const char *wall, const char *group, size_t sensors)
 {
     write_model(c);
@@ -365,7 +366,8 @@ CASE(test_distances_by_heat)
     prep_case_says(&c->err, "geodesic: expected");
 }
 
-/* Writes four sensors along the strip, each with either three components or a bearing. */
+/* Writes a tag list of four sensors along the strip that also have a direction: by tags of its three components, or by a tag of
+   its bearing. */
 static void write_directions(struct prep_case *c, bool bearings)
 {
     static const char *const directions[2] = { "U%zu V%zu W%zu", "B%zu" };
@@ -814,7 +816,7 @@ CASE(test_without_sensors_no_file_is_missed)
     finish(&u);
 }
 
-/* A missing or damaged file is prepared again and never used. */
+/* A prepared file of weights that is missing or damaged must not be used, and plantcast-prep must make it again. */
 CASE(test_damaged_file)
 {
     struct plant_in_use u;

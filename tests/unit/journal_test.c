@@ -143,7 +143,7 @@ CASE(pages_follow_each_other)
     check_pages(s, NULL, s->rows[ROWS - 1].t_us + 1, INT64_MAX, 5);
 }
 
-/* The last row of a page may be deleted before the next page is requested. */
+/* Paging continues from the last row of the page before, even if that row has been deleted meanwhile. */
 CASE(a_page_after_rows_that_are_gone)
 {
     struct found_rows found = { .count = 0 };

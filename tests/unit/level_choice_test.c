@@ -27,9 +27,9 @@ static size_t chosen(double away_m, double pixel_per_radian)
 
 TEST(levels_change_within_a_pixel)
 {
-    assert_int_equal(chosen(-1, 1000), 0); /* a negative distance: the camera is inside the box */
+    assert_int_equal(chosen(-1, 1000), 0); /* the camera is 1 m inside the box */
     assert_int_equal(chosen(0, 1000), 0);
-    assert_int_equal(chosen(0.9, 1000), 0); /* 1 mm at 0.9 m is 1.1 pixels */
+    assert_int_equal(chosen(0.9, 1000), 0); /* finest level: at 0.9 m, the next one's error of 1 mm would be 1.1 pixels */
     assert_int_equal(chosen(2, 1000), 1);   /* 0.5 */
     assert_int_equal(chosen(9, 1000), 1);
     assert_int_equal(chosen(20, 1000), 2);

@@ -190,7 +190,7 @@ static double brute_distance(const struct set_of *s, const struct level *level, 
     return best;
 }
 
-/* Returns the largest distance of random points on one level from the other level. */
+/* Returns the largest distance of 300 random points of level `from` from level `to`. */
 static double stray(const struct set_of *s, const struct level *from, const struct level *to, uint32_t *seed)
 {
     double most = 0;
@@ -376,7 +376,7 @@ TEST(what_is_alone_and_small_goes_but_no_crowd)
     add_box(&g, 30, 0, 0, 0.05, 0.05, 0.05);
     assert_true(levels_make(&levels, &g, NULL));
     double alone_m = error_without(&g, &levels, 20);
-    assert_true(isinf(alone_m) || alone_m >= 0.0865); /* with so few triangles there may be no coarser level at all */
+    assert_true(isinf(alone_m) || alone_m >= 0.0865); /* INFINITY: with so few triangles no coarser level was made, which is allowed */
     levels_finish(&levels);
     for (int i = 0; i < 400; i++)
         add_box(&g, 40 + 0.1 * (i % 20), 0.1 * (i / 20), 1, 0.05, 0.05, 0.05);
@@ -419,7 +419,8 @@ static size_t looking_away(const struct geometry *g, const struct level *level)
     return count;
 }
 
-/* A thin deck keeps faces above and below, each with its own vertices, even in levels whose error exceeds its thickness. */
+/* Thin plates must keep an upper and a lower face with vertices of their own, even in levels whose error exceeds the plates'
+   thickness. */
 TEST(thin_plates_keep_their_sides)
 {
     struct set_of s = { 0 };

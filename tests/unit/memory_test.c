@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Memory use of this process is measured, and freed memory returns to the system. */
+/* The measured memory of this process, and returning freed memory to the system. */
 #include "tests/support/test.h"
 
 #include "base/system/memory.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus TCP, and RTU frames over a socket and a serial line; backup hosts, device limits, and hostile answers. */
+/* The Modbus source on the wire: TCP, and RTU frames over a socket and over a serial line; several hosts of one device; limits
+   of devices; wrong answers. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -178,7 +179,7 @@ CASE(the_second_host_stands_in)
     device_start(&second);
     modbus_case_start(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
-    assert_int_equal(second.connections, 0); /* the only connection is to the first host */
+    assert_int_equal(second.connections, 0); /* while the first host works, the source must not connect to the second */
     assert_int_equal(host_of(s), 1);
     device_stop(&s->device);
     int first_asked = s->device.requests;

@@ -20,7 +20,8 @@ static double chance(unsigned *seed)
     return rand_r(seed) / (double)RAND_MAX;
 }
 
-/* Makes a fan. height: of the centre above the rim; rough: moves the rim's points up and down at random. */
+/* Makes a fan of `count` triangles around a centre. height: of the centre above the rim; rough: largest random shift of the
+   rim's points, up or down. */
 static void fan_init(struct fan *fan, size_t count, double height, double rough, unsigned seed)
 {
     *fan = (struct fan){ .positions = mem_array(count + 1, sizeof(*fan->positions)),

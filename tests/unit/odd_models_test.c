@@ -26,7 +26,7 @@ enum {
     /* limit in seconds for building levels of detail: reached only if a step that should take milliseconds takes minutes */
     LEVELS_S = 15,
     WELL_BEGUN_S = 3, /* seconds of processor time, more than reading a model takes */
-    ENDS_S = 30,      /* seconds; the program promises 5, but a machine may be busy */
+    ENDS_S = 30,      /* limit for ending after a signal, in seconds; plantcast-prep promises 5, but a machine may be busy */
 };
 
 /* kinds of stray triangle that a test adds at the origin, far away from the plate */
@@ -274,7 +274,7 @@ CASE(what_is_told_to_end_ends)
         prep_case_says(&c->err, "interrupted");
     }
     write_plates(c, 10, 10, (double[]){ 1, 1 }, 1, here);
-    prep_case_expect(c, "$PLANT", 0); /* leftovers of the stopped run do not disturb the next */
+    prep_case_expect(c, "$PLANT", 0); /* the run after an interrupted one must succeed and leave no half-written files (*.new) */
     char *drafts = test_printf("ls '%s'/plant.prepared/*.new 2>/dev/null", c->folder);
     assert_int_not_equal(system(drafts), 0);
 }

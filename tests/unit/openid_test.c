@@ -78,7 +78,8 @@ static char *sign(const cjose_jwk_t *key, const char *alg, const char *kid, cons
     return copy;
 }
 
-/* Consumes the token. why: part of the reason for the refusal; NULL: the token must be accepted. */
+/* Verifies the ID token, which it then frees, and asserts the result. why: part of the reason for which it must be refused;
+   NULL: it must be accepted. Returns the fault. */
 static enum id_token_fault expect(struct openid_fixture *f, char *token, const char *nonce, const char *sub, const char *why)
 {
     const struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .nonce = nonce, .sub = sub, .now_s = NOW_S };
@@ -97,7 +98,7 @@ static enum id_token_fault expect(struct openid_fixture *f, char *token, const c
     return fault;
 }
 
-/* Returns the claims with one changed; value: JSON, or NULL to remove the claim. */
+/* Returns a signed ID token whose claim `name` has another value. value: JSON; NULL: the token lacks the claim. */
 static char *changed(const struct openid_fixture *f, const char *name, const char *value)
 {
     json_t *claims = json_loads(CLAIMS, 0, NULL);
@@ -265,7 +266,8 @@ TEST(test_log_ins)
     for (int i = 0; i < 3 * SIGN_INS; i++)
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     assert_true(sign_ins_take(table, first.state, first.binding, 3 * NS_PER_S, &taken));
-    for (int i = 0; i < 2 * SIGN_INS; i++) { /* nor do many addresses together exceed the table's size */
+    /* twice as many addresses as the table has entries begin a login: each must succeed, in place of an older one */
+    for (int i = 0; i < 2 * SIGN_INS; i++) {
         memcpy(there, &i, sizeof(i));
         assert_non_null(sign_ins_begin(table, there, "/", 2 * NS_PER_S));
     }
@@ -308,7 +310,8 @@ TEST(test_people)
     }
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);
     struct person more = person_of("lee");
-    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* one more login of Lee ends Lee's oldest one; Kim's login stays */
+    /* Lee has as many logins as a person may have: one more ends Lee's oldest one, and Kim's login stays */
+    assert_true(sign_ins_add_person(table, &more, cookie, &left));
     assert_string_equal(left, "of lee");
     mem_free(left);
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);

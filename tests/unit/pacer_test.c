@@ -300,7 +300,8 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
     }
 }
 
-/* One frame takes long to decode, as the first of a new codec does, and few other frames arrive meanwhile. */
+/* The first frame of a new codec takes long to decode: the pacer must not conclude that the decoder is slow. Few other frames
+   arrive meanwhile, so there is little else to measure. */
 TEST(a_decoder_that_begins_is_not_slow)
 {
     struct pacer pacer = fresh();
@@ -360,7 +361,8 @@ TEST(who_see_the_same_take_one_step)
     assert_int_equal(quality_ladder_step(&ladder, common), 5);
 }
 
-/* Whatever a client acknowledges, the window is never exceeded; a valid acknowledgement always opens it. */
+/* Random acknowledgements, right and wrong: there must never be more frames in flight than the window allows, and each valid
+   acknowledgement must make room for another. */
 TEST(random_clients)
 {
     unsigned seed = (unsigned)sweep_seed();

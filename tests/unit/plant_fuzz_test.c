@@ -10,7 +10,8 @@
 #define SEEDS "tests/fuzz/plant"
 enum { CHANGED = 200, MAX_BYTES = 1 << 16 };
 
-/* Flips, removes, duplicates or moves a piece of the text, as a careless editor might. Returns the new length. */
+/* Changes the text at a random place as a careless editor might: replaces a byte, by a random one or by one with a meaning in
+   YAML or CSV, or removes or repeats up to 12 bytes. Returns the new length. */
 static size_t change(uint8_t *bytes, size_t count, size_t room)
 {
     size_t at = (size_t)rand() % (count + 1), piece = (size_t)rand() % 12 + 1;

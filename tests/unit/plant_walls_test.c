@@ -183,7 +183,8 @@ CASE(what_panes_name_must_be_there)
     FOUND(c, { "plant.yaml", 10, 38, "tiles: there is no tag 'TI-3'; did you mean 'TI-1'?" },
           { "plant.yaml", 10, 65, "trend: there is no tag 'none'" });
     load(c, "views: [{ id: all, view: x }]\nwalls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, views: [all, al] }]");
-    plant_case_assert_loaded(c, 1); /* a view may be saved later in the page, so this is only a warning */
+    /* an unknown view in a pane is only a warning, because users may save a view of that name on the page later */
+    plant_case_assert_loaded(c, 1);
 }
 
 CASE(what_tours_name_must_be_there)

@@ -228,7 +228,8 @@ CASE(another_reach_is_another_file)
     assert_states(s, "unchanged", "shared", "unchanged");
 }
 
-/* The field of few sensors is evaluated per pixel by straight-line distance, so no triangle is subdivided for it. */
+/* With straight-line distances to few sensors, the field is evaluated per pixel and needs no vertices: no triangle may be
+   subdivided for it. */
 CASE(straight_distances_of_few_sensors_cut_nothing)
 {
     size_t cut, whole;
@@ -308,7 +309,7 @@ CASE(distances_are_printed)
     prep_case_expect(s, "distances $PLANT --asset B", 2);
 }
 
-/* plantcast-prep reads PNG itself; a separate package has the module that reads other formats. */
+/* Textures are read: PNG by plantcast-prep itself, other formats by a module in a package of its own, which may be missing. */
 CASE(textures_are_read)
 {
     struct prep_case *c = s;

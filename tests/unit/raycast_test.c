@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ray casting compared with a loop over every triangle of the plant. */
+/* Ray casting: the first hit of random rays is compared with that of a loop over all triangles of the plant. */
 #include "scene/raycast.h"
 
 #include "tests/support/test.h"

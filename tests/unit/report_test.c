@@ -173,7 +173,8 @@ TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
     assert_int_equal(system(command), 0);
 }
 
-/* The tolerance in the plant file decides whether half a metre counts as a gap; changing it rebuilds only that asset. */
+/* With a tolerance of 0.501 m in the plant file, the two boxes of APART, half a metre from each other, must be joined; only
+   this asset may be built again. */
 TEST_WITH(the_plant_file_sets_the_tolerance, set_up, prep_case_tear_down)
 {
     struct prep_case *c = *state;

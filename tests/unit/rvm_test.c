@@ -242,9 +242,9 @@ TEST(test_a_pipe_run_is_closed)
     double c = cos(0.7), s = sin(0.7);
     /* The elbow makes a quarter turn from (offset, 0, 0) to (0, offset, 0), all rotated about x by 0.7. */
     const double turned[12] = { 0.001, 0, 0, 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, 0, 0, 0 };
-    /* The elbow's first end faces -y, where a pipe 1 m long along y has its centre at (300, -500, 0). */
+    /* At the elbow's first end, which faces -y, lies a pipe along y, 1 m long, with its centre at (300, -500, 0) mm. */
     const double first[12] = { 0.001, 0, 0, 0, -0.001 * s, 0.001 * c, 0, -0.001 * c, -0.001 * s, 0.3, -0.5 * c, -0.5 * s };
-    /* The elbow's second end faces -x; pipe, reducer and dish continue in this direction. */
+    /* At the elbow's second end, which faces -x, follow a pipe, a reducer and a dish. */
     const double second[12] = { 0, 0.001 * c, 0.001 * s, 0, -0.001 * s, 0.001 * c, -0.001, 0, 0, -0.5, 0.3 * c, 0.3 * s };
     double third[12], fourth[12];
     memcpy(third, second, sizeof(third));

@@ -21,7 +21,8 @@ static const char plant_text[] =
     "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
     "tags: tags.csv\n";
 
-/* The positions of B are transformed from the asset frame: (x, y, z) -> (10 - y, 20 + x, 30 + z). */
+/* b1 is given in the plant frame: B's placement maps a point (x, y, z) of the asset to (10 - y, 20 + x, 30 + z), so it is the
+   same point of the asset as a1. */
 static const char tags_text[] = "Tag Name,Group,Asset,Node,X,Y,Z\n"
                                 "a1,t,A,,1,2,3\n"
                                 "b1,t,B,,8,21,33\n"
@@ -253,7 +254,7 @@ CASE(broken_manifests_are_refused)
     assert_refused(f, "manifest.json: cannot be read");
 }
 
-/* The plant file or the model changed without running plantcast-prep again. */
+/* If the plant file or the model has changed since plantcast-prep ran, the scene must be refused. */
 CASE(what_was_not_prepared_is_refused)
 {
     struct plant_asset *asset = &f->plant->assets[1];

@@ -274,7 +274,8 @@ CASE(refined_frames_are_asked_for_signed)
     preview = show(f);
     assert_true(!preview.record && preview.codec == WIRE_CODEC_JPEG);
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
-    say(f, "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}"); /* the client decodes no PNG, which signed frames need */
+    /* the client can no longer decode PNG, which signed frames require, so none may be signed */
+    say(f, "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}");
     assert_false(show(f).record);
 }
 
@@ -731,7 +732,8 @@ CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
     assert_false(ask(f, &preview));
 }
 
-/* For a minute, readings change twice per second: the refined frame stays, however busy the server is. */
+/* Readings change twice a second for a minute. As the refined frame can be recoloured quickly, it must stay refined, however
+   busy the server is. */
 CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
 {
     struct frame_request request;
@@ -749,7 +751,8 @@ CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
     assert_false(ask(f, &request));
 }
 
-/* At 125 kB/s moving previews become smaller, and views at rest are refined in two stages. */
+/* A client on a link of 125 kB/s: while the camera moves, previews become smaller; when it stops, the view is refined in two
+   stages, a draft first. */
 CASE(a_slow_client_gets_less_and_everything_in_the_end)
 {
     struct frame_request request;
@@ -858,7 +861,7 @@ CASE(views_shown_again_and_again_are_admitted_as_new_ones)
     f->now_ns += NS_PER_S;
     say(f, HIDE);
     say(f, SHOW);
-    assert_true(ask(f, &request)); /* a view hidden only for a moment keeps its admission */
+    assert_true(ask(f, &request)); /* the view was hidden only for a moment and keeps its place: no new admission is needed */
     assert_true(session_has_pixels(f->session));
     say(f, HIDE);
     say(f, SHOW);

@@ -162,7 +162,8 @@ static struct score score_of(const struct surface_shape *shape, const double siz
     return (struct score){ score.mean / largest, score.worst / largest };
 }
 
-/* Tests a shape with every fault; the default run tests every other fault, alternating by shape. */
+/* Tests the distances on a shape with each fault of CAD exports; the default run tests every second fault, which ones depends
+   on the shape. */
 static void test_shape(const struct surface_shape *shape)
 {
     struct cad clean = { 0 };
@@ -294,7 +295,8 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     struct cad pipe = { 0 }, both = { 0 };
     cad_sphere(&both, &chance, 40);
     cad_cylinder(&pipe, &chance, 48, 60, 3, 0);
-    for (size_t v = 0; v < pipe.vertex_count; v++) { /* the pipe has a radius of 0.2 and leads out of the sphere */
+    /* makes the pipe 0.2 m in radius and moves it along its axis, so that it leads from inside the sphere to the outside */
+    for (size_t v = 0; v < pipe.vertex_count; v++) {
         pipe.positions[v][0] *= 0.2f;
         pipe.positions[v][1] *= 0.2f;
         pipe.positions[v][2] += 0.5f;
@@ -333,7 +335,8 @@ TEST(nothing_leads_through_a_closed_part)
     float *distances = distances_from(surface, &pipes, 2, 0, 0); /* measures from one end of the second pipe to the other */
     assert_int_equal(report->components_after, 1);
     assert_true(report->hidden_vertices > 60 * 20);
-    /* The other end is reached along 1.5 m of pipe, half around the first pipe (at best straight across its side), and another 1.5 m. */
+    /* The way to the other end is 1.5 m along the second pipe, around half of the first pipe (at its shortest between the
+       circles where the pipes meet), and 1.5 m again. */
     double least = 2 * 1.5 + 0.5 * (M_PI - 2 * asin(0.6));
     double other_end = INFINITY;
     for (size_t v = first; v < pipes.vertex_count; v++)

@@ -93,7 +93,7 @@ TEST(test_lines)
     tag_lines_finish(&lines);
 }
 
-/* Random lists, read by the plant's own reader: all cells except the edited ones are unchanged. */
+/* Edits random tag lists and reads them with the plant's own reader: all cells but the edited ones must be unchanged. */
 static unsigned seed;
 static int below(int n)
 {

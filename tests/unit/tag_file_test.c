@@ -88,7 +88,7 @@ CASE(test_a_list_that_changed_meanwhile_is_not_written_over)
     assert_int_equal(access(first, F_OK), -1);
 }
 
-/* A read-only folder, as for a daemon whose service may not write there. */
+/* Saving into a folder that may not be written, as with a service that was given no right to it, must fail with that reason. */
 CASE(test_a_folder_that_may_not_be_written_is_said)
 {
     char *kept;

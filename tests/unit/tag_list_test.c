@@ -365,7 +365,8 @@ CASE(values_that_share_some_registers_are_noticed)
           { "tags.csv", 16, 1, "Address: 'O' (int16) shares a register with 'N' (float32, line 15): check both addresses and data types" });
 }
 
-/* The source reads each tag every second, unless the tag's Scan Rate says otherwise (in milliseconds). */
+/* Warns if a reading becomes stale before the next one can arrive: the source reads each tag every second, or as often as the
+   tag's Scan Rate (ms) says. */
 CASE(readings_that_are_stale_before_the_next_are_noticed)
 {
     plant_case_load(c, yaml_no_order,

@@ -4,7 +4,8 @@
 
 #include "render/soft/visibility_store.h"
 
-/* Returns NULL if the store did not accept the buffer. */
+/* Gives the store a visibility buffer of this size for a shape. Returns it as found in the store, or NULL if the store did not
+   keep it. */
 static void *make(struct visibility_store *store, uint64_t shape, size_t bytes)
 {
     visibility_store_give(store, shape, mem_new(bytes), bytes, mem_free);
@@ -36,7 +37,8 @@ TEST(test_bound)
     assert_non_null(make(&store, 1, 400));
     assert_non_null(make(&store, 2, 400));
     assert_non_null(visibility_store_find(&store, 1));
-    assert_non_null(make(&store, 3, 600)); /* the second visibility buffer is evicted as the least recently used one */
+    /* to make room for the third buffer, the store evicts the second, which was used least recently */
+    assert_non_null(make(&store, 3, 600));
     assert_non_null(visibility_store_find(&store, 1));
     assert_null(visibility_store_find(&store, 2));
     assert_int_equal(store.bytes, 1000);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Remote control of walls: one command per pane, kept across a restart; pointers; displays and panes missing from the plant file. */
+/* Remote control of walls: each pane holds one command, the newest, which survives a restart; pointers; and displays and panes
+   that the plant file lacks. */
 #include "tests/support/test.h"
 
 #include <jansson.h>
@@ -76,7 +77,8 @@ CASE(places_are_those_of_the_plant_file)
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "side", 1 }));
     assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "none", 1 }));
     assert_int_equal(order(f, "group=t", false), REFUSAL_NONE);
-    f->display.pane_count = 0; /* after a reload the plant file has no panes for the display */
+    /* as after a reload with a plant file in which the display has no panes: the command stays stored but is not listed */
+    f->display.pane_count = 0;
     assert_list(wall_remote_text(f->remote), 0, "walls");
     f->display.pane_count = 2;
     assert_list(wall_remote_text(f->remote), 1, "group=t");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parsing of frame headers, with the test vectors of the browser's parser and with random bytes. */
+/* Parsing of the headers of frame messages: test vectors that the browser's parser shares, and random bytes. */
 #include "protocol/wire.h"
 
 #include "tests/support/test.h"

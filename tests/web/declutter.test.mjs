@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which markers are drawn, by the rule of protocol/LABELS.md: with the server's test vectors, and general properties.
+// Decluttering: which of the sensors' markers are drawn, by the rule of protocol/LABELS.md. Uses test vectors that the server
+// shares, and checks properties that every choice must have.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';

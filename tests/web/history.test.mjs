@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recorded history in charts and the time slider: lines with gaps and spikes, alarms and ticks; and a session that shows the past.
+// How the page shows recorded history: lines with gaps and spikes in charts, alarms and time marks on the slider, times that
+// users type; and a session that shows the past.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { residuals, stretches } from '../../clients/web/app/cards/drift.js';

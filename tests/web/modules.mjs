@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files of the page, and the modules that a module imports.
+// Lists the page's files, and the modules that a module of the page imports.
 import { readdirSync, readFileSync } from 'node:fs';
 import { posix } from 'node:path';
 

@@ -6,7 +6,7 @@ import { seed } from '../e2e/support/sweep.mjs';
 console.log(`# PLANTCAST_SEED=${seed}`);
 export { seed };
 
-// Returns a generator of its own: random(low, high).
+// Returns a function random(low, high) with a state of its own, so that one file's numbers do not depend on other files.
 export function randomNumbers() {
     let state = seed;
     return (low, high) => {

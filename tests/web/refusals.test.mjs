@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals: each code has a text in every language, the server provides that text's arguments, and no language falls back to
-// the English text.
+// Texts of refusals: each refusal code has a text in every language with the same arguments, the server sends these arguments
+// with the code, and no language uses the English text.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The conversation with the server: first messages, repeated messages, ignored messages.
+// The page's side of a session with the server: which messages it sends first, repeats or leaves out, and which ones it
+// ignores.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { actionsFor, asideOf, inMessages, passes, rowActions, targetsOf } from '../../clients/web/core/alarm_actions.js';

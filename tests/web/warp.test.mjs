@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth grids, and meshes that show a picture from another camera: a synthetic scene of a floor and a box in front of a
-// background.
+// Decoding of depth grids, and drawing a picture as seen by another camera with the mesh that a grid gives. The test scene is a
+// floor and a box in front of a background.
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';

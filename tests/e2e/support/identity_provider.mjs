@@ -13,7 +13,7 @@ export class IdentityProvider {
         // a test may set change(claims, header), which is called to modify each ID token's content before it is signed
         this.change = () => {};
         this.sign = null;       // sign(text): makes the signature of ID tokens instead of the right one; null: signs rightly
-        this.refreshes = true;  // whether refresh tokens are issued and accepted
+        this.refreshes = true;  // true: issues refresh tokens and accepts them
         this.status = 200;      // HTTP status of refresh requests
         this.delay_ms = 0;      // delay of the token endpoint
         this.codesWait = null;  // a promise; until it is fulfilled, authorization codes get no answer; null: they are answered at once
