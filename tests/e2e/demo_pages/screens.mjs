@@ -221,9 +221,9 @@ test('the right half\'s interpolation method is shown on every screen if it diff
     }
 }));
 
-test('legends stay readable beside an open panel, which ends above the status bar', options, () => withPage(
+test('an open panel covers neither legends nor the bar of a split view, and ends above the status bar', options, () => withPage(
     { viewport: { width: 1280, height: 800 } }, async (page) => {
-        const parts = ['#legend', '#legend-right', '.panel.open, .display.open', '#status'];
+        const parts = ['#legend', '#legend-right', '.panel.open, .display.open', '#status', '#split-bar'];
         const visibleBoxes = () => page.evaluate((all) => all.map((selector) => {
             const { left, top, right, bottom, width } = document.querySelector(selector)?.getBoundingClientRect() ?? { width: 0 };
             return width > 0 && { selector, left, top, right, bottom };
@@ -233,19 +233,23 @@ test('legends stay readable beside an open panel, which ends above the status ba
             .map((b) => `${a.selector} and ${b.selector}`));
         const panels = { display: '#display', picture: '#picture-panel', views: '#views' };
         const set = (params) => page.evaluate((all) => globalThis.plantcast.session.setParams(all), params);
-        for (const split of [null, { group: 'vibration' }]) {
+        const right = { group: 'vibration' };
+        for (const [width, height, split] of [[1280, 800, null], [1280, 800, right], [1600, 900, right]]) {
+            await resize(page, { width, height });
             await set({ group: 'temperature', split });
             await page.locator('#legend-right').waitFor({ state: split ? 'visible' : 'hidden' });
             for (const [button, panel] of Object.entries(panels)) {
                 await page.locator(`#${button}-toggle`).click();
                 await page.locator(`${panel}.open`).waitFor();
-                await becomes(covered, [], panel);
-                assert.equal((await visibleBoxes()).length, split ? 4 : 3, panel);
-                await shoot(page, `legend-${button}${split ? '-split' : ''}`);
+                await becomes(covered, [], `${panel} at ${width}x${height}`);
+                assert.equal((await visibleBoxes()).length, split ? 5 : 3, panel);
+                assert.ok((await boxOf(page, `${panel}.open`)).height > 250, `${panel} has room at ${width}x${height}`);
+                await shoot(page, `legend-${button}${split ? `-split-${width}` : ''}`);
                 await page.locator(`#${button}-toggle`).click();
                 await page.locator(`${panel}.open`).waitFor({ state: 'detached' });
             }
         }
+        await resize(page, { width: 1280, height: 800 });
         await set({ split: null });
         // opens the alarm list, which takes the place that the picture panel would otherwise cover
         await page.locator('#alarm-strip').click();

@@ -9,6 +9,7 @@ import { PARAMS } from '../../core/session.js';
 import { say } from '../../core/words.js';
 import { fillSelect } from '../common/choices.js';
 import { byId, icon, make, setText } from '../common/dom.js';
+import { keepPanelsAbove } from './bar_top.js';
 
 const AGO_S = [3600, 8 * 3600, 86400, 7 * 86400], FIRST_S = 86400, TICK_MS = 250, HOUR_S = 3600;
 const SHARED = PARAMS.filter((name) => !['split', 'backdrop'].includes(name));
@@ -25,6 +26,7 @@ export class Compare {
             make('span', {}, say('compare.right')), this.ago, this.date, this.said,
             make('button', { type: 'button', class: 'icon small', 'aria-label': say('compare.end'), title: say('compare.end'),
                 onclick: () => this.toggle() }, icon('i-close')));
+        keepPanelsAbove(this.bar);
         session.on('camera', () => this.tellCamera());
         session.on('params', () => this.tellParams());
         setInterval(() => this.tick(), TICK_MS);

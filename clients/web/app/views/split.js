@@ -6,6 +6,7 @@ import { fillSelect } from '../common/choices.js';
 import { byId, icon, make } from '../common/dom.js';
 import { distances, interpolations } from '../common/number_fields.js';
 import { LOOKS, SHOWS } from '../toolbar/toolbar.js';
+import { keepPanelsAbove } from './bar_top.js';
 
 const CHOICES = { group: 'bar.quantity', show: 'bar.show', colormap: 'bar.colours', look: 'bar.look', distance: 'bar.distance',
     interpolation: 'bar.interpolation' };
@@ -23,6 +24,7 @@ export class Split {
             make('button', { type: 'button', class: 'icon small', 'aria-label': say('split.end'), title: say('split.end'),
                 onclick: () => this.toggle() }, icon('i-close')));
         viewport.element.append(this.element);
+        keepPanelsAbove(this.element);
         session.on('params', () => this.update());
         session.on('welcome', () => this.update());
         this.update();
