@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances by the heat method on a point cloud, compared with formulas for spheres, tubes and plates; also shows the method's errors. */
+/* Distances along a surface, computed by the heat method on a point cloud, compared with formulas for spheres, tubes and
+   plates. The tests also print and limit the method's errors. */
 #include "tests/support/test.h"
 
 #include "preprocess/influence/cloud_heat.h"
@@ -31,7 +32,8 @@ static void finish(struct made *made)
     mem_free(made->along_m);
 }
 
-/* Asserts the mean and the largest difference from the exact distance, as shares of the largest distance. */
+/* Compares the computed distances with the exact ones (`truth`). mean, worst: allowed mean and largest error, as shares of the
+   largest distance. */
 static void expect_errors(const struct made *made, const char *what, const double *truth, double mean, double worst)
 {
     double sum = 0, most = 0, largest_m = 0;
@@ -68,7 +70,7 @@ TEST(test_tube)
     const float *at = made.cad.positions[0];
     const double source_m[3] = { (double)at[0], (double)at[1], (double)at[2] };
     make(&made, source_m);
-    int axis = 0; /* axis along which the shape lies */
+    int axis = 0; /* index of the coordinate axis along which the tube lies: that of the largest extent */
     double spread[3] = { 0 };
     for (size_t v = 0; v < made.cad.vertex_count; v++)
         for (int k = 0; k < 3; k++)
@@ -87,7 +89,8 @@ TEST(test_tube)
     finish(&made);
 }
 
-/* Two plates that do not touch. If their gap is smaller than the cloud resolves, heat passes between them, which the mesh prevents. */
+/* Adds a square plate at height z_m that does not touch the other plate. If the gap is smaller than the cloud resolves, the
+   point cloud lets heat pass between the plates, while distances along the mesh do not. */
 static void add_plate(struct cad *cad, double z_m)
 {
     uint32_t first = (uint32_t)cad->vertex_count;
@@ -114,8 +117,9 @@ TEST(test_reaches_through_what_is_thin)
         add_plate(&made.cad, 0);
         add_plate(&made.cad, gap_m);
         make(&made, (const double[3]){ 0, 0, 0 });
-        assert_true(fabs((double)made.along_m[3] - sqrt(2)) < 0.03); /* distance across the source's own plate */
-        /* the other plate cannot be reached, unless the gap is too narrow for the cloud */
+        /* distance between opposite corners of the plate on which the source lies */
+        assert_true(fabs((double)made.along_m[3] - sqrt(2)) < 0.03);
+        /* the distance to the other plate must be infinite, unless the gap is too narrow for the cloud */
         assert_int_equal(isinf((double)made.along_m[7]) != 0, !thin);
         assert_true(surface_distances(made.surface, (const double(*)[3])(double[3]){ 0, 0, 0 }, 1, along_m));
         assert_true(isinf((double)along_m[7]) || gap_m < surface_report(made.surface)->tolerance_m);
@@ -123,7 +127,8 @@ TEST(test_reaches_through_what_is_thin)
     }
 }
 
-/* A ribbon folded back and forth: the distance along it far exceeds its bounding box, and the heat must not vanish on the way. */
+/* A ribbon of 120 m length, folded back and forth. The distance along it is many times the size of its bounding box, and the
+   heat must not vanish on such a long way. */
 TEST(test_serpentine)
 {
     struct made made = { 0 };
@@ -139,7 +144,8 @@ TEST(test_serpentine)
         p[2] = (float)(turn * gap_m + fmax(rest_m - leg_m, 0));
     }
     make(&made, (const double[3]){ 0, 0, 0 });
-    expect_errors(&made, "serpentine", truth, 0.04, 0.08); /* at the ribbon's 200 bends the point cloud cuts corners */
+    /* larger errors are allowed, because paths through the point cloud cut the corners at the ribbon's bends */
+    expect_errors(&made, "serpentine", truth, 0.04, 0.08);
     mem_free(truth);
     finish(&made);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Choice between H.264 and JPEG by network throughput and free processor time, without oscillation. */
+/* The choice between H.264 (less data) and JPEG (less processor time) by network throughput and free processor time. The choice
+   must not oscillate. */
 #include "session/pacing/codec_choice.h"
 
 #include "tests/support/test.h"
@@ -8,7 +9,8 @@
 
 enum { FULL_HD = 1920 * 1080 };
 
-/* Runs the choice ten times per second for `seconds`. Returns how often the codec changed. */
+/* Updates the choice ten times per second for `seconds` with a constant throughput and share of free processor time. Returns
+   how often the codec changed. */
 static int run(struct codec_choice *choice, double mbyte_per_s, double cpu_free, int seconds, int64_t *now_ns)
 {
     int changes = 0;
@@ -24,7 +26,7 @@ TEST(h264_unless_there_is_plenty_and_no_processor)
 {
     struct codec_choice choice = { 0 };
     int64_t now_ns = NS_PER_S;
-    assert_int_equal(run(&choice, 0, 0, 60, &now_ns), 0);     /* the network throughput is not known yet */
+    assert_int_equal(run(&choice, 0, 0, 60, &now_ns), 0);     /* throughput 0: not measured yet, so the codec stays */
     assert_int_equal(run(&choice, 10, 0.02, 60, &now_ns), 0); /* 80 Mbit/s */
     assert_int_equal(run(&choice, 500, 0.5, 60, &now_ns), 0);
     assert_false(choice.jpeg);

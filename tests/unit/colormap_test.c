@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests of the colour maps as tables and as colours. */
+/* Tests of the colour maps: their tables of 256 colours, and the distinction of their colours by people with and without
+   red-green blindness. */
 #include "tests/support/test.h"
 
 #include "plant/colormaps.h"
@@ -24,7 +25,8 @@ TEST(test_tables_are_whole)
     assert_memory_equal(colormap_at(NULL, 2)->rgb[0], viridis_first, 3);
     assert_memory_equal(colormap_at(NULL, 2)->rgb[255], viridis_last, 3);
     assert_memory_equal(colormap_at(NULL, 5)->rgb[255], turbo_last, 3);
-    for (size_t i = 0; i < colormap_count(NULL); i++) /* a map's rows are complete and in order: neighbouring colours differ little */
+    /* neighbouring colours of a map differ little, which shows that its table is complete and in order */
+    for (size_t i = 0; i < colormap_count(NULL); i++)
         for (int row = 1; row < 256; row++)
             for (int k = 0; k < 3; k++)
                 assert_true(abs(colormap_at(NULL, i)->rgb[row][k] - colormap_at(NULL, i)->rgb[row - 1][k]) <= 8);
@@ -75,11 +77,12 @@ TEST(test_maps_for_relief_leave_room_for_shading)
             lab[0] += 7 * step;
             linear_from_lab(lab, c);
             for (int k = 0; k < 3; k++)
-                assert_true(c[k] > -0.004 && c[k] < 1.01); /* tolerance for the rounding of an 8-bit table */
+                assert_true(c[k] > -0.004 && c[k] < 1.01); /* tolerance for colours that were rounded to 8 bits */
         }
 }
 
-/* Shading must not be mistaken for a value: L* is changed by up to 7, and the value is read back from the nearest legend colour. */
+/* Shading must not look like another value. Each colour's lightness L* is changed by up to 7, and the value is read back from
+   the legend colour that is nearest to the result. */
 TEST(test_relief_is_read_back_through_shading)
 {
     const struct colormap *map = colormap_at(NULL, 0);
@@ -116,7 +119,8 @@ TEST(test_maps_can_be_added)
     struct plant *plant = mem_new(sizeof(*plant));
     size_t before = colormap_count(plant);
     for (int i = 0; i < 256; i++)
-        memcpy(rgb[i], (uint8_t[]){ 20, (uint8_t)i, 20 }, 3); /* in this map darkness encodes the value, so shading must be limited */
+        /* a map in which lightness alone encodes the value, so that only little shading is allowed */
+        memcpy(rgb[i], (uint8_t[]){ 20, (uint8_t)i, 20 }, 3);
     assert_true(colormap_add(plant, "mine", (const uint8_t(*)[3])rgb));
     assert_int_equal(colormap_count(plant), before + 1);
     assert_int_equal(colormap_find(plant, "mine"), before);

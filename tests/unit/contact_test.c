@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bodies that touch face to face and bodies that intersect themselves: distances compared with an exact solver on the surface
-   of their union. */
+/* Distances along bodies that touch face to face, and along bodies that intersect themselves. They are compared with those of
+   an exact solver on the surface of the bodies' union, which has no inner faces. */
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
@@ -27,7 +27,9 @@ static void move(struct cad *cad, double turn_rad, double x, double y, double z)
 struct outer { /* the union's surface */
     struct oracle_mesh mesh;
     double *distances, source[3];
-    long *of_vertex; /* by vertex of the tested shape: the outer surface's vertex at that position; -1: covered */
+    /* by vertex of the tested shape: the vertex of the union's surface at the same position; -1: the vertex is inside, where
+       bodies cover each other */
+    long *of_vertex;
 };
 
 static void outer_init(struct outer *outer, const struct cad *a, const struct cad *b, const struct cad *tested)
@@ -56,7 +58,8 @@ static void outer_finish(struct outer *outer)
     mem_free(outer->of_vertex);
 }
 
-/* Adds `fault` to the shape, rotates it, and compares the distances with the exact ones. Returns how many of its vertices are hidden. */
+/* Gives the shape faults of kind `fault`, rotates it, and compares the distances along its surface with the exact ones. Returns
+   how many of its vertices the surface reports as hidden (inside the union). */
 static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault)
 {
     struct cad broken;
@@ -84,7 +87,9 @@ static size_t score(const char *name, const struct cad *shape, const struct oute
                   100 * mean / count / largest, 100 * worst / largest, hidden, surface_report(surface)->components_after);
     assert_true(mean / count / largest <= MEAN_MAX);
     assert_true(worst / largest <= WORST_MAX);
-    if (fault != CAD_FINS) /* skipped for CAD_FINS: some fins lie between the bodies, unconnected */
+    /* the bodies must be connected to one component; not with CAD_FINS, whose additional triangles may lie unconnected between
+       the bodies */
+    if (fault != CAD_FINS)
         assert_int_equal(surface_report(surface)->components_after, 1);
     surface_destroy(&surface);
     cad_finish(&broken);
@@ -101,7 +106,8 @@ static size_t covered(const struct outer *outer, const struct cad *shape)
     return count;
 }
 
-/* Counts the triangle corners at covered vertices. In a triangle soup each corner is a separate vertex. */
+/* Counts the triangle corners whose vertices lie inside the union. CAD_SOUP makes a vertex of each corner, so this is the
+   expected number of hidden vertices. */
 static size_t covered_corners(const struct outer *outer, const struct cad *shape)
 {
     size_t count = 0;
@@ -110,14 +116,15 @@ static size_t covered_corners(const struct outer *outer, const struct cad *shape
     return count;
 }
 
-/* Returns whether to test this fault: the default run tests the clean shape and one fault per pair, a different one for each pair. */
+/* Returns whether to test this fault with this pair of bodies. The default run tests each clean pair and one kind of fault per
+   pair, which differs from pair to pair. */
 static bool is_tried(int row, int fault)
 {
     return fault == CAD_CLEAN || sweep_takes(row, fault, 5);
 }
 
-/* Tests two bodies with a gap in z between them, against exact distances without the gap. Inner vertices must be hidden, outer
-   vertices must not. */
+/* Tests two bodies with a gap between them in z, which the surface must bridge. The exact distances are those without the gap.
+   Vertices inside the union must be reported as hidden, and no other ones. */
 static void test_pair(const char *name, int row, const struct cad *below, const struct cad *above, double gap)
 {
     struct cad both = { 0 };
@@ -138,7 +145,7 @@ static void test_pair(const char *name, int row, const struct cad *below, const 
     cad_finish(&both);
 }
 
-/* Skips the test under a sanitizer: the solver would take minutes and is not the code under test. */
+/* Skips the test under a sanitizer, because the exact solver would take minutes and is not the code under test. */
 static void skip_if_watched(void)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -181,8 +188,9 @@ TEST(a_flange_lies_on_a_plate)
     cad_finish(&pipe);
 }
 
-/* A gap in one body overlaps a gap in the other, and a vertex at the gap lies exactly on the other body's edge. Inserting the
-   vertex into that edge would join the two bodies. The rows are seeds that once failed in this way. */
+/* In some meshes with faults, a gap in one body overlaps a gap in the other, and a vertex at the gap lies exactly on an edge of
+   the other body. The vertex must not be inserted into that edge, because that would join the bodies. Each row has the seeds of
+   a shape that once failed. */
 TEST(gaps_of_a_flange_and_its_plate_run_over_each_other)
 {
     static const struct {
@@ -217,8 +225,8 @@ static void make_boxes(struct cad *below, struct cad *above, bool stacked)
     move(above, 0, 0, 0, (double)(10 * 0.05f));
 }
 
-/* A box stands on another one of the same width, so both have the same vertices where they touch. Triangles there may coincide
-   or have different diagonals. */
+/* A box stands on another box of the same width. Both have the same vertices where they touch, but their triangles there may
+   coincide or have different diagonals. */
 TEST(boxes_are_stacked)
 {
     struct cad below = { 0 }, above = { 0 };
@@ -229,7 +237,8 @@ TEST(boxes_are_stacked)
     cad_finish(&above);
 }
 
-/* A narrower box stands at the edge of a wider one: three edges of its bottom lie on edges of the wider box, with the same vertices. */
+/* A narrower box stands at the edge of a wider one: three edges of its bottom lie on edges of the wider box and have the same
+   vertices. */
 TEST(a_box_stands_at_the_edge_of_another)
 {
     struct cad below = { 0 }, above = { 0 };
@@ -245,8 +254,8 @@ struct contact_case {
     uint64_t shape, faults;
 };
 
-/* Tests random pairs of boxes. Each entry of `drawn` has two seeds: one for the shapes of the boxes, one for the faults in
-   their meshes. The default run tests every third pair. */
+/* Tests pairs of boxes with random shapes and random mesh faults. Each entry of `drawn` has two seeds: one for the shapes, one
+   for the faults. The default run tests every third pair. */
 static void score_drawn(const char *name, int row, const struct contact_case *drawn, size_t count, enum cad_fault fault)
 {
     const struct cad_random was = chance;
@@ -270,8 +279,9 @@ static void score_drawn(const char *name, int row, const struct contact_case *dr
     chance = was;
 }
 
-/* Seeds of boxes with gaps where a slit at the edge of both boxes once stayed open: along the edge; behind faces that no query
-   visited; and where the rim of a gap in the lower box fitted the upper box and was joined to it, so that no face was hidden. */
+/* Seeds of boxes with gaps in their meshes for which a slit once remained at the edge that both boxes share. The slit was along
+   that edge, or behind faces that no query visited. In the last case, the rim of a gap in the lower box was joined to the upper
+   box, so that no face was reported as hidden. */
 TEST(gaps_at_a_rim_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },
@@ -282,9 +292,9 @@ TEST(gaps_at_a_rim_that_boxes_share)
     score_drawn("boxes, gaps at their rim", 0, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_GAPS);
 }
 
-/* Seeds where the two sides of an edge were cut at different points: the two vertices were joined, and the other side of the
-   edge stayed open. Last row: three of four faces were cut at different points, and each vertex was inserted into only one
-   other face. */
+/* Seeds for which an edge shared by two boxes once stayed open on one side. The faces on its two sides were cut at different
+   points, and the two new vertices were joined. In the last row, three of the edge's four faces were cut at different points,
+   and each new vertex was inserted into only one other face. */
 TEST(vertices_hang_in_an_edge_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 16412639206824042380u, 3835865350566676432u },
@@ -295,8 +305,8 @@ TEST(vertices_hang_in_an_edge_that_boxes_share)
     score_drawn("boxes, two in one edge", 1, drawn, sizeof(drawn) / sizeof(drawn[0]), CAD_HANGING);
 }
 
-/* No edge may stay open at a T-junction; many random cases, without the solver. In the listed cases, vertices are closer
-   together than the tolerance, or even than an exact match. */
+/* At no T-junction (a vertex on another triangle's edge) may an edge stay open. Tests many random pairs without the exact
+   solver, and the pairs of `found`, in which vertices are closer together than the tolerance or than float precision. */
 TEST(nothing_stays_open_where_vertices_hang)
 {
     enum { FOUND = 3, DRAWN = 8 };
@@ -339,7 +349,8 @@ TEST(a_tube_passes_through_itself)
 {
     struct cad tube = { 0 }, up = { 0 }, down = { 0 };
     struct outer outer;
-    double radius = 0.12 + 0.05 * cad_random(&chance); /* the sharpest bend has a radius of 0.178; a thicker tube would fold there */
+    /* radius of the tube; the centre line's sharpest bend has a radius of 0.178, at which a thicker tube would fold */
+    double radius = 0.12 + 0.05 * cad_random(&chance);
     skip_if_watched();
     cad_eight(&tube, &chance, 150, 36, radius, 0);
     cad_eight(&up, &chance, 150, 36, radius, 1);

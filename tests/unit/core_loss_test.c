@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer that has lost its core moves its sessions to other renderers, when the load balancer's reports and their times allow it. */
+/* A renderer that has lost its core moves its sessions to other renderers, depending on what the load balancer reports and on
+   when it reports it. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -10,7 +11,9 @@
 
 static const int64_t S = NS_PER_S, BEGIN = 1000 * NS_PER_S;
 
-/* Ticks every 100 ms and checks every second after the loss. Returns how many ns after the loss the sessions are moved; -1: never. */
+/* Simulates 60 s after the loss of the core, with a tick every 100 ms. state: the load balancer's report, given every second
+   from checks_from_ns on; core_back_ns: time at which the core returns. Returns after how many nanoseconds the sessions are
+   moved; -1: never. */
 static int64_t moved_after(const char *state, int64_t checks_from_ns, int64_t core_back_ns)
 {
     struct core_loss loss = { 0 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Samples sent from a core to its standby: all of them, in order and bit-exact; invalid messages are refused. */
+/* Messages with samples from a core to its standby: all samples arrive, in order and with unchanged bits, and invalid messages
+   are refused. */
 #include "tests/support/test.h"
 
 #include "corelink/core_samples.h"
@@ -14,7 +15,7 @@ static const char *read_text(const struct text *text, struct sample_event **out,
     return core_samples_read(out, count, TAGS, text->at, text->length, 77);
 }
 
-/* Makes a message of two samples as the store reports them. */
+/* Returns a message of two samples, made from what the store reports to its listener. */
 static struct text make_message(void)
 {
     struct plant *plant = plant_by_hand_create(TAGS);
@@ -30,7 +31,8 @@ static struct text make_message(void)
     store_write(store, &(struct sample){ .tag = 2, .quality = QUALITY_BAD_SENSOR_FAILURE }, 1, 2 * S, 5001 * S);
     assert_int_equal(core_samples_write(samples, &text), 2);
     core_samples_end(&samples);
-    store_write(store, &(struct sample){ .tag = 0, .value = 1 }, 1, 3 * S, 5002 * S); /* the store calls no listener any more */
+    /* writes after core_samples_end(): the store must not call the destroyed listener */
+    store_write(store, &(struct sample){ .tag = 0, .value = 1 }, 1, 3 * S, 5002 * S);
     store_destroy(&store);
     return text;
 }
@@ -66,7 +68,7 @@ TEST(nonsense_is_refused)
     text.at[8] = TAGS; /* changes the first sample's tag */
     assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample; do both nodes run the same version?");
     text.at[8] = 1;
-    text.at[8 + 4 + 3] = (char)0x80; /* marks the sample Bad although it has a value */
+    text.at[8 + 4 + 3] = (char)0x80; /* gives the first sample the quality Bad, although it has a value, which is invalid */
     assert_string_equal(read_text(&text, &got, &count), "the core's message has an invalid sample; do both nodes run the same version?");
     text.at[8 + 4 + 3] = 0;
     assert_null(read_text(&text, &got, &count));

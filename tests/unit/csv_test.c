@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CSV parser: rows and the position of every cell. */
+/* The CSV parser: the cells of each row, and the line and column that it reports for every cell. */
 #include "plant/parse/csv.h"
 
 #include "tests/support/test.h"
@@ -45,7 +45,7 @@ static void open_text(struct csv_fixture *f, const char *text)
     open_bytes(f, text, strlen(text));
 }
 
-/* Asserts the next row; `joined`: its cells, separated by |. */
+/* Asserts the cells of the next row. joined: the expected cells, separated by "|". */
 static void assert_row(struct csv_fixture *f, const char *joined)
 {
     char got[1000] = "";
@@ -114,7 +114,7 @@ CASE(blank_rows_are_passed_over)
     open_text(f, "\n  \nA,B,,\n\n,,,\n1,2,,,,\n \r\n3\n\n");
     assert_int_equal(f->csv.header.count, 2);
     assert_int_equal(f->csv.header.cells[0].line, 3);
-    assert_row(f, "1|2||||"); /* spreadsheets leave surplus blank cells: no error */
+    assert_row(f, "1|2||||"); /* blank cells beyond the last column, as spreadsheets write them, are no error */
     assert_int_equal(csv_cell_line(&f->csv, 0), 6);
     assert_row(f, "3");
     assert_string_equal(csv_text(&f->csv, 1), "");
@@ -146,7 +146,7 @@ CASE(mistakes_have_a_place)
     assert_one_error(f, 2, 3, "byte 0xC0 is not UTF-8 text");
 }
 
-/* A file that is no table gives one error; a text in the wrong encoding gives at most ten. */
+/* A file that is no table must give a single error, and a text in a wrong encoding at most ten, not one per line. */
 CASE(what_is_no_table_is_said_once)
 {
     static const struct {

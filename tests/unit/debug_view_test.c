@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Debug views: the GLB files follow glTF 2.0 and show what the report counts. */
+/* Debug views of plantcast-prep: GLB files that show what preparation did to a surface. They must follow glTF 2.0 and contain
+   what the report counts. */
 #include "tests/support/test.h"
 #include <sys/stat.h>
 
@@ -59,7 +60,7 @@ static uint32_t number_at(const struct text *file, size_t at)
     return number;
 }
 
-/* Parses header and chunks of a GLB file as glTF 2.0 defines them. */
+/* Reads a GLB file of the debug view and parses its header and chunks as glTF 2.0 defines them. */
 static void glb_open(struct parsed_glb *glb, struct prep_case *c, const char *name)
 {
     *glb = (struct parsed_glb){ 0 };
@@ -120,7 +121,7 @@ static void check_positions(const struct parsed_glb *glb, const json_t *accessor
     }
 }
 
-/* Checks the specification's rules for each primitive, accessor and buffer view. */
+/* Asserts glTF's rules for each primitive, accessor and buffer view. */
 static void check_rules(const struct parsed_glb *glb)
 {
     const json_t *meshes = json_object_get(glb->root, "meshes");
@@ -187,8 +188,8 @@ CASE(views_follow_the_rules)
         struct model_source source;
         struct gltf_model model;
         char why[MODEL_WHY_BYTES], *path = temp_path(c->folder, names[i]);
-        assert_true(model_source_open(&source, path, why)); /* our own loader reads the file and reports primitives that are not
-                                                               triangles */
+        /* Plantcast's own loader reads the file too; it counts the primitives that are not triangles */
+        assert_true(model_source_open(&source, path, why));
         if (!gltf_load(&model, &source, why))
             fail_msg("%s: %s", path, why);
         assert_true(model.skipped_points == 2 || model.skipped_points == 1);
@@ -210,11 +211,13 @@ CASE(bridges_and_points_are_those_of_the_report)
     assert_int_equal(json_integer_value(json_object_get(node_shape(&glb, "points added"), "mode")), 0);
     assert_true(count_of(&glb, "points added") > 5000);
     assert_true(count_of(&glb, "points of the model") <= 16);
-    const json_t *positions = positions_of(&glb, node_shape(&glb, "bridges")); /* the asset's origin is its centre, 1.0 m along x */
+    /* coordinates are relative to the asset's centre, at x = 1.0 m in the model, so the bridges over the gap lie from x = 0 to
+       0.2 mm */
+    const json_t *positions = positions_of(&glb, node_shape(&glb, "bridges"));
     assert_float_equal(prep_case_number(positions, "min.0"), 0, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.0"), 0.0002, 1e-6);
     assert_null(node_shape(&glb, "unreachable"));
-    /* faces where one of the two boxes covers the other are in the node "hidden" of the debug view */
+    /* the node "hidden" exists, because at the contact one box covers faces of the other */
     assert_non_null(node_shape(&glb, "hidden"));
     glb_close(&glb);
 }
@@ -224,13 +227,14 @@ CASE(what_cannot_be_reached_is_shown)
     struct parsed_glb glb;
     prep_case_expect(c, "$PLANT --debug-view", 0);
     glb_open(&glb, c, "plant.debug/APART.glb");
-    /* the second box spans 11.5 to 12 in the model; the asset's origin is at 11 */
+    /* the second box extends from x = 11.5 to 12 in the model; coordinates are relative to the asset's origin at x = 11 */
     const json_t *positions = positions_of(&glb, node_shape(&glb, "unreachable"));
     assert_float_equal(prep_case_number(positions, "min.0"), 0.5, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.0"), 1, 1e-6);
     glb_close(&glb);
     glb_open(&glb, c, "plant.debug/INSIDE.glb");
-    /* the hidden box spans 21 to 22 along x in the model and 1 to 2 in height; the asset's origin is at 22 and 2 */
+    /* the hidden box extends from x = 21 to 22 and from 1 to 2 in height; coordinates are relative to the asset's origin at x =
+       22 and height 2 */
     positions = positions_of(&glb, node_shape(&glb, "hidden"));
     assert_float_equal(prep_case_number(positions, "min.0"), -1, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.1"), 0, 1e-6);
@@ -241,7 +245,8 @@ CASE(what_cannot_be_reached_is_shown)
     glb_close(&glb);
 }
 
-/* The colour at the sensor is dark and at the far end bright: the two ends of the colour map. */
+/* Vertices near the sensor must have the first colour of the colour map (dark), and those at the far end the last one (bright).
+   */
 CASE(colors_follow_the_distance)
 {
     struct parsed_glb glb;
@@ -254,10 +259,11 @@ CASE(colors_follow_the_distance)
         const float(*places)[3] = elements(&glb, positions, 12);
         const uint16_t(*rgba)[4] = elements(&glb, colors, 8);
         double near_x = far ? 1 : -0.5,
-               near_y = far ? 0 : 0.5; /* T-GAP2 is in the middle of the end face at x = 2, T-GAP on top of the first box */
+               /* position of the sensor: T-GAP2 in the middle of the end face at x = 2, T-GAP on top of the first box */
+               near_y = far ? 0 : 0.5;
         for (size_t i = 0; i < (size_t)json_integer_value(json_object_get(positions, "count")); i++) {
             double dx = (double)places[i][0] - near_x, dy = (double)places[i][1] - near_y, dz = (double)places[i][2];
-            if (sqrt(dx * dx + dy * dy + dz * dz) < 0.05) /* the colour map begins with dark purple */
+            if (sqrt(dx * dx + dy * dy + dz * dz) < 0.05) /* dark purple, the first colour of the map: more blue than green */
                 assert_true(rgba[i][2] > rgba[i][1] && rgba[i][1] < 3000);
             if (far && (double)places[i][0] < -0.99) /* and ends in yellow */
                 assert_true(rgba[i][1] > 10000 && rgba[i][1] > 2 * rgba[i][2]);

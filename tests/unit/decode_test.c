@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decoding of register values: every data type in every byte order, from bytes written by hand, and every scaling. */
+/* Decoding of Modbus registers: every data type in every byte order, from bytes written by hand, and every kind of scaling. */
 #include "tests/support/test.h"
 
 #include "value/decode.h"
@@ -54,7 +54,7 @@ static const struct {
     { DATA_FLOAT32, BYTE_ORDER_CDAB, { 0x4000, 0xC2ED }, -118.625 },
     { DATA_FLOAT32, BYTE_ORDER_BADC, { 0xEDC2, 0x0040 }, -118.625 },
     { DATA_FLOAT32, BYTE_ORDER_DCBA, { 0x0040, 0xEDC2 }, -118.625 },
-    /* Test values: 4886718345 = 0x1 2345 6789; -4886718345 = 0xFFFF FFFE DCBA 9877. */
+    /* The values in hexadecimal: 4886718345 = 0x1 2345 6789; -4886718345 = 0xFFFF FFFE DCBA 9877 (two's complement). */
     { DATA_INT64, BYTE_ORDER_ABCD, { 0xFFFF, 0xFFFE, 0xDCBA, 0x9877 }, -4886718345.0 },
     { DATA_INT64, BYTE_ORDER_CDAB, { 0x9877, 0xDCBA, 0xFFFE, 0xFFFF }, -4886718345.0 },
     { DATA_INT64, BYTE_ORDER_BADC, { 0xFFFF, 0xFEFF, 0xBADC, 0x7798 }, -4886718345.0 },
@@ -191,7 +191,7 @@ TEST(square_root_scaling)
     check_scaled(&tag, 2500, 25, QUALITY_GOOD);
     check_scaled(&tag, 10000, 50, QUALITY_GOOD);
     check_scaled(&tag, 12100, 55, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
-    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the square root of a negative number yields 0 with quality Uncertain */
+    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the square root of a negative value gives 0 with quality Uncertain */
 }
 
 TEST(unscaled_negation)
@@ -207,7 +207,7 @@ TEST(what_is_no_number_is_a_sensor_failure)
     for (int i = 0; i < 3; i++) {
         struct plant_tag tag = tag_of(DATA_FLOAT32, BYTE_ORDER_ABCD);
         assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
-        tag.scale.kind = SCALING_SQUARE_ROOT; /* clamping must not turn a NaN into 0 */
+        tag.scale.kind = SCALING_SQUARE_ROOT; /* this scaling raises negative values to 0; a NaN must stay Bad instead of becoming 0 */
         tag.scale.raw_high = tag.scale.scaled_high = 1;
         assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
         assert_true(isfinite(decode(&tag, floats[i]).value));
@@ -226,7 +226,8 @@ static uint32_t quality_of_raw(struct plant_tag *tag, int raw)
     return decode(tag, &(uint16_t){ (uint16_t)raw }).quality;
 }
 
-/* Counts 0 to 27648 represent 4 to 20 mA, as on common analogue cards: 1728 counts per milliampere. */
+/* A current loop of 4 to 20 mA, of which common analogue cards make counts from 0 to 27648 (1728 per milliampere). Currents far
+   outside that range mean that the loop has failed. */
 TEST(a_current_says_that_its_loop_has_failed)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
@@ -234,7 +235,7 @@ TEST(a_current_says_that_its_loop_has_failed)
     tag.scale.has_range = true;
     tag.scale.raw_high = 27648;
     tag.scale.scaled_high = 100;
-    /* by default, currents just outside 4 to 20 mA do not mean a failed transmitter (NAMUR NE 43) */
+    /* currents only slightly outside 4 to 20 mA mean a value beyond the range, not a failed transmitter (NAMUR NE 43) */
     assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
     tag.scale.ne43 = true;
     const struct {
@@ -250,7 +251,7 @@ TEST(a_current_says_that_its_loop_has_failed)
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)
         assert_int_equal(quality_of_raw(&tag, (int)lrint((cases[i].ma - 4) * 1728)), cases[i].quality);
     double below = decode(&tag, &(uint16_t){ (uint16_t)lrint(-0.2 * 1728) }).value;
-    assert_true(fabs(below + 1.25) < 0.01); /* 3.8 mA is below the range but still a measurement */
+    assert_true(fabs(below + 1.25) < 0.01); /* 3.8 mA is below the range, but is still a measured value: -1.25 % */
 }
 
 TEST(an_open_circuit_s_value_is_no_reading)
@@ -268,11 +269,13 @@ TEST(an_open_circuit_s_value_is_no_reading)
     number.scale.sentinels[0].number = -9999;
     number.scale.sentinel_count = 1;
     assert_int_equal(decode(&number, (uint16_t[]){ 0x3C00, 0xC61C }).quality, QUALITY_BAD_SENSOR_FAILURE);
-    number.scale.sentinels[0].number = -999.9; /* not representable as a 32-bit float; the nearest one is C479F99A */
+    /* A value that means "sensor failed" in the tag list. A 32-bit float cannot represent -999.9; the nearest one, C479F99A,
+       must be recognised. */
+    number.scale.sentinels[0].number = -999.9;
     assert_int_equal(decode(&number, (uint16_t[]){ 0xF99A, 0xC479 }).quality, QUALITY_BAD_SENSOR_FAILURE);
     assert_int_equal(decode(&number, (uint16_t[]){ 0xF99B, 0xC479 }).quality, QUALITY_GOOD);
     struct sample sample;
-    decode_number(&number, (double)-999.9F, &sample); /* OPC UA and Sparkplug also have 32-bit floats */
+    decode_number(&number, (double)-999.9F, &sample); /* a value from OPC UA or Sparkplug can be a 32-bit float as well */
     assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);
     decode_number(&number, -999.9, &sample); /* JSON */
     assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The demo plant: no findings in its plant file, the heat exchanger has the paper's size, sensors lie on surfaces, the model has its
-   deliberate faults, and limits fit the simulated process. */
+/* The demo plant: its plant file has no findings, the heat exchanger has the size given in the paper, sensors lie on surfaces,
+   the model has its deliberate faults, and alarm limits fit the simulated process. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -40,7 +40,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-struct body { /* geometry of one asset, cut out of the model */
+struct body { /* the geometry of one asset, taken from the model */
     struct geometry_params params;
     struct geometry geometry;
     struct trimesh mesh;
@@ -119,7 +119,9 @@ TEST(test_sensors_on_surface)
             by_node += sensors[i].node != NULL;
             vec_sub(at, body.geometry.origin_m, at);
             bvh_nearest(bvh, at, INFINITY, NULL, NULL, &nearest);
-            if (nearest.distance_m > (sensors[i].node ? 0.02 : 0.001)) /* a node's position is the centre of its fitting */
+            /* sensors that are placed by a node of the model may be 20 mm off, because the node's position is the centre of its
+               fitting */
+            if (nearest.distance_m > (sensors[i].node ? 0.02 : 0.001))
                 fail_msg("%s: %g m from the surface of %s", plant->tags[sensors[i].tag].name, nearest.distance_m, plant->assets[a].id);
         }
         mem_free(sensors);
@@ -129,7 +131,7 @@ TEST(test_sensors_on_surface)
     assert_in_range(by_node, plant->tag_count / 3, plant->tag_count * 2 / 3);
 }
 
-/* The deliberate faults of the model: duplicate faces and slivers. */
+/* The model deliberately contains faults that CAD exports have: duplicate faces and slivers (very thin triangles). */
 TEST(test_faults)
 {
     struct body body;
@@ -158,7 +160,8 @@ static bool beyond(const struct plant_tag *tag, double value, enum limit low, en
     return value < tag->alarms.limits[low] || value > tag->alarms.limits[high]; /* NaN: no limit */
 }
 
-/* Returns the upset of the simulated process (1 to 3: a fault such as lost cooling water) that is running or still has effects, or CALM. */
+/* Returns which upset (simulated fault, such as lost cooling water) is running or still has effects: 1 to 3, or CALM. *last and
+   *since_s: the last upset and the seconds since its end. */
 static int upset_now(const struct sim_values *values, int *last, int *since_s)
 {
     static const char *const names[] = { "cooling water lost", "exchanger fouled", "bearing worn" };
@@ -173,8 +176,9 @@ static int upset_now(const struct sim_values *values, int *last, int *since_s)
     return ++*since_s <= RECOVERY_S ? *last : CALM;
 }
 
-/* Without an upset every tag stays within its limits. An upset takes at most 12 tags beyond H or L, and some beyond HH or LL.
-   Runs one cycle per machine, so that each machine gets its worn bearing. */
+/* Without an upset, every tag must stay within its alarm limits. During an upset, at most 12 tags may be beyond H or L, and
+   some must be beyond HH or LL. The simulated time covers one cycle of upsets per machine, because the worn bearing affects
+   another machine in each cycle. */
 TEST(test_limits_fit_the_process)
 {
     struct diag diag = { 0 };

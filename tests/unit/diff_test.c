@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-prep --diff: what a new revision of the model changes, and which tags lose their position. */
+/* plantcast-prep --diff: it reports what a new revision of the model changes, and which tags lose their position. */
 #include "tests/support/test.h"
 
 #include "tests/support/boxes.h"
@@ -45,8 +45,9 @@ static const char lost_rows[] = "T-GONE,400011,Float,plc,temperature,GONE,,50.5,
                                 "T-DROPPED,400013,Float,plc,temperature,DROPPED,,60.5,0.5,1\n"
                                 "T-NODE,400015,Float,plc,temperature,SAME,TT-2,,,\n";
 
-/* Boxes of 1 x 1 x 1 m at x = 0, 10, 20, ... In the new model, MOVED is 2 m farther along y, TURNED (1 x 2 x 3 m) lies on its
-   side, CHANGED is 50 mm higher, GONE is renamed and TT-2 is missing. */
+/* Writes the old or the new model. In the old one, boxes of 1 x 1 x 1 m stand at x = 0, 10, 20 and so on. In the new one, MOVED
+   is 2 m farther along y, TURNED (1 x 2 x 3 m) lies on its side, CHANGED is 50 mm higher, GONE is renamed, and the node TT-2 is
+   missing. */
 static void write_model(struct prep_case *c, bool is_new)
 {
     struct model_maker maker;
@@ -60,7 +61,7 @@ static void write_model(struct prep_case *c, bool is_new)
     boxes_add(&maker, "CHANGED", (const double[3]){ 40, 0, 0 }, (const double[3]){ 41, 1, is_new ? 1.05 : 1 });
     boxes_add(&maker, is_new ? "VESSEL" : "GONE", (const double[3]){ 50, 0, 0 }, (const double[3]){ 51, 1, 1 });
     boxes_add(&maker, is_new ? "ADDED" : "DROPPED", (const double[3]){ 60, 0, 0 }, (const double[3]){ 61, 1, 1 });
-    if (is_new) /* the new model has a name that resembles the missing GONE */
+    if (is_new) /* a box whose name resembles that of the missing GONE; the diff must not take it for GONE */
         boxes_add(&maker, "GONE1", (const double[3]){ 70, 0, 0 }, (const double[3]){ 71, 1, 1 });
     maker_node(&maker, "TT-1", -1, json_pack("{s:[fff]}", "translation", 11.0, is_new ? 2.5 : 0.5, 0.5));
     if (!is_new)
@@ -114,8 +115,8 @@ static json_t *compare(struct prep_case *c, const char *arguments, int status)
     return prep_case_json(&c->out);
 }
 
-/* Checks the assets of a diff report. exact: the old side is a plant file, so corners are the model's own; otherwise it is a
-   prepared folder. */
+/* Checks what a diff reports about each asset. exact: the old revision is compared from its model; otherwise from a prepared
+   folder, whose coordinates are less exact. */
 static void check_assets(const json_t *root, bool exact)
 {
     asset_of(root, "SAME", "same");
@@ -140,10 +141,10 @@ static void check_tags(const json_t *root)
     const json_t *changed = named(root, "sensors", "tag", "T-CHANGED"), *below = named(root, "sensors", "tag", "T-BELOW");
     assert_float_equal(prep_case_number(same, "surface_moved_m"), 0, 1e-6);
     assert_true(json_is_false(json_object_get(same, "moved")));
-    /* six faces are equally near, so any of them is right */
+    /* this sensor is in the middle of the box, so it is equally near to six faces and may be placed on any of them */
     assert_true(json_is_false(json_object_get(named(root, "sensors", "tag", "T-MIDDLE"), "moved")));
-    assert_float_equal(prep_case_number(carried, "surface_moved_m"), 2, 1e-5); /* the sensor's node moved with the asset, and the sensor
-                                                                                  is still on the surface */
+    /* the sensor has moved 2 m with its node and its asset, so it is still on the surface */
+    assert_float_equal(prep_case_number(carried, "surface_moved_m"), 2, 1e-5);
     assert_float_equal(prep_case_number(carried, "surface_distance_new_m"), 0, 1e-5);
     assert_true(json_is_true(json_object_get(carried, "moved")));
     assert_float_equal(prep_case_number(changed, "surface_moved_m"), 0.05, 1e-5);
@@ -168,7 +169,8 @@ CASE(a_revision_is_compared)
                            "surface of 3 sensors moved; 4 tags lost their position");
 }
 
-/* The usual case: the model file was overwritten, so only the prepared folder of the old revision is left. */
+/* Compares a prepared folder of the old revision with the new plant file. This is the usual case, because the user has
+   overwritten the old model file. */
 CASE(a_prepared_folder_stands_for_the_old_plant)
 {
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
@@ -190,12 +192,13 @@ CASE(nothing_lost_is_no_error)
     root = compare(c, "$FOLDER/old.yaml $FOLDER/old.yaml", 0);
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
-    /* no difference is reported: subdivision leaves the surface the same */
+    /* comparing a plant with its own prepared folder must report no difference, although preparation has subdivided triangles
+       */
     root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 0);
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
 }
 
-/* Vertices that only coarser levels have lie off the surface and must not count as a change. */
+/* Coarser levels of detail have vertices that lie off the original surface. These must not be reported as a change. */
 CASE(levels_are_no_change)
 {
     struct cad_random chance = { 1 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-prep distances` from a CAD file to its printed output: distances around a cylinder compared with the formula. */
+/* `plantcast-prep distances`, from a CAD file to the printed lines: the distances along a cylinder are compared with the
+   formula. */
 #include "tests/support/test.h"
 
 #include "tests/support/cad.h"
@@ -9,7 +10,8 @@
 enum { AROUND = 160, ALONG = 130 };
 static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
 
-/* Writes an open cylinder of radius 1 whose axis runs along z from z = 0. Returns its vertex count. */
+/* Writes a model of a cylinder surface with open ends and radius 1, whose axis extends along z from z = 0. Returns its number
+   of vertices. */
 static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
 {
     struct cad cad = { 0 };
@@ -23,14 +25,15 @@ static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
     return vertices;
 }
 
-/* distance on the unrolled cylinder; a and b: angle about the axis, height */
+/* Returns the exact distance along the cylinder. a, b: angle about the axis, and height. On the unrolled cylinder the distance
+   is a straight line. */
 static double along_surface(const double a[2], const double b[2])
 {
     double turn = fabs(remainder(a[0] - b[0], 2 * M_PI));
     return hypot(turn, a[1] - b[1]);
 }
 
-/* Checks the printed distance from a sensor to every vertex. */
+/* Compares the printed distances from one sensor to all vertices with the exact ones. */
 static void check(struct prep_case *c, const char *tag, const double sensor[2], size_t vertices)
 {
     char *arguments = test_printf("distances $PLANT --asset A --sensor %s", tag);
@@ -55,7 +58,8 @@ static void check(struct prep_case *c, const char *tag, const double sensor[2], 
                   100 * worst_m / longest_m, worst_straight_m);
     assert_int_equal(lines, vertices);
     assert_true(sum_m / (double)lines <= 0.006 * longest_m && worst_m <= 0.03 * longest_m);
-    assert_true(worst_straight_m < 0.002); /* deviation from the cylinder, because the sensor is projected onto a flat triangle */
+    /* error of the straight-line distances: the sensor lies on a flat triangle instead of on the cylinder */
+    assert_true(worst_straight_m < 0.002);
 }
 
 TEST_WITH(round_a_cylinder, prep_case_set_up, prep_case_tear_down)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which clients get which packets, tested with a model of decoding: a packet is valid only directly after the state that it needs. */
+/* Which client gets which encoded packet. Video packets depend on earlier ones, so the test simulates decoders: a packet can be
+   decoded only right after the packet that it continues. */
 #include "service/encode_streams.h"
 
 #include "tests/support/test.h"
@@ -10,7 +11,7 @@
 enum { CLIENTS = 12, WIDTH = 64, HEIGHT = 36 };
 static const int64_t MS = NS_PER_MS;
 
-/* Payload of a packet in this test: the state that it needs and the state that it produces. */
+/* Content of a simulated packet: the decoder state that it requires (needs), and the one that decoding it produces (leaves). */
 struct chain_state {
     uint64_t needs, leaves;
 };
@@ -24,11 +25,11 @@ struct encode_streams_fixture {
     int64_t now_ns;
     int encodes, keys;
     bool gives_depth; /* frames have depth grids */
-    unsigned wants;   /* clients that want depth, one bit each */
+    unsigned wants;   /* clients that want a depth grid, as a bit mask */
     enum wire_codec codec;
 };
 
-struct chain_head { /* state that the decoders of all clients of a stream have */
+struct chain_head { /* newest decoder state of a stream, common to all its clients */
     uint64_t state;
 };
 
@@ -73,7 +74,7 @@ static struct request_ticket order_of(const struct encode_streams_fixture *f, ui
     return ticket;
 }
 
-/* Returns the packet that the encoder would make. */
+/* Simulates the encoder: returns the packet that continues the stream, or a key frame. */
 static struct packet *encode(struct encode_streams_fixture *f, struct encode_stream *stream, const struct frame *frame, bool key)
 {
     struct chain_head *head = stream->work ? stream->work : (stream->work = mem_new(sizeof(*head)));
@@ -125,7 +126,7 @@ static struct depth_grid *grid_create(void)
     return grid;
 }
 
-/* Clients that request a depth grid get it with the newest packet. */
+/* Asserts that those clients of the group that want a depth grid get one with the newest packet. */
 static void check_depth(const struct encode_streams_fixture *f, const struct request_group *tickets)
 {
     const struct encode_stream *stream = f->plan.stream;
@@ -134,7 +135,8 @@ static void check_depth(const struct encode_streams_fixture *f, const struct req
         assert_true(newest->frame->depth[0]);
 }
 
-/* Shows one frame to `clients` (a bit mask), after which all of them display it. */
+/* Encodes a frame with this view and content for `clients` (a bit mask). Asserts that each of these clients can decode its
+   packet and then displays the content. */
 static void show(struct encode_streams_fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
 {
     struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
@@ -218,7 +220,7 @@ CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
     show(f, 0xffe, 0, 3, false);
     show(f, 1, 2, 4, false);
     assert_true(f->encodes == 4 && f->keys == 2 && chain_count(f) == 2);
-    /* client 0, which was looking elsewhere, shows the others' view again: at most two streams remain */
+    /* client 0, which had another view, returns to the view of the others: at most two streams must remain */
     show(f, 0xfff, 0, 5, false);
     assert_true(chain_count(f) <= 2);
 }
@@ -226,11 +228,12 @@ CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
 CASE(a_slow_one_does_not_cost_the_others_key_frames)
 {
     int before = 0;
-    for (int i = 0; i < 2000; i++) { /* 100 s at 20 frames per second; the slow client (bit 0) gets only every 50th frame */
+    /* 100 s at 20 frames per second. Client 0 is slow and gets only every 50th frame; the others get all frames. */
+    for (int i = 0; i < 2000; i++) {
         show(f, i % 50 == 49 ? 0xfff : 0xffe, i, (uint64_t)i + 1, false);
         before = i == 999 ? f->keys : before;
     }
-    assert_in_range(f->keys - before, 0, 24); /* a slow client gets its own key frames, one for each of its 20 frames */
+    assert_in_range(f->keys - before, 0, 24); /* in the last 50 s only the slow client needs key frames, one for each of its 20 frames */
     assert_in_range(chain_count(f), 1, 2);
 }
 
@@ -241,14 +244,15 @@ CASE(depth_that_packets_lack_is_sent_to_clients_that_want_it)
     show(f, 1, 0, 1, false);
     f->gives_depth = true;
     show(f, 1, 0, 1, false);
-    assert_int_equal(f->encodes, 1); /* client 0 wants no depth, so the packet encoded without depth is reused */
+    assert_int_equal(f->encodes, 1); /* client 0 wants no depth grid, so the packet that was encoded without one is used again */
     show(f, 2, 0, 1, false);
     assert_true(f->encodes == 2 && f->plan.again);
     show(f, 2, 0, 1, true);
-    assert_int_equal(f->encodes, 2); /* client 1 gets the reused packet that was encoded with depth */
+    assert_int_equal(f->encodes, 2); /* client 1 gets the packet that was encoded once with a depth grid */
 }
 
-/* Hundreds of acknowledgements arrive one by one, so some clients request the next view while others still wait for the previous one. */
+/* Clients acknowledge frames one by one, so some request the next view while others still wait for the previous one. Each
+   picture must be encoded only once all the same. */
 CASE(whole_pictures_are_made_once_however_it_is_asked_for)
 {
     f->codec = WIRE_CODEC_JPEG;
@@ -265,7 +269,7 @@ CASE(what_broke_starts_anew)
 {
     show(f, 3, 0, 1, false);
     struct encode_stream *stream = f->streams.first;
-    stream->planned++; /* simulates a frame that could not be encoded */
+    stream->planned++; /* counts a frame as planned without encoding it, as if encoding had failed */
     encode_stream_break(stream);
     show(f, 3, 0, 9, false);
     assert_int_equal(f->keys, 2);

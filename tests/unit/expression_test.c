@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Expressions: their values, syntax errors with positions, and how derived tags pass on quality and age. */
+/* Expressions of derived tags: their values, syntax errors with positions, and how quality and age of the inputs determine
+   those of the result. */
 #include "tests/support/test.h"
 
 #include "plant/tags/expression.h"
@@ -10,7 +11,7 @@
 
 #define S INT64_C(1000000000)
 
-/* Variables: a is 8, b is 3, "TT-1/A (x)" is -2. */
+/* names of the variables that the tests use; their values: a is 8, b is 3, "TT-1/A (x)" is -2 */
 static const char *const names[] = { "a", "b", "TT-1/A (x)" };
 static const double numbers[] = { 8, 3, -2 };
 
@@ -60,7 +61,8 @@ TEST(arithmetic)
     assert_false(isfinite(worth("1/0")));
     assert_false(isfinite(worth("sqrt(-1)")));
     assert_false(isfinite(worth("lmtd(100, 20, 20, 60)")));
-    /* an expression has no value if any argument is not finite, even if the result would not depend on it */
+    /* If any argument is NaN or infinite, the expression must have no value, even if the result would not depend on that
+       argument. */
     static const char *const parts[] = { "min(1, sqrt(-1))",  "max(1, sqrt(-1))",          "min(1, 1/0)",
                                          "1/(1/0)",           "sqrt(-1)^0",                "1^sqrt(-1)",
                                          "max(1, -1/0)",      "approach(sqrt(-1),2,1,0)",  "approach(2,sqrt(-1),1,0)" };
@@ -128,7 +130,7 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     const struct plant *plant = c->plant;
     assert_true(plant->tags[0].source == -1 && plant->derived_count == 2 && plant->derived[0] == 3 && plant->derived[1] == 0);
     assert_true(plant->tags[3].validity.stale_s == 60 &&
-                plant->tags[0].validity.stale_s == 60); /* a derived tag has the stale time of its inputs */
+                plant->tags[0].validity.stale_s == 60); /* a derived tag without a `Stale s` of its own has the same one as its inputs */
     struct store *store = test_store(plant);
     struct snapshot *snapshot = test_snapshot(plant->tag_count);
     struct derived_state *derived = derived_create(plant);
@@ -143,11 +145,12 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
         { 0, 1, 10, QUALITY_GOOD, QUALITY_BAD_WAITING, 0, 0, -1 },
         { 1, 2, 4, QUALITY_GOOD, QUALITY_GOOD, 6, 5, 0 },
         { 3, 1, 11, QUALITY_GOOD, QUALITY_GOOD, 7, 5.5, 0 },
-        { 5, -1, 0, 0, QUALITY_GOOD, 7, 5.5, 2 }, /* computing the value again does not refresh its age */
+        { 5, -1, 0, 0, QUALITY_GOOD, 7, 5.5, 2 }, /* no new input: computing the value again must not make it younger */
         { 6, 1, 12, QUALITY_UNCERTAIN_UNITS_EXCEEDED, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 8, 6, 0 },
         { 7, 1, 12, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE, 0, 0, -1 },
         { 8, 1, 12, QUALITY_GOOD, QUALITY_GOOD, 8, 6, 0 },
-        { 29, -1, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR, 0, 0, -1 }, /* tag a is stale, so the derived value is stale */
+        /* the reading of tag a is stale by now, so the derived value must be stale too */
+        { 29, -1, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR, 0, 0, -1 },
     };
     for (size_t i = 0; i < sizeof(steps) / sizeof(*steps); i++) {
         int64_t now_ns = steps[i].at_s * S;
@@ -164,7 +167,8 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     derived_destroy(&derived);
 }
 
-/* Inputs carry their devices' times. A late sample that is not the newest input still changes the result. */
+/* Inputs are dated by their devices. A late sample, which is older than the newest input, must nevertheless change the result.
+   */
 TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;
@@ -181,12 +185,12 @@ TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down
     } steps[] = {
         { 1, 1, 1, 4, QUALITY_GOOD, NAN },
         { 0, 10, 11, 10, QUALITY_GOOD, 6 },
-        { 1, 10, 12, 3, QUALITY_GOOD, 7 }, /* sampled at the same time as the newest input */
+        { 1, 10, 12, 3, QUALITY_GOOD, 7 }, /* this sample has the same time as the newest input */
         { 0, 20, 21, 10, QUALITY_GOOD, 7 },
         { 1, 19, 22, 2, QUALITY_GOOD, 8 }, /* older than the newest input */
         { 1, 23, 30, 0, QUALITY_BAD_SENSOR_FAILURE, NAN },
         { 1, 24, 31, 2, QUALITY_GOOD, 8 },
-        { 1, 25, 32, 1, QUALITY_GOOD, 9 }, /* sampled before the result became Good again */
+        { 1, 25, 32, 1, QUALITY_GOOD, 9 }, /* this sample is dated before the result became Good again */
     };
     for (size_t i = 0; i < sizeof(steps) / sizeof(*steps); i++) {
         write_one(store, steps[i].tag, steps[i].value, steps[i].quality, steps[i].sampled_s * S);
@@ -199,8 +203,8 @@ TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down
     derived_destroy(&derived);
 }
 
-/* The result of a derived tag is compared with its measuring range, which is in the unit of the tag list's row (212 °F are 100 °C, 373.15
-   K). */
+/* The result of a derived tag is compared with the tag's measuring range, which the tag list states in the unit of its row: 212
+   °F are 100 °C and 373.15 K. Results beyond the range are Uncertain. */
 TEST_WITH(results_beyond_the_range_are_uncertain, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Marker texts equal the values that the frame shows at the markers' positions. */
+/* The values written at markers equal those that the frame shows at the markers' positions. */
 #include "tests/support/test.h"
 
 #include "render/frame.h"
@@ -16,7 +16,8 @@ static struct snapshot *readings(const double values[TAGS], const uint32_t quali
     return snapshot;
 }
 
-/* Makes a frame of a split view with a marker for each tag in both halves; the left half shows `left`, the right half readings. */
+/* Makes a frame of a split view in which each tag has one marker in each half. The left half shows what `left` says, the right
+   half the readings. */
 static struct frame *frame_of_two(enum field_show left, uint32_t baseline)
 {
     struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
@@ -68,7 +69,7 @@ TEST(test_readings_and_those_behind_the_eye)
     snapshot_destroy(&snapshot);
 }
 
-/* A distance is stated in metres, whatever the unit of the reading. */
+/* When the frame shows distances, markers state metres, whatever the unit of the tag. */
 TEST(test_distances_stay_what_they_are)
 {
     static const double now[TAGS] = { 25, 28, 41, 50 };
@@ -99,6 +100,6 @@ TEST(a_pool_reuses_released_pixels)
     frame_unref(&frame);
     frame_pool_drop_spares(pool);
     assert_int_equal(frame_pool_bytes(pool), 2 * WIDTH * HEIGHT * 4);
-    frame_pool_unref(&pool); /* the other frame outlives the pool that it came from */
+    frame_pool_unref(&pool); /* the pool is released while a frame from it is still in use, which must stay valid */
     frame_unref(&other);
 }

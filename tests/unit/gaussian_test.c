@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The Gaussian process compared with dense algebra: the kernel with an inverted matrix, the weights with ordinary kriging with
-   one mean per body (Cressie, Statistics for Spatial Data, 3.2), lost sensors by leaving them out. Also tests difficult
-   positions and numbers. */
+/* Interpolation by a Gaussian process, compared with the same results by dense algebra. The kernel is compared with an inverted
+   matrix, and the weights with ordinary kriging that has one mean per body (Cressie, Statistics for Spatial Data, 3.2). Lost
+   sensors are compared with leaving them out. Also tests difficult positions and numbers. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -31,7 +31,8 @@ static void prepare(struct gaussian_case *s, const double (*places_m)[3], size_t
     vertex_embedding_destroy(&embedding);
 }
 
-/* Uses the shape's own triangles, without the surface's subdivision, so that the system is small enough for dense algebra. */
+/* Prepares the case with the shape's own triangles and without subdivision, so that the system of equations is small enough for
+   dense algebra. */
 static void prepare_coarse(struct gaussian_case *s, const double (*places_m)[3], size_t count, double disc_m)
 {
     const struct cad *shape = &s->shape;
@@ -92,7 +93,7 @@ static size_t nearest_vertex(const struct gaussian_case *s, const double place[3
 
 /* --- plain algebra ----------------------------------------------------------------------------------------------------------- */
 
-/* Solves a x = b in place for `columns` right-hand sides, by Gaussian elimination with pivoting. */
+/* Solves a * x = b by Gaussian elimination with pivoting; the solution replaces b. columns: number of right-hand sides. */
 static void gauss(size_t n, double *a, size_t columns, double *b)
 {
     for (size_t k = 0; k < n; k++) {
@@ -126,11 +127,11 @@ static void gauss(size_t n, double *a, size_t columns, double *b)
 
 struct dense {
     size_t rows, sensors;
-    double *kernel;  /* [row][row]: covariance between the sensors at unit deviation, without the constant part */
+    double *kernel;  /* by pair of vertices: their covariance for a deviation of 1, without the part that is constant on the body */
     double *sensing; /* [sensor][row] */
 };
 
-/* Makes the dense reference; all sensors are on one body. */
+/* Makes the dense reference for a mesh whose sensors are all on one body. */
 static void make_dense(struct dense *d, const struct influence_mesh *mesh, double range_m)
 {
     struct laplacian laplacian;
@@ -187,8 +188,8 @@ static double covariance(const struct dense *d, const double *a, const double *b
     return sum;
 }
 
-/* Kriging: computes the weights of the sensors in `used` that predict the value at `place` (given as interpolation weights of
-   mesh vertices). Returns the variance of the prediction error. */
+/* Predicts the value at a place by ordinary kriging from the sensors in `used`: sets their weights and returns the variance of
+   the prediction error. place: weights of mesh vertices. */
 static double krige(const struct dense *d, const struct gaussian_params *p, const uint8_t *used, const double *place, double *weights)
 {
     const size_t n = d->sensors + 1;
@@ -233,7 +234,7 @@ static const double few_places[FEW][3] = { { 0.2, 0.3, 0 }, { 1.7, 0.2, 0 }, { 1
 
 TEST(test_agrees_with_a_dense_one)
 {
-    /* the last case has a range of 40 m, far longer than the body */
+    /* range in metres, noise and deviation; the last range, 40 m, is far longer than the body */
     static const struct gaussian_params cases[3] = { { 0.8, 0.5, 10 }, { 3, 0.1, 4 }, { 40, 0.2, 20 } };
     for (int c = 0; c < 3; c++) {
         struct gaussian_case s = { 0 };
@@ -257,7 +258,7 @@ TEST(test_agrees_with_a_dense_one)
             double with = (double)s.influence.deviations[v], without = (double)s.influence.deviations[s.shape.vertex_count + v];
             double prior = cases[c].deviation * cases[c].deviation * covariance(&d, place, place), taken = fmax(prior - variance, 0);
             assert_true(fabs(without * without - with * with - taken) < 1e-3 * prior);
-            double less = krige(&d, &cases[c], some, place, weights); /* the dense reference leaves lost sensors out */
+            double less = krige(&d, &cases[c], some, place, weights); /* reference for lost sensors: kriging without them */
             for (size_t i = 0; i < FEW; i++)
                 wanted += readings[i] * weights[i];
             influence_fill_values(fill, readings);
@@ -268,7 +269,8 @@ TEST(test_agrees_with_a_dense_one)
         }
         print_message("range %g: weights differ by %.1e, deviations by up to %.1f %%\n", cases[c].range_m, worst_share, 100 * worst);
         assert_true(worst_share < 1e-4);
-        /* the deviations are estimated from 256 samples, so they have a standard deviation of 4.4 %; four times that is allowed */
+        /* The deviations are estimated from 256 random samples, which gives them a standard error of 4.4 %. Four times that is
+           allowed. */
         assert_true(worst < 4 * 0.044);
         influence_fill_destroy(&fill);
         mem_free(d.kernel);
@@ -277,7 +279,8 @@ TEST(test_agrees_with_a_dense_one)
     }
 }
 
-/* The prediction of each sensor from the others is its reading minus (P v)_i / P_ii, with variance 1 / P_ii. */
+/* The value of each sensor that the others predict must be its reading minus (P v)_i / P_ii, with variance 1 / P_ii. P:
+   precision matrix, v: readings. */
 TEST(test_precision_says_what_the_others_say)
 {
     const struct gaussian_params p = { 0.8, 0.5, 10 };
@@ -313,13 +316,14 @@ static void sphere_of(struct gaussian_case *s, const double (*places_m)[3], size
     solve(s, params);
 }
 
-/* For a smooth field, predictions match the readings within the noise, and each row of weights sums to 1. */
+/* If the readings come from a smooth field, the interpolated values must match them within the noise, and the weights of each
+   vertex must sum to 1. */
 TEST(test_readings_are_met_within_noise)
 {
     enum { MANY = 40 };
     struct gaussian_case s = { 0 };
     double places[MANY][3], readings[MANY], ones[MANY];
-    for (size_t i = 0; i < MANY; i++) { /* sensor positions on a spiral from pole to pole */
+    for (size_t i = 0; i < MANY; i++) { /* spreads the sensors evenly over a sphere, on a spiral from pole to pole */
         double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);
         memcpy(places[i], (const double[3]){ across * cos(turn), across * sin(turn), z }, sizeof(places[i]));
         readings[i] = 50 + 20 * z + 10 * places[i][0];
@@ -330,8 +334,8 @@ TEST(test_readings_are_met_within_noise)
         size_t v = nearest_vertex(&s, places[i]);
         double there = 50 + 20 * (double)s.shape.positions[v][2] + 10 * (double)s.shape.positions[v][0];
         assert_true(fabs(influence_value(&s.influence, readings, v) - there) < 0.5);
-        /* `untold`: share of the variance that stays unknown at this vertex, because the sensor is a disc and the vertex is not
-           its centre. The correlation is x K_1(x), approximated for small x */
+        /* `untold` is the expected share of the variance that remains at the vertex nearest to the sensor, because a sensor is
+           a disc and the vertex is not at its centre. The correlation is x K_1(x), approximated for small x. */
         double away = 0, x;
         for (int axis = 0; axis < 3; axis++)
             away += pow((double)s.shape.positions[v][axis] - places[i][axis], 2);
@@ -357,8 +361,8 @@ TEST(test_two_sensors_at_one_place_that_disagree)
     }
 }
 
-/* A sensor that is alone on a body gives the whole body its value, with a deviation that grows with distance; a body without a
-   sensor gets no value. */
+/* A body with a single sensor gets that sensor's value everywhere, with a deviation that grows with the distance. A body
+   without a sensor gets no value. */
 TEST(test_one_sensor_and_bodies_apart)
 {
     struct gaussian_case s = { 0 };
@@ -373,7 +377,8 @@ TEST(test_one_sensor_and_bodies_apart)
     const double near = (double)s.influence.deviations[nearest_vertex(&s, places[0])];
     const double far = (double)s.influence.deviations[nearest_vertex(&s, (const double[3]){ 0, 0, -1 })];
     print_message("one sensor: deviation %.2f at it, %.2f at the other pole\n", near, far);
-    /* far away the deviation is sqrt(2) times the prior's, which is 10, because one sensor does not determine the mean */
+    /* Far from the sensor the deviation is about sqrt(2) times that of the process (10), because a single sensor does not
+       determine the mean. */
     assert_true(near < 2 && far > 12 && far < 17);
     assert_true(s.influence.precision[0] < 1e-9);
     finish(&s);
@@ -416,7 +421,8 @@ TEST(test_threads_change_nothing)
     finish(&s);
 }
 
-/* The covariance computed without solving for each sensor, for ranges from a tenth of the plate to ten times the plate. */
+/* The sensors' covariance, which is computed without solving an equation for each sensor, is compared with dense algebra.
+   Ranges are from a tenth of the plate's size to ten times that size. */
 TEST(test_covariance_agrees_with_a_dense_one)
 {
     static const double ranges_m[4] = { 0.25, 0.8, 3, 20 };
@@ -451,8 +457,8 @@ static double gaussian(void)
     return sqrt(-2 * log(1 - cad_random(&chance))) * cos(2 * M_PI * cad_random(&chance));
 }
 
-/* Readings drawn from a process of range 0.7, deviation 6 and noise 0.8: the fit must recover nearly these parameters. Sensors
-   stand in pairs, because only close neighbours distinguish noise from a rough field. */
+/* Draws random readings from a process with range 0.7, deviation 6 and noise 0.8, and fits the parameters to them: they must be
+   nearly these. The sensors stand in close pairs, because only close neighbours distinguish noise from a rough field. */
 TEST(test_fit_finds_what_made_the_readings)
 {
     enum { SENSORS = 24, INSTANTS = 200 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the model fuzzer and random mutations of them. `gltf_fuzz_test --write FOLDER` writes the seeds again. */
+/* Runs the model fuzzer on its stored seeds and on random changes of them. `gltf_fuzz_test --write FOLDER` writes the seeds. */
 #include "tests/fuzz/gltf_fuzz.c"
 
 #include "tests/support/test.h"

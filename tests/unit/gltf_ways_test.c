@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One surface, encoded in every way that glTF allows, is always read as the same surface; also when compressed by the reference
-   encoders and by common compression programs. */
+/* The same surface is encoded in every way that glTF allows and must always be read as the same surface. This includes
+   compression by the reference encoders and by common compression programs. */
 #include "preprocess/geometry/geometry.h"
 
 #include "tests/support/test.h"
@@ -54,7 +54,8 @@ struct gltf_corner {
     const uint8_t *color;
 };
 
-/* Returns the triangle of the wavy test sheet that has these corners in the same winding order, or -1. */
+/* Returns the number of the wavy test sheet's triangle that has these corners in the same winding order, or -1 if there is
+   none. */
 static int triangle_of(const struct wavy_sheet *sheet, struct gltf_corner corners[3], double tolerance_m)
 {
     for (uint32_t t = 0; t < sheet->index_count / 3; t++)
@@ -200,7 +201,8 @@ static size_t write_plain(struct gltf_case *l, const struct wavy_sheet *sheet)
     return size;
 }
 
-/* Converts FOLDER/plain.glb with the program into FOLDER/packed.glb, which must declare the extension, and reads it back. */
+/* Compresses FOLDER/plain.glb to FOLDER/packed.glb with an external program, asserts that the result declares the extension,
+   and reads it. */
 static void try_packed(struct gltf_case *l, const char *program, const char *options, const char *extension, double tolerance_m)
 {
     struct wavy_sheet sheet;
@@ -242,7 +244,8 @@ CASE(what_draco_writes_is_read)
 
 /* --- damaged compressed data --------------------------------------------------------------------------------------------- */
 
-/* Changes every byte of the compressed data in turn: the reader never crashes, and any model that it accepts is consistent. */
+/* Changes each byte of the compressed data in turn. The reader must never crash, and a model that it accepts must be
+   consistent. */
 CASE(broken_compression_is_refused_or_harmless)
 {
     struct wavy_sheet sheet;
@@ -267,7 +270,7 @@ CASE(broken_compression_is_refused_or_harmless)
     sheet_finish(&sheet);
 }
 
-/* Opens the JSON and bytes of a seed again so that a test can change them. */
+/* Opens seed model `number` as JSON and bytes, so that a test can change it before it is read. */
 static struct model_maker seed_open(int number, const char *name, const struct wavy_sheet *sheet)
 {
     struct seed seed;
@@ -404,7 +407,7 @@ CASE(what_a_small_file_claims_is_bounded)
     try_model(l, &maker);
     assert_refused(l, "accessor 0: 4000000000 elements without data in the file are too many");
 
-    maker_init(&maker); /* a thousand primitives use the same million indices */
+    maker_init(&maker); /* a small file that states a thousand primitives with the same million indices */
     at = maker_accessor(&maker, -1, FLOAT, 3, "VEC3");
     int list = maker_accessor(&maker, -1, UBYTE, 999999, "SCALAR"), mesh = maker_mesh(&maker, json_null());
     json_array_clear(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"));
@@ -415,7 +418,7 @@ CASE(what_a_small_file_claims_is_bounded)
     try_model(l, &maker);
     assert_refused(l, "elements are too many for a file of");
 
-    maker_init(&maker); /* a million nodes instantiate a tiny mesh */
+    maker_init(&maker); /* a small file that states millions of instances of a tiny mesh */
     mesh = maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", maker_accessor(&maker, -1, FLOAT, 3, "VEC3")));
     at = maker_accessor(&maker, -1, BYTE, 5000000, "VEC3");
     maker_node(&maker, "n", mesh, json_pack("{s:{s:{s:{s:i}}}}", "extensions", "EXT_mesh_gpu_instancing", "attributes", "TRANSLATION", at));
@@ -546,8 +549,8 @@ CASE(colors_are_read_in_every_type)
 
 /* --- materials ----------------------------------------------------------------------------------------------------------- */
 
-/* Another texture of the same material with a different mapping, on its own coordinate set or on the same one. A third mapping
-   is refused. */
+/* Further textures of a material may use one other mapping (coordinate set and transform) than the base colour texture, from a
+   second coordinate set or from the same one. A third mapping is not supported, so that texture is left out. */
 static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_sheet *sheet)
 {
     struct geometry g;
@@ -561,7 +564,7 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     try_model(l, &maker);
     assert_good(l);
     const struct gltf_primitive *p = &l->model.primitives[0];
-    /* the first texture of the material transforms its coordinates, the second one does not */
+    /* the base colour texture has a transform, the second mapping has none */
     for (uint32_t v = 0; v < p->vertex_count; v++)
         assert_true(fabsf(p->second_texcoords[v][0] - sheet->texcoords[v][0]) < 1e-6f && p->texcoords[v][0] != p->second_texcoords[v][0]);
     const struct asset_material *m = &l->model.materials[0];
@@ -575,7 +578,7 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     assert_true(g.second_texcoords && g.materials[0].second == m->second);
     geometry_finish(&g);
 
-    /* the material's occlusion texture uses a coordinate set that the primitive lacks */
+    /* the occlusion texture uses a coordinate set that the primitive lacks: the texture is left out, and the rest is read */
     maker = seed_open(15, "textured.glb", sheet);
     json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 7));
     try_model(l, &maker);
@@ -611,7 +614,8 @@ CASE(textures_lie_where_their_transform_puts_them)
 
     second_texcoords_are_read(l, &sheet);
 
-    maker = seed_open(15, "textured.glb", &sheet); /* the transform's texCoord overrides the texture's */
+    /* the transform's texCoord (coordinate set) takes precedence over that of the texture */
+    maker = seed_open(15, "textured.glb", &sheet);
     json_t *attributes = json_object_get(primitive_of(&maker), "attributes");
     json_object_set(attributes, "TEXCOORD_1", json_object_get(attributes, "TEXCOORD_0"));
     json_object_set_new(attributes, "TEXCOORD_0", json_integer(maker_accessor(&maker, -1, FLOAT, sheet.vertex_count, "VEC2")));
@@ -621,7 +625,7 @@ CASE(textures_lie_where_their_transform_puts_them)
     assert_good(l);
     assert_true(l->model.primitives[0].texcoords[1][0] != l->model.primitives[0].texcoords[0][0]);
 
-    /* mirrored repetition is unsupported for coordinates outside 0..1, which the sheet has */
+    /* mirrored repetition is not supported for coordinates outside 0..1, which this sheet has, so the texture is left out */
     maker = seed_open(15, "textured.glb", &sheet);
     json_object_set_new(maker_get(&maker, "samplers", 0), "wrapS", json_integer(33648));
     try_model(l, &maker);
@@ -666,7 +670,8 @@ CASE(textures_lie_where_their_transform_puts_them)
     try_model(l, &maker);
     assert_refused(l, "alphaMode 'GLOW'");
 
-    maker = seed_open(15, "textured.glb", &sheet); /* the image is corrupt, which is noticed only when it is needed */
+    /* the image data is corrupt: reading the model succeeds, because images are decoded only when geometry is cut */
+    maker = seed_open(15, "textured.glb", &sheet);
     const json_t *number = json_object_get(maker_get(&maker, "images", 0), "bufferView");
     const json_t *view = maker_get(&maker, "bufferViews", (int)json_integer_value(number));
     memset(maker.bin.at + json_integer_value(json_object_get(view, "byteOffset")) + 8, 'X', 16);
@@ -712,7 +717,8 @@ CASE(assets_are_cut_from_a_tree)
     try_model(l, &maker);
     assert_good(l);
 
-    struct geometry g = cut(l, "far", 1, AXIS_Z); /* an asset 6,000 km away: the sheet's coordinates lose no digits */
+    /* cuts out an asset at 6,000 km from the origin: its vertices must be as exact as near the origin */
+    struct geometry g = cut(l, "far", 1, AXIS_Z);
     assert_float_equal(g.origin_m[0], 500001, 1e-9);
     assert_float_equal(g.origin_m[1], 6000000.5, 1e-9);
     double step = 1;
@@ -725,7 +731,8 @@ CASE(assets_are_cut_from_a_tree)
     assert_true(fabs(step - 2.0 / 24) < 1e-6);
     geometry_finish(&g);
 
-    for (int mirrored = 0; mirrored < 2; mirrored++) { /* computed normals face the same side as the triangles, mirrored or not */
+    /* normals that the reader computes must face the same side as the triangles, also with a mirrored node */
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
         g = cut(l, mirrored ? "mirrored" : "sheet", 1, AXIS_Z);
         assert_int_equal(g.index_count, sheet.index_count);
         assert_true(g.computed_normals > 0);
@@ -738,10 +745,10 @@ CASE(assets_are_cut_from_a_tree)
         geometry_finish(&g);
     }
 
-    g = cut(l, "branch", 0.001, AXIS_Y); /* a sub-tree of a model in millimetres, y up */
+    g = cut(l, "branch", 0.001, AXIS_Y); /* cuts out a sub-tree of nodes; the model is in millimetres and its y axis points up */
     assert_int_equal(g.primitive_count, 1);
     assert_string_equal(g.names.at + g.primitives[0].name, "twig");
-    /* along this axis, y of the wavy test sheet is z of the node "branch" and -y of the asset */
+    /* the sheet's y axis is the z axis of the node "branch", which becomes -y in the asset */
     assert_float_equal(g.origin_m[1], -0.0095, 1e-6);
     geometry_finish(&g);
 
@@ -773,7 +780,8 @@ CASE(mirrored_instances_keep_their_outside)
     sheet_finish(&sheet);
 }
 
-/* Fifty thousand nodes that share a mesh of a thousand triangles, each triangle its own primitive. */
+/* A small model that would draw 50 million triangles: 50,001 nodes share a mesh of 1,000 triangles, each of which is a primitive.
+   An asset of all nodes must be refused, and an asset of a single node must be accepted. */
 CASE(what_many_nodes_draw_is_bounded)
 {
     struct model_maker maker;
@@ -893,7 +901,8 @@ static void measure(const struct gltf_model *model, double low[3], double high[3
     }
 }
 
-/* The largest primitive of a real plant, in every compression: the same size and the same area. */
+/* The largest primitive of a real plant, in every kind of compression, must have the same size and the same area as
+   uncompressed. */
 CASE(a_real_model_survives_compression)
 {
     static const int ways[] = { 8, 9, 11, 12 };

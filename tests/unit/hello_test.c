@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The first message of a session (hello): the identity behind its token, the view that a returning client gets back, and admission. */
+/* The first message of a session (hello): which user its token identifies, which view a returning client gets back, and whether
+   the session is admitted. */
 #include "session/session.h"
 
 #include "tests/support/test.h"
@@ -95,7 +96,7 @@ static void leave(struct hello_fixture *f, struct session **session)
     session_destroy(session);
 }
 
-/* Returns the session's next due text message, parsed. */
+/* Asserts that the session has a text message to send now, and returns it parsed. */
 static json_t *hear(struct hello_fixture *f, struct session *session)
 {
     struct text text = { 0 };
@@ -147,7 +148,8 @@ CASE(a_token_stands_for_its_role)
     expect_error(f, bob, "not_allowed", 0);
     leave(f, &bob);
     struct session *local = open_session(f, ROLE_ENGINEER, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE "}");
-    expect_welcome(f, local, "viewer", false); /* a token counts also where none is needed */
+    /* a token determines the role even where none is needed: the local connection has the role engineer without it */
+    expect_welcome(f, local, "viewer", false);
     leave(f, &local);
     struct session *open = open_session(f, ROLE_OPEN, HELLO);
     expect_welcome(f, open, "open", false);
@@ -176,7 +178,8 @@ CASE(a_revoked_token_ends_its_sessions_and_no_others)
     leave(f, &local);
 }
 
-/* A valid token delayed by the login throttle is not checked, so the session keeps no token holder. */
+/* After too many failures the login throttle delays even a valid token. The session must not be given the rights of that
+   token's holder, because the token was not checked. */
 CASE(a_login_that_is_held_up_keeps_no_holder)
 {
     struct login_throttle *throttle = f->context.login_throttle = login_throttle_create();
@@ -198,7 +201,7 @@ CASE(a_login_that_is_held_up_keeps_no_holder)
     "{\"type\":\"hello\"," SIZE ",\"pixel_ratio\":2,\"camera\":{\"seq\":4,\"eye\":[7,8,9],\"target\":[0,0,1]},"                            \
     "\"params\":{\"seq\":5,\"group\":\"pressure\",\"ramp_interval\":2}}"
 
-/* Sends a hello with the resume secret; `extra` is appended to the message's members and may be "". */
+/* Returns to a session with its resume secret. extra: further members of the hello message, or "". */
 static void come_back(struct hello_fixture *f, enum role role, const char *secret, const char *extra, struct session **out)
 {
     char text[400];
@@ -225,7 +228,7 @@ CASE(who_comes_back_in_time_has_its_view)
     come_back(f, ROLE_ENGINEER, secret, "", &again);
     expect_welcome(f, again, "engineer", true);
     expect_view_of_before(again);
-    assert_string_not_equal(again->identity.resume_secret, secret); /* each resume secret is valid for one return */
+    assert_string_not_equal(again->identity.resume_secret, secret); /* a resume secret is valid once; the session gets a new one */
     come_back(f, ROLE_ENGINEER, secret, "," SIZE, &late);
     expect_welcome(f, late, "engineer", false);
     assert_int_equal(late->view.field.group, 0);
@@ -362,7 +365,7 @@ CASE(who_is_hidden_gives_its_place_back_and_takes_it_again)
     expect_error(f, hidden, "limit", 0);
     assert_false(session_next_request(hidden, f->now_ns, &request));
     leave_share(f, &second);
-    /* another session has left: the hidden session is admitted at its next tick, without another request */
+    /* after another session has left, the hidden session is admitted at its next tick without a new request */
     session_on_tick(hidden, f->now_ns += NS_PER_S);
     assert_int_equal(share.pixels, 230400);
     assert_true(session_next_request(hidden, f->now_ns, &request) && request.account == 1);

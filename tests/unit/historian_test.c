@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The historian: samples are on disk one second after they reach the store, even after kill -9, with a full, read-only, slow or
-   damaged disk, and when the clock is set. */
+/* The historian, which records samples: they are on disk one second after they reach the store. This must hold after kill -9,
+   with a full, read-only, slow or damaged disk, and when the clock is set. */
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <glob.h>
@@ -29,8 +29,8 @@
 
 enum { TAGS = 50 };
 
-/* A wall clock that tests may set; the machine's clock stays untouched. It begins mid-month, because each month has its own
-   file and the tests look into only one file. */
+/* Begin of this test's own clock, which replaces the historian's UTC clock and can be set by tests; the machine's clock stays
+   unchanged. It is mid-month, because each month has its own file and most tests look into one file only. */
 static const int64_t MID_MONTH_S = 1781524800; /* 2026-06-15T12:00Z */
 static _Atomic int64_t clock_off_ns;
 int64_t __real_clock_utc_ns(void);
@@ -82,7 +82,7 @@ static void end(struct historian_setup *s)
 {
     historian_stop(&s->historian);
     mem_free(s->tags);
-    /* mount point of a test with its own disk, which is still mounted if that test failed */
+    /* unmounts the disk of a test that mounted one and failed before it could unmount it */
     char *disk = temp_path(s->folder, "history");
     (void)umount2(disk, MNT_DETACH);
 }
@@ -91,13 +91,14 @@ TEST_FIXTURE(struct historian_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct historian_setup *s, name, set_up, tear_down)
 
-/* Returns values that never lie on a line, because history drops inner points of straight lines. */
+/* Returns the i-th value of a series of which no three values lie on a line, because history stores no points inside straight
+   lines. */
 static double bent(int i)
 {
     return i * i * 7919 % 1009;
 }
 
-/* Writes a sample of each tag. Returns the wall clock time of the samples. */
+/* Writes a sample of each tag; the value of tag i is `value` plus i. Returns the UTC time of the samples. */
 static int64_t write_all(struct historian_setup *s, double value)
 {
     int64_t utc_ns = clock_utc_ns();
@@ -142,7 +143,7 @@ static size_t points_of(struct historian_setup *s, int tag, struct history_serie
     return points_around(s, tag, clock_utc_ns() / 1000, series);
 }
 
-/* Returns how many events of this kind the month file of utc_ns contains. */
+/* Returns how many events of this kind are in the file of the month to which utc_ns belongs. */
 static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns)
 {
     char name[MONTH_NAME_BYTES], *query = mem_printf("SELECT count(*) FROM event WHERE kind = '%s'", kind);
@@ -168,7 +169,7 @@ static void wait_until_counted(struct historian_setup *s, const char *name, doub
     assert_true(counted(s, name) == wanted);
 }
 
-/* Values without a deadband: every value is recorded exactly, even with connection losses in between. */
+/* Tags have no deadband, so every value must be recorded exactly. Between the values, the connection is lost several times. */
 CASE(all_that_was_told_is_there)
 {
     int64_t times_ns[40], lost_ns = 0;
@@ -192,7 +193,7 @@ CASE(all_that_was_told_is_there)
     assert_int_equal(snapshot->readings[3].quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
 }
 
-/* Passes a leader's samples to its standby, as the link between two cores does. */
+/* Passes samples from a leading core to the historian of its standby, in messages as between two cores. */
 static void pass_on(struct core_samples *link, struct historian *standby)
 {
     struct text bytes = { 0 };
@@ -212,7 +213,7 @@ static void read_series(struct historian_setup *s, const char *name, int tag, st
     int64_t now_us = clock_utc_ns() / 1000;
     char *folder = temp_path(s->folder, name);
     struct history_reader *reader = history_reader_create(s->log, folder);
-    history_series_finish(series); /* frees the series of the last call */
+    history_series_finish(series); /* frees the points that the previous call stored in *series */
     int error = history_series(reader, s->tags[tag].name, now_us - 7200 * US_PER_S, now_us + 7200 * US_PER_S, 10000, series);
     assert_int_equal(error, 0);
     history_reader_destroy(&reader);
@@ -226,7 +227,8 @@ static bool has_quality(const struct history_series *series, uint32_t quality)
     return false;
 }
 
-/* Readings go stale, and then a device is lost that never sent a sample: only the passing of time tells the historian. */
+/* The historian of a standby gets only samples. It must nevertheless record that readings become stale and that a device was
+   lost which never sent a sample, exactly as the leader's historian does. */
 CASE(a_standby_records_what_time_alone_changes)
 {
     struct history_series here = { 0 }, there = { 0 };
@@ -238,7 +240,8 @@ CASE(a_standby_records_what_time_alone_changes)
     struct historian *standby = historian_start(&(struct historian_params){
         .log = s->log, .counters = s->counters, .plant = s->plant, .store = mirror, .folder = folder, .stands_by = true });
     struct core_samples *link = core_samples_listen(s->store);
-    store_link_lost(s->store, 0, clock_mono_ns()); /* this source has not sent a sample yet, so the store reports the loss without a time */
+    /* this source has never sent a sample, so the store reports its loss without a time of a last sample */
+    store_link_lost(s->store, 0, clock_mono_ns());
     start(s);
     do {
         sleep_ns(50 * NS_PER_MS);
@@ -257,7 +260,8 @@ CASE(a_standby_records_what_time_alone_changes)
         read_series(s, "standby", i, &there);
         assert_true(here.points.count >= 2);
         assert_int_equal(here.points.count, there.points.count);
-        /* the point carries the time at which the reading went stale, not when the historian noticed; the two clocks may differ by 25 ms */
+        /* The last point must have the time at which the reading became stale, not the time at which the historian noticed. 25
+           ms are allowed for the difference of monotonic and UTC clock. */
         int64_t stale_us = here.points.at[here.points.count - 1].t_us - 500000;
         assert_true(i >= TAGS / 2 || (stale_us >= before_us - 25000 && stale_us <= after_us + 25000));
         for (size_t k = 0; k < here.points.count; k++) {
@@ -270,14 +274,14 @@ CASE(a_standby_records_what_time_alone_changes)
     core_samples_end(&link);
 }
 
-/* Writes a sample of tag 0 whose source states a time in the past. */
+/* Writes a sample of tag 0 that its source dates utc_ns, a time in the past. */
 static void write_old(struct historian_setup *s, double value, int64_t utc_ns)
 {
     int64_t age_ns = clock_utc_ns() - utc_ns;
     store_write(s->store, &(struct sample){ 0, value, QUALITY_GOOD }, 1, clock_mono_ns() - age_ns, utc_ns);
 }
 
-/* Makes readings never stale, like those of OPC UA. */
+/* Sets the tags so that their readings never become stale, as with OPC UA, whose servers send only changes. */
 static void never_stale(struct historian_setup *s)
 {
     for (int i = 0; i < TAGS; i++)
@@ -287,7 +291,7 @@ static void never_stale(struct historian_setup *s)
     s->tags = history_tags(s->plant);
 }
 
-/* Waits until the newest recorded reading of tag 0 has this quality. Returns false after half a minute. */
+/* Waits until the newest recorded reading of tag 0 has this quality. Returns false if it has not after 30 s. */
 static bool comes_to(struct historian_setup *s, uint32_t quality)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -299,7 +303,8 @@ static bool comes_to(struct historian_setup *s, uint32_t quality)
     return snapshot->readings[0].quality == quality;
 }
 
-/* A server states when a value changed. After a lost connection or a daemon restart, that time is before the loss. */
+/* An OPC UA server dates a value by its last change. After a lost connection or a restart of the daemon it sends the same value
+   again, dated before the loss. The value must then be recorded as Good again. */
 CASE(a_value_with_an_old_time_is_good_again)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -328,7 +333,8 @@ CASE(a_value_with_an_old_time_is_good_again)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
 }
 
-/* Only tag 1 gets samples. Tag 0's value is recorded until the daemon ends, and again in the next month. */
+/* After its first sample, tag 0 gets none, while tag 1 gets samples all the time. The history of tag 0 must continue until the
+   daemon ends, also into the file of the next month. */
 CASE(a_value_without_samples_holds_until_the_end)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -371,7 +377,8 @@ CASE(quiet_readers_see_the_last_second)
     assert_true(snapshot->readings[7].value == 49);
 }
 
-/* Records until the process is killed; *told (shared memory) receives the time of the last sample given to the store. */
+/* Records samples until this process is killed. *told, which is shared memory, receives the time of the last sample that was
+   given to the store. */
 static void record_for_ever(struct historian_setup *s, _Atomic int64_t *told)
 {
     start(s);
@@ -382,7 +389,8 @@ static void record_for_ever(struct historian_setup *s, _Atomic int64_t *told)
     }
 }
 
-/* Kills a recording process. Returns the seconds between the last sample given to the store and the last one on disk. */
+/* Starts a process that records, and kills it at a random time. Returns the seconds between the last sample given to the store
+   and the last one on disk. */
 static double kill_one(struct historian_setup *s, _Atomic int64_t *told, unsigned *seed)
 {
     struct history_series series;
@@ -404,8 +412,8 @@ static double kill_one(struct historian_setup *s, _Atomic int64_t *told, unsigne
     return lost_s;
 }
 
-/* The limit is one second plus the time of the write. A write may itself take seconds, so after a slow one the kill is
-   repeated. make test-long sets KILLS=100. */
+/* A kill may lose the samples of one second and of the duration of a write. A write may take seconds on a busy machine, so a
+   kill with a larger loss is repeated a few times. KILLS: number of successful kills, 100 in `make test-long`. */
 CASE(a_kill_takes_at_most_a_second)
 {
     unsigned seed = (unsigned)sweep_seed();
@@ -418,7 +426,8 @@ CASE(a_kill_takes_at_most_a_second)
     munmap((void *)told, sizeof(*told));
 }
 
-/* RLIMIT_FSIZE makes the kernel refuse to grow any file. After the limit is lifted, no sample is missing. */
+/* A limit on file sizes (RLIMIT_FSIZE) acts like a full disk: no file can grow. After the limit is lifted, all samples must be
+   recorded. */
 CASE(a_full_disk_loses_nothing)
 {
     struct rlimit unlimited;
@@ -444,7 +453,8 @@ CASE(a_full_disk_loses_nothing)
     history_series_finish(&series);
 }
 
-/* A file has the history folder's path, which makes the folder unusable like a read-only one; once the folder exists, it is used. */
+/* A file at the path of the history folder makes the folder unusable, like a read-only one. Once the file is removed, a
+   restarted historian must create the folder and use it. */
 CASE(a_folder_that_comes_later_is_used)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder");
@@ -481,10 +491,11 @@ static void expect_spooled_run(struct historian_setup *s, int64_t first_ns, int6
     struct snapshot *snapshot = test_snapshot(TAGS);
     look(s, last_ns, snapshot);
     assert_true(snapshot->readings[3].value == 10);
-    assert_true(events_of(s, "gap", last_ns) >= 1); /* the gap begins at the end of the previous run */
+    assert_true(events_of(s, "gap", last_ns) >= 1); /* a gap is recorded that begins at the end of the previous run */
 }
 
-/* The history folder is unusable until the daemon ends: unwritten samples go into a spool elsewhere and are recorded at the next start. */
+/* The history folder is unusable until the daemon ends. Samples that could not be written must be stored in a spool file in
+   another folder, and recorded at the next start with a usable folder. */
 CASE(what_waits_at_the_end_comes_with_the_next_start)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder"), *spool = temp_path(s->folder, "history.spool");
@@ -495,7 +506,7 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
     int64_t last_ns = write_all(s, 7);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);
-    start(s); /* a second start, still without a usable folder, loses nothing of the spool */
+    start(s); /* starts and stops once more without a usable folder: the spool file must not be lost */
     sleep_ns(300 * NS_PER_MS);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);
@@ -507,7 +518,8 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
 
 /* --- clocks ------------------------------------------------------------------------------------------------------------------- */
 
-/* The clock is set forward by an hour: samples before and after are recorded, and no line spans the skipped hour. */
+/* The clock is set forward by an hour. All samples before and after that must be recorded, and the skipped hour must contain no
+   values. */
 CASE(a_clock_set_forward_leaves_its_hour_empty)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -518,7 +530,7 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     int64_t second_ns = write_all(s, 2);
     atomic_fetch_add(&clock_off_ns, 3600 * NS_PER_S);
     int64_t after_ns = write_all(s, 9);
-    /* waits until these samples are recorded before the clock is set again */
+    /* waits until the samples after the change are recorded */
     wait_until_counted(s, "plantcast_history_samples_total", 3 * TAGS);
     historian_stop(&s->historian);
     assert_true(points_of(s, 3, &series) >= 4);
@@ -535,7 +547,7 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     assert_int_equal(events_of(s, "clock", after_ns), 1);
 }
 
-/* The clock is set back by an hour, which is passed twice: no sample of either pass is lost. */
+/* The clock is set back by an hour, so this hour of clock time occurs twice. All samples of both must be recorded. */
 CASE(a_clock_set_back_loses_nothing)
 {
     int64_t times_ns[6];
@@ -558,7 +570,8 @@ CASE(a_clock_set_back_loses_nothing)
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
 }
 
-/* Local time jumps from 02:00 to 03:00 in spring and from 03:00 to 02:00 in autumn: recorded time continues without a break. */
+/* Local time jumps from 02:00 to 03:00 in spring, and from 03:00 to 02:00 in autumn. The history, which uses UTC, must be
+   recorded without a gap. */
 TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
 {
     static const int64_t changes_s[] = { 1774746000, 1792890000 }; /* 2026-03-29T01:00Z and 2026-10-25T01:00Z, Europe/Berlin */
@@ -568,7 +581,8 @@ TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
         struct historian_setup *s = *state;
         int64_t times_ns[10], change_ns = changes_s[k] * NS_PER_S;
         struct history_series series;
-        atomic_store(&clock_off_ns, change_ns - NS_PER_S - __real_clock_utc_ns()); /* the clock starts one second before the change */
+        /* sets the test's clock to one second before the change of local time */
+        atomic_store(&clock_off_ns, change_ns - NS_PER_S - __real_clock_utc_ns());
         start(s);
         for (int i = 0; i < 10; i++) {
             while (i == 5 && clock_utc_ns() <= change_ns)
@@ -591,14 +605,15 @@ TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
 
 /* --- disks -------------------------------------------------------------------------------------------------------------------- */
 
-/* Mounts a tmpfs over the folder, for this thread and the threads it starts. Returns false if that is not permitted. */
+/* Mounts a tmpfs of 100 MB on the folder, visible only to this thread and to threads that it starts. Returns false if the
+   process is not permitted to mount. */
 static bool mount_disk(const char *folder)
 {
     return mkdir(folder, 0777) == 0 && unshare(CLONE_NEWNS) == 0 && mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) == 0 &&
            mount("history", folder, "tmpfs", 0, "size=100m") == 0;
 }
 
-/* Fills the remaining space of the disk. Returns the path of the filler file. */
+/* Fills the remaining space of the disk with one file, and returns its path. */
 static char *fill_disk(const char *folder)
 {
     char *path = temp_path(folder, "filler");
@@ -614,7 +629,8 @@ static char *fill_disk(const char *folder)
     return path;
 }
 
-/* The disk is full and no other folder is available, as after a reboot: unwritten samples go into the reserved file. */
+/* The disk is full, and no other folder is available, as after a reboot. Unwritten samples must be stored in the file that the
+   historian has reserved for this case, and recorded later. */
 CASE(a_full_disk_has_room_for_a_spool)
 {
     char *folder = temp_path(s->folder, "history");
@@ -622,7 +638,8 @@ CASE(a_full_disk_has_room_for_a_spool)
         print_message("# no file system can be mounted here\n");
         skip();
     }
-    /* a reserve file without its full size, as left by a process that is killed while creating it */
+    /* an empty reserve file, as left by a process that was killed before it gave the file its size; the historian must complete
+       it */
     char *reserve = temp_write_text(folder, "spool.reserve", "");
     char *spool = temp_path(folder, "unwritten.spool");
     struct stat st = { 0 };
@@ -642,7 +659,7 @@ CASE(a_full_disk_has_room_for_a_spool)
     assert_int_not_equal(access(reserve, F_OK), 0);
     assert_int_equal(unlink(filler), 0);
     start(s);
-    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++) /* waits until the historian has reserved disk space for the next spool */
+    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++) /* waits until the historian has created a new reserve file */
         sleep_ns(10 * NS_PER_MS);
     historian_stop(&s->historian);
     assert_int_not_equal(access(spool, R_OK), 0);
@@ -703,7 +720,8 @@ static size_t count_set_aside(struct historian_setup *s)
     return count;
 }
 
-/* This month's file is garbage when the daemon starts: it is set aside, and all new samples are recorded. */
+/* The file of the present month contains garbage when the daemon starts. The historian must move it aside and record all new
+   samples in a new file. */
 CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
 {
     char path[300], *folder = temp_path(s->folder, "history");
@@ -725,7 +743,8 @@ CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
     history_series_finish(&series);
 }
 
-/* Another process locks the database for more than a second: threads that write to the store or read it do not wait. */
+/* Another process locks the database file for more than a second. Threads that write to the store, or that read from it, must
+   not wait for that. */
 CASE(a_disk_that_hangs_holds_up_nobody)
 {
     char path[300];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* History queries: which are accepted, and that answers arrive in order with the recorded points. */
+/* History queries: which queries are accepted, and that answers contain the recorded points and arrive in the order of the
+   queries. */
 #include "tests/support/test.h"
 #include <jansson.h>
 
@@ -150,7 +151,7 @@ CASE(csv_has_quotes_where_it_needs_them)
     history_answer_free(&answer);
 }
 
-/* Records 20,000 points per tag, more than one part of an answer holds. */
+/* Records 20,000 points for each of two tags, more than one part of an answer can hold. */
 static void record_much(struct history_queries_setup *s)
 {
     struct history_tag *tags = history_tags(s->plant);
@@ -166,7 +167,8 @@ static void record_much(struct history_queries_setup *s)
     mem_free(tags);
 }
 
-/* A client that stops reading holds up its answer after one part while other requests continue; all parts together make one answer. */
+/* An answer is sent in parts, and each part only when the client asks for it. A client that stops reading thus delays only its
+   own answer. The parts together must be one valid answer. */
 CASE(long_answers_come_in_pieces)
 {
     struct history_query query = { .client = 7, .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
@@ -179,7 +181,7 @@ CASE(long_answers_come_in_pieces)
     struct history_answer *answer = wait_for(s, ++pieces);
     assert_true(answer->first && !answer->last && answer->length > 256 * 1024);
     sleep_ns(50 * NS_PER_MS);
-    assert_null(history_queries_collect(s->queries)); /* no further part until the client asks for it */
+    assert_null(history_queries_collect(s->queries)); /* there must be no second part before the client asks for it */
     for (;;) {
         bool last = answer->last;
         text_add_bytes(&all, answer->text, answer->length);
@@ -204,7 +206,7 @@ CASE(who_is_forgotten_leaves_room)
     for (int i = 0; i < 4 * HISTORY_QUERIES_MOST; i++) {
         query.client = (uint64_t)i + 1;
         assert_true(history_queries_ask(s->queries, &query));
-        /* forgets an earlier query, because the limit counts all queries whose answers are not yet collected */
+        /* cancels an earlier query, because queries count towards the limit until their answers are collected */
         if (i >= HISTORY_QUERIES_MOST - 2)
             history_queries_forget(s->queries, query.client - HISTORY_QUERIES_MOST + 2);
         for (struct history_answer *answer = history_queries_collect(s->queries), *next; answer; answer = next) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Images: encoded pictures decode to the original, large ones are scaled down, and truncated or oversized files are refused. */
+/* Images: decoding an encoded picture gives the original, large pictures are scaled down, and truncated or oversized files are
+   refused. */
 #include "base/image/image.h"
 
 #include "tests/support/test.h"
@@ -11,7 +12,7 @@ struct encoded {
     unsigned long size;
 };
 
-/* Makes a picture: left half red, right half green, with a blue gradient downwards. */
+/* Makes a picture whose left half is red and right half green, with blue increasing downwards. */
 static unsigned char *picture(uint32_t width, uint32_t height, int channels)
 {
     unsigned char *pixels = mem_array((size_t)width * height, (size_t)channels);
@@ -100,7 +101,7 @@ TEST(jpeg_comes_back_and_great_ones_shrink)
     free(jpeg.bytes);
 }
 
-/* Decodes an image of one row and expects these pixels. */
+/* Asserts that an image file decodes to one row of these RGBA pixels. */
 static void assert_row(const unsigned char *bytes, size_t size, const char *pixels, size_t pixel_bytes)
 {
     struct image image;
@@ -112,7 +113,7 @@ static void assert_row(const unsigned char *bytes, size_t size, const char *pixe
     mem_free(image.rgba);
 }
 
-/* The file says that its gamma is 1. glTF ignores that. */
+/* The PNG files state a gamma of 1, which must be ignored, as glTF demands. */
 TEST(palettes_and_16_bits_become_8_bits)
 {
     static const unsigned char rows[2][6] = { { 0, 1 }, { 0x80, 0x80, 0x12, 0x34, 0xff, 0xff } };
@@ -162,7 +163,7 @@ TEST(jpeg_in_cmyk_is_read)
 TEST(webp_is_read)
 {
     static const unsigned char webp[] = {
-        /* 8 x 8 pixels, a grey gradient encoded by libwebp */
+        /* WebP file of 8 x 8 pixels with a grey gradient, encoded by libwebp */
         82, 73, 70,  70,  70,  0,   0,   0,   87,  69,  66,  80,  86,  80,  56,  32,  58, 0,   0,   0,   176, 1,   0,  157, 1,  42,
         8,  0,  8,   0,   0,   0,   0,   37,  164, 0,   2,   231, 112, 175, 101, 144, 0,  254, 255, 255, 126, 117, 51, 255, 72, 70,
         57, 23, 217, 194, 201, 188, 230, 248, 223, 254, 144, 140, 113, 237, 235, 103, 99, 46,  31,  238, 147, 245, 63, 148, 0,  0,
@@ -182,7 +183,9 @@ TEST(cut_images_are_refused)
 {
     struct encoded all[] = { png_of(64, 64, 3), jpeg_of(64, 64) };
     for (int i = 0; i < 2; i++) {
-        for (size_t size = 0; size + 1 < all[i].size; size += 1 + size / 40) { /* a JPEG without its last byte is still complete */
+        /* tries prefixes of the file up to two bytes short of the end, because a JPEG without its last byte is still complete
+           */
+        for (size_t size = 0; size + 1 < all[i].size; size += 1 + size / 40) {
             struct image image;
             char why[IMAGE_WHY_BYTES] = "";
             if (image_decode(&image, all[i].bytes, size, 2048, why))

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The error bound for fields inside drawn triangles holds at random points for the worst possible readings. */
+/* Within a drawn triangle, the field is interpolated linearly between the corners. The reported bound of the resulting error is
+   compared with the true error at random points, for the readings that make this error largest. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -7,13 +8,16 @@
 #include "preprocess/influence/influence_bend.h"
 #include "tests/support/surface_case.h"
 
-/* MANY: enough sensors for more than one block of equations, the last block not full */
+/* FEW, MANY: numbers of sensors; MANY gives more than one block of equations, and the last block is not full. PLACES: number of
+   random points */
 enum { FEW = 5, MANY = 70, PLACES = 4000, MOST = 400000 };
 static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
-struct bend_case { /* a shape with coarse triangles, and random points in them at which the field is checked */
+struct bend_case { /* a shape with coarse triangles, and random points within these triangles at which the field is compared */
     struct cad shape;
-    float (*positions)[3], (*facing)[3]; /* by vertex, then by random point: position; normal (`facing`), unused for vertices */
+    /* positions: those of the vertices, followed by those of the random points; facing: normals in the same order, used for the
+       random points only */
+    float (*positions)[3], (*facing)[3];
     uint32_t tri[PLACES];
     double weights[PLACES][3], normals[PLACES][3];
 };
@@ -45,7 +49,7 @@ static void draw(struct bend_case *drawn)
     }
 }
 
-/* Adds a moved copy of another shape. */
+/* Adds a copy of another shape, moved by move_m, to the shape. */
 static void join(struct cad *shape, const struct cad *other, const double move_m[3])
 {
     const size_t vertices = shape->vertex_count + other->vertex_count, indices = 3 * (shape->triangle_count + other->triangle_count);
@@ -65,7 +69,7 @@ static void make_sphere(struct cad *shape)
     cad_sphere(shape, &chance, 7);
 }
 
-/* Makes a box that passes through a sphere's wall: a part of each lies inside the other. */
+/* Makes a sphere and a box that intersects its wall, so that a part of each lies inside the other. */
 static void make_crossing(struct cad *shape)
 {
     struct cad box = { 0 };
@@ -76,7 +80,7 @@ static void make_crossing(struct cad *shape)
     cad_finish(&box);
 }
 
-/* Makes the box through a sphere's wall with cracks, which the surface's repair bridges. */
+/* Makes the sphere and the box with gaps in their meshes, which the surface's repair bridges. */
 static void make_gaps(struct cad *shape)
 {
     struct cad clean = { 0 };
@@ -87,7 +91,8 @@ static void make_gaps(struct cad *shape)
     cad_finish(&clean);
 }
 
-/* Returns the worst error as a share of MAX - MIN: readings are MAX where that increases the error and MIN elsewhere, then vice versa. */
+/* Returns the largest error at a point that any readings between MIN and MAX can cause, as a share of MAX - MIN. The error is
+   largest if each reading is MAX or MIN, depending on the sign of its effect. */
 static double worst_at(const struct bend_case *drawn, const struct influence *influence, size_t place, double around)
 {
     double plus = 0, minus = 0;
@@ -126,7 +131,8 @@ struct case_of {
     size_t sensors;
 };
 
-/* Compares with a solution on much smaller triangles, taken as exact; the drawn field may differ from it by the errors at the corners. */
+/* Compares the drawn field with a solution on much smaller triangles, which counts as exact. The difference may exceed the
+   bound by the errors at the triangle's corners. */
 static void compare_finer(const struct case_of *of, const struct bend_case *drawn, const struct surface *surface,
                           const double (*places_m)[3], const struct vertex_embedding *embedding, const float *errors)
 {
@@ -204,8 +210,8 @@ static void holds(const struct case_of *of)
         if (!surface_find_point_within(surface, place_m, drawn.normals[i], ON_SURFACE_M, &hit)) {
             hidden_m2 += surface_find_point_within(surface, place_m, drawn.normals[i], surface_report(surface)->tolerance_m, &hit)
                              ? 0
-                             /* area of points hidden inside the other body; points near the surface are not counted, because
-                                bridging may have moved them there */
+                             /* Sums the area of the points that are hidden inside the other body. Points near the surface count
+                                0, because bridging of gaps may have moved them. */
                              : area_m2;
             continue;
         }
@@ -217,7 +223,8 @@ static void holds(const struct case_of *of)
     print_message("said: %.3f steps; seen: %.3f; nearest to what was said of its triangle: %.3f; %zu places, hidden %.3f (%.3f of the "
                   "places), %.2g unknown\n",
                   report.steps, worst, nearest, bend.count, report.hidden_share, hidden_m2 / whole_m2, report.unknown_share);
-    /* the field inside triangles is curved enough to test the bound, and the reported bound is not much larger than the errors */
+    /* no error exceeds the reported bound; at some point the error is more than 80 % of the bound, and more than one colour
+       step, so the test is a sharp one */
     assert_true(worst <= report.steps + 0.02 && nearest > 0.8 && worst > 1);
     assert_true(report.measured == 1 && report.unmeasured == 0 && report.over_share > 0);
     assert_true(report.unknown_share < 0.01 && fabs(report.hidden_share - hidden_m2 / whole_m2) < 0.04);
@@ -264,7 +271,7 @@ TEST(test_bridged_cracks)
     holds(&(struct case_of){ make_gaps, solve_fin, 0.2, FEW });
 }
 
-/* Triangles that lie off the surface have an unknown error. */
+/* If drawn triangles do not lie on the prepared surface, their error must be reported as unknown. */
 TEST(test_what_is_not_on_the_surface_is_unknown)
 {
     const double places_m[1][3] = { { 1, 0, 0 } };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Influence by conduction compared with formulas: a rod, a fin, a sphere; lost sensors; difficult positions. */
+/* Interpolation by heat conduction (influence of each sensor on each vertex), compared with formulas for a rod, a fin and a
+   sphere. Also tests lost sensors and difficult positions. */
 #include "tests/support/test.h"
 
 #include "field/influence_fill.h"
@@ -49,7 +50,7 @@ static void finish(struct influence_case *s)
     cad_finish(&s->shape);
 }
 
-/* A strip 10 m long and 0.1 m wide acts as a rod: each sensor covers its whole width. */
+/* Size of a strip that conducts heat like a rod, because each sensor's disc covers the strip's whole width. */
 #define STRIP_M 10.0
 #define WIDTH_M 0.1
 #define DISC_M 0.1
@@ -60,7 +61,7 @@ static void make_strip(struct influence_case *s)
     cad_plate(&s->shape, &chance, 200, 3, STRIP_M, WIDTH_M, 0);
 }
 
-/* half of the length that a disc covers along the strip, averaged over the strip's width */
+/* half the length of the strip that a sensor's disc covers, averaged over the strip's width */
 static const double covered_m = 0.0957;
 
 TEST(test_rod_is_straight_between_sensors)
@@ -82,8 +83,8 @@ TEST(test_rod_is_straight_between_sensors)
     finish(&s);
 }
 
-/* Between two sensors the field is a combination of sinh, beyond the last one exp: Incropera, Fundamentals of Heat and Mass
-   Transfer, 3.6. */
+/* In a fin (rod that loses heat to the air), the field between two sensors is a combination of sinh, and beyond the last sensor
+   it falls exponentially: Incropera, Fundamentals of Heat and Mass Transfer, 3.6. */
 TEST(test_fin_falls_by_its_decay_length)
 {
     struct influence_case s = { 0 };
@@ -105,7 +106,8 @@ TEST(test_fin_falls_by_its_decay_length)
     finish(&s);
 }
 
-/* On a sphere the temperature between two caps is linear in ln tan(theta / 2). */
+/* Two sensors at the poles of a sphere, each a cap of constant temperature. Between them the exact temperature is linear in ln
+   tan(theta / 2), where theta is the angle from the pole. */
 TEST(test_sphere_between_caps)
 {
     struct influence_case s = { 0 };
@@ -128,13 +130,14 @@ TEST(test_sphere_between_caps)
 /* --- errors of the field drawn inside triangles --------------------------------------------------------------------------------- */
 
 struct tally {
-    /* in colour steps: largest error at a point inside a triangle; largest excess of an error over the one reported for the
-       triangle's corners */
+    /* in colour steps: worst: largest error at a point inside a triangle; beyond: largest excess of an error over the error
+       reported at the triangle's corners */
     double worst, beyond;
     size_t compared, marked;
 };
 
-/* Compares points inside triangles with the exact solution, which is NAN at points to skip. spread: range of the readings. */
+/* Compares random points inside triangles with the function `exact`, which returns NAN for points to skip. spread: range of the
+   readings, for which the error is scaled. */
 static void tally_places(const struct influence_case *s, const double *readings, double spread, double (*exact)(const double at[3]),
                          struct tally *tally)
 {
@@ -159,10 +162,12 @@ static void tally_places(const struct influence_case *s, const double *readings,
     }
 }
 
-/* Between points NEAR_M away from two sensors, a fin is the sum of two sinh terms, determined by the values at those points. */
+/* Distance from the sensors within which points are not compared. Between the two points at this distance, the exact field of a
+   fin is a sum of two sinh terms, which the field's values at these points determine. */
 #define NEAR_M 0.4
 static struct {
-    /* decay length of the fin; the field's values at x = 1 + NEAR_M and x = 5 - NEAR_M, between sensors at 1 and 5 */
+    /* decay_m: decay length of the fin; low, high: the field's values at x = 1 + NEAR_M and x = 5 - NEAR_M, between the sensors
+       at x = 1 and 5 */
     double decay_m, low, high;
 } fin;
 
@@ -183,8 +188,8 @@ static double value_near(const struct influence_case *s, const double *readings,
     return influence_value(&s->influence, readings, best);
 }
 
-/* A fin on triangles shorter than its decay length is accurate and not marked. On triangles 2 m long it is inaccurate and
-   marked, even where the finite elements are too large as well (decay 0.2 m). */
+/* A fin on triangles that are short compared with its decay length must be accurate and not marked uncertain. On triangles that
+   are too long it must be marked, even where the finite elements themselves are too large (decay length 0.2 m). */
 TEST(test_fin_on_long_triangles_is_marked)
 {
     static const struct {
@@ -214,7 +219,7 @@ TEST(test_fin_on_long_triangles_is_marked)
     finish(&fine);
 }
 
-static double log_slope; /* exact solution between two caps: slope of the temperature over ln tan(theta / 2) */
+static double log_slope; /* slope of the exact temperature between the caps over ln tan(theta / 2), see exact_sphere() */
 
 static double exact_sphere(const double at[3])
 {
@@ -222,7 +227,8 @@ static double exact_sphere(const double at[3])
     return theta < 0.3 || theta > M_PI - 0.3 ? (double)NAN : 0.5 + log_slope * log(tan(theta / 2));
 }
 
-/* The size of the caps depends on the vertices within the discs, so a fine sphere gives the reference slope between the caps. */
+/* Spheres with coarse triangles show the field inexactly and must be marked uncertain. The reference slope comes from a fine
+   sphere, because the effective size of the caps depends on the vertices within the sensors' discs. */
 TEST(test_coarse_spheres_are_marked)
 {
     const double places_m[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
@@ -279,7 +285,8 @@ TEST(test_readings_are_met)
     finish(&s);
 }
 
-/* A lost sensor leaves the field as if the sensor had never existed, except for a small effect of its conducting disc. */
+/* The field without a lost sensor's reading must equal the field of a plant that never had this sensor, except for a small
+   effect of the lost sensor's disc, which still conducts. */
 TEST(test_lost_sensor_leaves_the_field_of_the_others)
 {
     struct influence_case all = { 0 }, others = { 0 };
@@ -330,13 +337,14 @@ TEST(test_one_sensor_and_bodies_apart)
     finish(&s);
 }
 
-/* More than one block of right-hand sides, the last one smaller; the block size on one thread differs from that on several. */
+/* Solves for so many sensors that there are several blocks of right-hand sides, of which the last is smaller. The result must
+   be the same on one thread and on several, which use blocks of different size. */
 TEST(test_many_sensors_are_solved_in_blocks)
 {
     enum { MANY = 75 };
     struct influence_case s = { 0 };
     double places[MANY][3], ones[MANY];
-    for (size_t i = 0; i < MANY; i++) { /* sensor positions on a spiral from pole to pole */
+    for (size_t i = 0; i < MANY; i++) { /* spreads the sensors evenly over the sphere, on a spiral from pole to pole */
         double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);
         memcpy(places[i], (const double[3]){ across * cos(turn), across * sin(turn), z }, sizeof(places[i]));
         ones[i] = 1;
@@ -359,7 +367,7 @@ TEST(test_many_sensors_are_solved_in_blocks)
     finish(&s);
 }
 
-/* Sensors on a body that has lost all of its sensors get no value. */
+/* If all sensors of a body are lost, influence_fill_values() must set their values to 0. */
 TEST(test_all_lost)
 {
     const double precision[4] = { 1, -1, -1, 1 };

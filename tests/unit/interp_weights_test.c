@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Weighted sums over sensors compared with plain loops in double precision. */
+/* Interpolation weights of sensors by distance, computed with vector instructions, compared with plain loops in double
+   precision. */
 #include "preprocess/subdivision/interp_weights.h"
 
 #include "tests/support/test.h"
@@ -20,7 +21,8 @@ static bool takes_part(const struct weights_trial *trial, double near_m, double 
     return isfinite(d) && (d < (double)trial->group.reach_m || d <= near_m);
 }
 
-/* Returns the factor by which a sensor's weight fades towards its reach; 1 for the nearest sensor. */
+/* Returns the factor by which the weight of a sensor at distance d is reduced when d approaches the reach; 1 for the nearest
+   sensor, 0 beyond the reach. */
 static double faded(const struct weights_trial *trial, double near_m, double d)
 {
     double reach_m = (double)trial->group.reach_m;
@@ -37,14 +39,15 @@ static double least_of(const struct weights_trial *trial)
     return near_m;
 }
 
-/* Returns the relative change of a weight per metre that is due to fading. */
+/* Returns the relative change of a weight per metre of distance that is due to the factor of faded(). */
 static double fading(const struct weights_trial *trial, double d)
 {
     double reach_m = (double)trial->group.reach_m;
     return isinf(reach_m) ? 0 : 2 / fmax(1e-5, reach_m - d);
 }
 
-/* Draws random distances from a point to sensors, some beyond the reach and some zero. */
+/* Fills the trial with random distances from a point to sensors. Some sensors are beyond the reach or cannot be reached, and
+   some have distance zero. */
 static void make(struct weights_trial *trial, bool decays)
 {
     trial->count = 1 + (size_t)(cad_random(&chance) * (MOST - 8));
@@ -133,8 +136,8 @@ TEST(papers_shares_are_those_of_a_plain_loop)
     }
 }
 
-/* The bound on how fast the value changes with the sensor distances holds for any readings and random distances, as long as no
-   sensor crosses its radius. */
+/* interp_paper() returns a bound on how fast the value changes with the distances to the sensors. For random distances and any
+   readings the bound must hold, as long as no sensor crosses its radius. */
 TEST(no_value_changes_faster_than_is_said)
 {
     for (int n = 0; n < 2000; n++) {
@@ -148,11 +151,13 @@ TEST(no_value_changes_faster_than_is_said)
         for (size_t i = 0; i < trial.count; i++) {
             if (trial.distance_m[i] < radius_m)
                 trial.distance_m[i] = fminf(fmaxf(trial.distance_m[i], step_m), 0.95f * radius_m);
-            /* within a fifth of the reach, the weight changes slowly at first and then faster */
+            /* moves sensors out of the fifth below and above the reach, because there the weight changes slowly at first and
+               then faster */
             if (fabsf(trial.distance_m[i] - reach_m) < 0.2f * reach_m)
                 trial.distance_m[i] = i % 2 ? 0.8f * reach_m : 1.2f * reach_m;
         }
-        if (least_of(&trial) > (double)reach_m) /* no sensor is within reach: the nearest one gets all the weight */
+        /* skips cases without a sensor within reach, in which the nearest sensor alone determines the value */
+        if (least_of(&trial) > (double)reach_m)
             continue;
         float said = interp_paper(&trial.group, radius_m, trial.distance_m, shares[0]);
         for (size_t i = 0; i < trial.count; i++)

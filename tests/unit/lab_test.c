@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shaded colours: only lightness changes, by at most the allowed amount, and never outside sRGB. */
+/* Colours that are shaded in CIELAB: shading changes only their lightness, by at most the requested amount, and never leaves
+   sRGB. */
 #include "tests/support/test.h"
 
 #include "plant/colormaps.h"
@@ -43,12 +44,12 @@ TEST(test_no_shading_leaves_the_color)
         uint8_t out[3];
         lab_shade(colors[i], 0, out);
         assert_memory_equal(out, colors[i], 3);
-        lab_shade(colors[i], 7, out); /* at the limit of sRGB: as far as the gamut permits */
+        lab_shade(colors[i], 7, out); /* a colour at the limit of sRGB is shaded only as far as sRGB permits, here not at all */
         assert_true(i != 1 || memcmp(out, colors[i], 3) == 0);
     }
 }
 
-/* The shading that the colour map files declare is the most that their colours allow. */
+/* The amount of shading that each colour map file declares must equal the largest amount that its colours allow. */
 TEST(test_shading_and_safety)
 {
     for (size_t m = 0; m < colormap_count(NULL); m++) {

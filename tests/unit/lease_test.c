@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two nodes must never lead at once. Simulates three nodes and a database at random: lost connections, delayed messages, clocks
-   that drift apart, nodes that are killed, paused for seconds or restarted, and nodes that shut down in good order, which gives
-   up the lease. */
+/* The lease, by which one node leads: two nodes must never lead at once. Simulates three nodes and a database with random
+   faults: lost connections, delayed messages, clocks that drift apart, and nodes that are killed, paused for seconds or
+   restarted. Nodes may also shut down in good order and then give up the lease. */
 #include "tests/support/test.h"
 
 #include "corelink/lease.h"
@@ -9,11 +9,11 @@
 #define MS INT64_C(1000000)
 #define S (1000 * MS)
 enum { NODES = 3, FLIGHTS = 512, STEP_MS = 10 };
-#define PATIENCE_NS S /* nanoseconds after which a node stops waiting for the database */
+#define PATIENCE_NS S /* time after which a node gives up waiting for an answer of the database */
 
 enum what { LOOK, BID, RENEW, GIVE, ROW, DONE, ASK, PROMISE };
 struct flight { /* a message on its way */
-    int64_t at_ns; /* arrival time of the message on the simulation's clock; 0: this entry is free */
+    int64_t at_ns; /* simulation time at which the message arrives; 0: this entry of the array is unused */
     enum what what;
     int from, to;  /* index of the sending and of the receiving node; NODES: the database */
     /* id of the process that sends or receives the message: a restarted node is a new process and must not get old answers */
@@ -33,7 +33,7 @@ struct lease_node {
     bool waits;
     bool alone; /* true: the standby of this node is in maintenance, so the leader needs no promise from it */
     int64_t waits_since_ns;
-    /* simulation time at which the node, having tried to give up its lease in good order, ends; 0: it does not end */
+    /* simulation time at which a node ends that is shutting down and tries to give up its lease; 0: it is not shutting down */
     int64_t ends_ns;
     int times_led;
 };
@@ -48,7 +48,7 @@ struct lease_world {
     uint64_t lives;
     unsigned seed;
     bool calm;
-    int most;      /* largest number of nodes that acted as leader at the same time */
+    int most;      /* largest number of nodes that led at the same time; must not exceed 1 */
     int takes;     /* number of nodes that became leader within LEASE_NS after another gave up its lease */
     int64_t given_ns; /* simulation time when a leader last gave up its lease */
 };
@@ -87,7 +87,7 @@ static void start(struct lease_world *world, int i)
     node->life = ++world->lives;
     node->waits = false;
     node->ends_ns = 0;
-    node->rate = 1 + (chance(world, 400) - 200) / 10000.0; /* clocks drift by up to two percent */
+    node->rate = 1 + (chance(world, 400) - 200) / 10000.0; /* the node's clock is up to 2 % fast or slow */
     node->ahead_ns = chance(world, 1000000) * MS;
     lease_init(&node->lease, name, (int64_t)node->life);
 }
@@ -134,7 +134,7 @@ static void change(struct lease_world *world, struct flight *flight)
 static void on_database(struct lease_world *world, struct flight *flight)
 {
     struct flight asked = *flight;
-    if (world->now_ns < world->frozen_ns) { /* the database is frozen: it handles the message when it wakes up */
+    if (world->now_ns < world->frozen_ns) { /* a frozen database handles messages only after it wakes up */
         flight->at_ns = world->frozen_ns + 1;
         return;
     }
@@ -149,7 +149,7 @@ static void on_database(struct lease_world *world, struct flight *flight)
     answer->good = asked.good;
     answer->sent_ns = asked.sent_ns;
     memcpy(answer->standby, asked.standby, sizeof(answer->standby));
-    answer->from = asked.what; /* kind of the question that this message answers */
+    answer->from = asked.what; /* type of the request that this message answers */
 }
 
 /* --- a node --------------------------------------------------------------------------------------------------------------------- */
@@ -185,7 +185,7 @@ static void on_node(struct lease_world *world, struct lease_node *node, int i, c
         struct flight *promise = send(world, PROMISE, i, flight->from);
         if (promise) {
             promise->sent_ns = flight->sent_ns;
-            promise->life = flight->life; /* id of the process that requested the promise not to bid */
+            promise->life = flight->life; /* id of the process that requested the promise */
         }
         break;
     case PROMISE: {
@@ -197,7 +197,7 @@ static void on_node(struct lease_world *world, struct lease_node *node, int i, c
     }
 }
 
-/* Returns the node that leader i is connected to: the first that it can reach, or -1. */
+/* Returns the first node that leader i can reach, which serves as its standby, or -1 if there is none. */
 static int follower_of(const struct lease_world *world, int i)
 {
     for (int k = 0; k < NODES; k++)
@@ -211,7 +211,9 @@ static void ask_database(struct lease_world *world, struct lease_node *node, int
     struct flight *flight = send(world, what, i, NODES);
     node->waits = true;
     node->waits_since_ns = world->now_ns;
-    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* the time of sending differs between restarts of a node */
+    /* adds a few nanoseconds that depend on the process, so that requests of different processes of a node have different times
+       */
+    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7;
     if (!flight)
         return;
     flight->row = node->lease.row;
@@ -226,7 +228,7 @@ static void lead(struct lease_world *world, struct lease_node *node, int i)
     const char own[2] = { (char)('a' + i), 0 }, other[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
     const char *name = node->alone ? own : other;
     lease_promised(&node->lease, own, clock_of(world, node));
-    /* the node may have lost the answer to its last request, so now and then it reads the row to find out */
+    /* Now and then the node reads the row instead of renewing, because it may have lost the answer to its last request. */
     if (!node->waits && chance(world, 10) == 0 && node->sent_ns && !world->calm) {
         ask_database(world, node, i, LOOK, "");
     } else if (!node->waits) {
@@ -252,7 +254,8 @@ static void follow(struct lease_world *world, struct lease_node *node, int i)
     }
 }
 
-/* Gives the lease to a reachable node, or to any node. After a failed attempt the node reads the row and tries again. */
+/* Lets a node that shuts down give its lease to a standby that it can reach, or else to any node. Half of the attempts only
+   read the row, so that the node can try again after a failed attempt. */
 static void give(struct lease_world *world, struct lease_node *node, int i)
 {
     int follower = follower_of(world, i);
@@ -270,7 +273,7 @@ static void run_node(struct lease_world *world, int i)
         start(world, i);
     if (!node->life)
         return;
-    /* the kernel ends a node whose lease has run out; the keeper ends one that finds another leader in the row */
+    /* Ends a leader whose lease has expired, and a node that has found another leader in the row, as the daemon does. */
     if (node->lease.lost || (node->lease.leads && !lease_acts(&node->lease, clock_of(world, node)) && node->lease.until_ns)) {
         end(world, node);
         return;
@@ -301,7 +304,8 @@ static void deliver(struct lease_world *world, struct flight *flight)
         on_database(world, flight);
         return;
     }
-    /* the current process of a node answers whether the node promises not to bid, even after a restart */
+    /* requests for a promise are answered by the node's present process, even if the node was restarted meanwhile; other
+       messages only reach the process that they were sent to */
     bool asks = flight->what == ASK;
     if (node->life && world->now_ns < node->wakes_ns) {
         flight->at_ns = node->wakes_ns + 1;
@@ -409,8 +413,8 @@ TEST(a_follower_waits_for_what_binds_it)
 {
     const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
     struct lease b = follower("b", &free_row, S);
-    /* The row names no leader: either the leader gave up the lease, or the database is new and empty. Core b cannot tell which,
-       so it waits. */
+    /* The row names no leader: the leader has given up the lease, or the database is new and empty. Node b cannot tell which,
+       so it must wait 3 s before it may bid. */
     assert_false(lease_may_bid(&b, 4 * S - 1));
     assert_true(lease_may_bid(&b, 4 * S));
     b = follower("b", &led, 10 * S);
@@ -428,7 +432,7 @@ TEST(a_follower_waits_for_what_binds_it)
     struct lease c = follower("c", &led, 10 * S);
     assert_false(lease_may_bid(&c, 1000 * S)); /* b may have promised */
     struct lease a = follower("a", &led, 10 * S);
-    assert_true(lease_may_bid(&a, 13 * S)); /* node a, restarted, may bid for its own lease */
+    assert_true(lease_may_bid(&a, 13 * S)); /* a restarted process of node a may bid for the lease that a had */
 }
 
 TEST(a_leader_counts_the_standby_that_the_row_names)
@@ -446,7 +450,8 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     lease_promised(&a, "b", 3 * S);
     assert_true(lease_acts(&a, 5 * S - 1));
     lease_renew(&a, "");
-    /* the promise of standby b does not count: a renewal under way may already have removed it from the row */
+    /* b's promise must not extend the lease: the renewal under way removes b as the standby from the row, perhaps already done
+       */
     lease_promised(&a, "b", 4 * S);
     assert_false(lease_acts(&a, 5 * S));
     struct lease_row other = a.row;
@@ -475,7 +480,8 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     given.beat++;
     given.leader[0] = 0;
     lease_saw(&b, &given, 2 * S + 1);
-    assert_true(lease_may_bid(&b, 2 * S + 1)); /* b had only promised not to bid against a, and a has given up the lease */
+    /* b may bid at once: its promise was valid only while a had the lease, and a has given it up */
+    assert_true(lease_may_bid(&b, 2 * S + 1));
     lease_saw(&c, &given, 2 * S + 1);
     assert_false(lease_may_bid(&c, 5 * S));
     assert_true(lease_may_bid(&c, 5 * S + 1)); /* b may have ended */
@@ -483,12 +489,12 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     assert_false(a.lost);
     assert_false(lease_may_bid(&a, 100 * S)); /* a ends */
     struct lease late = follower("b", &given, 3 * S), other = follower("b", &none, 3 * S);
-    /* `late` has seen only this row, which may be an old one from a restored database, so it waits */
+    /* `late` has seen no other row, so this one may be an old row of a restored database, and `late` must wait */
     assert_false(lease_may_bid(&late, 3 * S));
     lease_saw(&other, &given, 3 * S);
     assert_false(lease_may_bid(&other, 3 * S));
     assert_true(lease_may_bid(&other, 6 * S));
-    given.beat++; /* c has become leader and renewed its lease */
+    given.beat++; /* the row after c has become leader; b must not bid any more */
     given.epoch++;
     memcpy(given.leader, "c", 2);
     lease_saw(&b, &given, 4 * S);
@@ -521,22 +527,26 @@ TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
     lease_bid(&a);
     lease_won(&a, S);
     lease_promised(&a, "a", 2 * S);
-    assert_false(lease_acts(&a, 3 * S)); /* a is its own standby in maintenance, but the row in the database does not say so yet */
+    /* during maintenance a is its own standby, but the row in the database does not say so yet, so a's promise to itself does
+       not count */
+    assert_false(lease_acts(&a, 3 * S));
     lease_renew(&a, "a");
     lease_renewed(&a, "a", 2 * S);
-    /* a, its own standby during maintenance, promises itself not to bid: that extends its lease even without the database */
+    /* now the row names a as its own standby: its promise to itself extends the lease even if the database cannot be reached */
     lease_promised(&a, "a", 100 * S);
     assert_true(lease_acts(&a, 102 * S - 1));
-    assert_false(lease_acts(&a, 102 * S)); /* a process that hangs makes no further promise, so its lease ends */
+    assert_false(lease_acts(&a, 102 * S)); /* the lease expires if the promise is not repeated, as by a process that hangs */
     struct lease b = follower("b", &a.row, 10 * S), restarted = follower("a", &a.row, 10 * S);
     assert_false(lease_may_bid(&b, 1000 * S));
     assert_true(lease_may_bid(&restarted, 13 * S));
-    lease_renew(&a, "b"); /* maintenance ends: b may lead as soon as the row names b */
+    /* maintenance ends: from this request on the row may name b as standby, so a's promise to itself no longer counts */
+    lease_renew(&a, "b");
     lease_promised(&a, "a", 101 * S);
     assert_false(lease_acts(&a, 102 * S));
 }
 
-/* A restored database has an old row of the same leader: some node may take the lease next without having seen the leader's later row. */
+/* The database was restored from a backup and has an earlier row of the same leader. Another node may take the lease on the
+   basis of that row, so the leader must stop leading. */
 TEST(a_leader_whose_row_is_of_another_epoch_has_lost_it)
 {
     const struct lease_row none = { 0 };
@@ -560,7 +570,8 @@ TEST(a_bid_whose_answer_is_lost_is_found_in_the_row)
     struct lease_row won = { .epoch = 1, .beat = 1, .instance = 7, .leader = "a" };
     lease_saw(&a, &won, 2 * S);
     assert_true(a.leads);
-    assert_false(lease_acts(&a, 2 * S)); /* node a does not know when its bid was accepted, so it may not act before a renewal */
+    /* a does not know when the database accepted its bid, so it must not lead before it has renewed the lease */
+    assert_false(lease_acts(&a, 2 * S));
     lease_renewed(&a, "", 2 * S);
     assert_true(lease_acts(&a, 2 * S));
 }

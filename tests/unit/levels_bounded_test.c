@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edge collapses within an error bound: few triangles remain, none deviates by more than the bound, and borders and seams stay in place. */
+/* Simplification by edge collapses with a bound on the error: few triangles remain, none deviates by more than the bound, and
+   borders and seams stay in place. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -8,7 +9,7 @@
 
 #define ROUND 96u /* corners of a circle */
 
-struct bounded_shape { /* an asset with one part, whose triangles have one or two materials */
+struct bounded_shape { /* a mesh to be simplified, of one part whose triangles have one or two materials */
     struct geometry g;
     struct welds welds;
     struct trimesh mesh;
@@ -78,8 +79,8 @@ static void shape_finish(struct bounded_shape *s)
     mem_free(s->corners);
 }
 
-/* Returns the largest distance between the model's corners and the simplified mesh, or between centres of the remaining
-   triangles and the model, by brute force. */
+/* Returns the deviation by brute force: the larger of the largest distance from the model's vertices to the simplified mesh and
+   the largest distance from the centres of its triangles to the model. */
 static double stray(const struct bounded_shape *s)
 {
     size_t count = bounded_count(s->bounded);
@@ -115,7 +116,8 @@ static double angle_of(uint32_t i)
     return 2 * acos(-1) * i / ROUND;
 }
 
-/* A flat disc of radius 1 m: a polygon within half of the error needs n corners, hence n - 2 triangles. */
+/* A flat disc of radius 1 m. A polygon that deviates by at most half of the error has a known number n of corners, so about n -
+   2 triangles must suffice. */
 TEST(a_disc_takes_few_triangles)
 {
     for (double error_m = 0.005; error_m < 0.2; error_m *= 2) {
@@ -136,7 +138,8 @@ TEST(a_disc_takes_few_triangles)
     }
 }
 
-/* A bent tube of rings, open at both ends: no coarser level has more triangles than the one before, and each stays within its error. */
+/* A bent tube with open ends is simplified with larger and larger errors. No result may have more triangles than the one
+   before, and each must keep its error. */
 TEST(errors_grow_with_what_is_asked)
 {
     struct bounded_shape s;
@@ -166,7 +169,7 @@ TEST(errors_grow_with_what_is_asked)
     shape_finish(&s);
 }
 
-/* Returns how many edges lack a triangle on one of their sides. */
+/* Returns the number of edges that belong to one triangle only. */
 static size_t count_open(const struct bounded_shape *s)
 {
     size_t count = 3 * bounded_count(s->bounded), open = 0;
@@ -186,7 +189,8 @@ static size_t count_open(const struct bounded_shape *s)
     return open;
 }
 
-/* Tori with more and more corners stay closed, and no edge gets four triangles, even if the allowed error exceeds the tube's thickness. */
+/* Tori whose tubes have 5 to 12 corners must stay closed, and no edge may get four triangles, even if the allowed error exceeds
+   the tube's thickness. */
 TEST(what_is_closed_stays_so)
 {
     for (uint32_t around = 5; around <= 12; around++) {
@@ -216,7 +220,8 @@ TEST(what_is_closed_stays_so)
     }
 }
 
-/* Two materials meet along a wavy line on one plate: the border stays within half of the error, and no triangle lies on both materials. */
+/* A plate on which two materials meet along a wavy line. The line may move by at most half of the error, and no triangle may
+   cover both materials. */
 TEST(seams_stay)
 {
     struct bounded_shape s;
@@ -249,7 +254,8 @@ TEST(seams_stay)
         const uint32_t *v = left + 3 * t;
         uint32_t primitive = s.welds.primitive[v[0]];
         assert_true(primitive == s.welds.primitive[v[1]] && primitive == s.welds.primitive[v[2]]);
-        /* 20 points along each edge must lie on the triangle's own side of the wavy border, within the border's tolerance */
+        /* tests 20 points along each edge: each must lie on its material's side of the wavy line, within the allowed deviation
+           */
         for (uint32_t k = 0; k <= 20; k++) {
             for (int e = 0; e < 3; e++) {
                 const float *a = s.welds.positions_m[v[e]], *b = s.welds.positions_m[v[(e + 1) % 3]];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rods near thin sheets are joined to the side of the sheet that faces them, within the tolerance, and never through the sheet. */
+/* Rods close to a thin sheet, within the tolerance for bridging gaps. A rod must be joined to the side of the sheet that faces
+   it, and never through the sheet to the other side. */
 #include "surface/repair/line_of_sight.h"
 
 #include "tests/support/test.h"
@@ -12,14 +13,14 @@
 #define CELL 0.025
 #define WIDE (ACROSS * CELL) /* of the sheet, m */
 #define HIGH (UP * CELL)
-#define TOLERANCE 5.5e-4    /* metres; lower bound of the tolerance chosen for these shapes */
-#define TOLERANCE_MOST 1e-3 /* upper bound of the tolerance, which depends on the rotation */
+#define TOLERANCE 5.5e-4    /* smallest tolerance in metres that the surface's repair chooses for these shapes */
+#define TOLERANCE_MOST 1e-3 /* largest one in metres; it depends on the shape's rotation */
 #define ALONG 16            /* cells of the rod */
-#define OFF 0.02            /* metres; allowed error of distances of 0.5 m or more; a rod joined to the wrong side exceeds it */
+#define OFF 0.02            /* metres; allowed error of the distances. If a rod is joined to the wrong side, the error is larger */
 
-struct sheet_and_rod { /* a sheet with its lower side at z = 0, and a rod along x, above or beside it */
+struct sheet_and_rod { /* a sheet whose lower side is at z = 0, and a rod along x, which lies above it, below it, or next to its rim */
     struct cad cad;
-    size_t sheet_count; /* vertices of the sheet; all further ones belong to the rod */
+    size_t sheet_count; /* number of vertices of the sheet, which come first; all others belong to the rod */
     double thick, rod, source[3];
 };
 
@@ -31,8 +32,8 @@ static void stretch(struct cad *cad, size_t from, double x, double y, double z, 
             cad->positions[v][axis] = (float)((double)cad->positions[v][axis] * by[axis] + low[axis]);
 }
 
-/* Makes the sheet and the rod. low: the rod's lowest corner. The source is in the middle of the rod's side that faces away from
-   the sheet. */
+/* Makes a sheet and a rod of these thicknesses. low: the rod's lowest corner; source: point from which distances are computed,
+   on the rod's side that faces away from the sheet. */
 static void make_pair(struct sheet_and_rod *pair, double thick, double rod, const double low[3], const double source[3])
 {
     *pair = (struct sheet_and_rod){ .thick = thick, .rod = rod };
@@ -47,7 +48,7 @@ static void make_pair(struct sheet_and_rod *pair, double thick, double rod, cons
     cad_finish(&bar);
 }
 
-/* Returns the distance from p on one side of the sheet to q on the other side, around its nearest rim. */
+/* Returns the distance from p on one side of the sheet to q on the other side, on the shortest way around a rim. */
 static double way_round(const struct sheet_and_rod *pair, const double p[3], const double q[3])
 {
     double least = INFINITY;
@@ -59,11 +60,11 @@ static double way_round(const struct sheet_and_rod *pair, const double p[3], con
     return least;
 }
 
-/* Checks distances from the rod to both sides of the sheet. pieces: 1 if the rod must be joined to the sheet, 2 if it must stay
-   separate. beside: the rod lies along a rim. */
+/* Compares distances from the rod to both sides of the sheet with the exact ones. below: the rod is below the sheet; beside: it
+   lies along a rim; pieces: expected number of components, 1 if the rod is joined to the sheet, 2 if it stays separate. */
 static void test_pair(const char *name, const struct sheet_and_rod *pair, bool below, bool beside, size_t pieces)
 {
-    /* no faults with gaps: gaps would be as wide as the sheet is thick */
+    /* without CAD_GAPS, whose gaps would be as wide as the sheet is thick */
     static const enum cad_fault faults[] = { CAD_CLEAN, CAD_SOUP, CAD_REPEATED };
     for (size_t i = 0; i < sizeof(faults) / sizeof(faults[0]); i++) {
         struct cad broken;
@@ -100,7 +101,8 @@ static void test_pair(const char *name, const struct sheet_and_rod *pair, bool b
     }
 }
 
-/* Half of the sheet's thickness is less than the gap, and its far side is within the tolerance too. */
+/* The sheet is so thin that its far side is within the tolerance too, and the gap may be wider than half its thickness. The rod
+   must be joined to the near side. */
 TEST(a_rod_is_joined_to_the_side_that_looks_at_it)
 {
     static const double gaps[] = { 0, 0.4, 0.6 }; /* tolerances */
@@ -129,7 +131,7 @@ TEST(a_rod_farther_than_the_tolerance_hangs_apart)
     }
 }
 
-/* A rod beside the rim of a sheet, where both sides of the sheet are equally near, is joined to the rim. */
+/* A rod next to the rim of a sheet is equally near to both sides, so it must be joined to the rim itself. */
 TEST(a_rod_is_joined_to_the_rim)
 {
     static const double gaps[] = { 0, 0.4, 0.8 };

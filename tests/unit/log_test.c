@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The log in its formats, and datagrams to a service manager. */
+/* Log lines in each format, and the datagrams to a service manager (sd_notify). */
 #include "base/log/log.h"
 
 #include "tests/support/test.h"
@@ -43,7 +43,7 @@ static size_t receive(const struct socket_place *place, char *out, size_t size)
     return count > 0 ? (size_t)count : 0;
 }
 
-/* Returns what the log writes to stderr for this event; free with free(). */
+/* Logs an event, and returns what the log wrote to stderr. The caller frees the text with free(). */
 static char *written(enum log_format format, const char *socket_path, enum log_level level, enum log_event event, const char *message)
 {
     fflush(stderr);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loop checks survive a restart, become void once the tag measures something else, and no line of the file is ever lost. */
+/* Loop checks (comparisons of a displayed value with the instrument): they survive a restart, become void if the tag measures
+   something else afterwards, and no line of their file is lost. */
 #include "loopcheck/loop_checks.h"
 
 #include "tests/support/test.h"
@@ -110,7 +111,8 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
         assert_true(loop_checks_unproven(f->loop_checks, 0));
     }
     *tag = was;
-    tag->strength = 3; /* a tag's strength affects only drawing, so the loop check stays valid */
+    /* a tag's strength (its weight in the field) does not change what the tag measures, so the loop check stays valid */
+    tag->strength = 3;
     open_again(f);
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
 }
@@ -133,7 +135,8 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
     assert_int_equal(loop_checks_add(f->loop_checks, 1, &passed), REFUSAL_NONE);
     char *both = read_file(f);
     size_t end = strlen(both);
-    /* cuts the file of loop checks at every byte of its second line: the first line must stay valid */
+    /* truncates the file within its second line, at every byte: the check of the first line must stay valid, and a new one can
+       be added */
     for (size_t cut = length; cut < end - 1; cut++) {
         assert_int_equal(truncate(path, (off_t)cut), 0);
         open_again(f);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matrices of the renderer compared with their definitions. */
+/* Matrices of the renderer compared with their mathematical definitions. */
 #include "tests/support/test.h"
 
 #include "render/matrix.h"
@@ -50,7 +50,7 @@ TEST(test_product_is_one_after_the_other)
     assert_close(a, both, 16, 0);
 }
 
-/* A transformed normal stays perpendicular to the surface's tangents and still faces outwards, mirrored or not. */
+/* A transformed normal must be perpendicular to the transformed tangents and face outwards, also with a mirroring transform. */
 TEST(test_normals_stay_normal)
 {
     for (int round = 0; round < 100; round++) {
@@ -84,7 +84,8 @@ TEST(test_parallel_view)
     matrix_texture_from_clip(clip, texture);
     matrix_point(texture, center, out);
     assert_close(out, (double[]){ 0.5, 0.5, 0.5, 1 }, 4, 1e-12);
-    matrix_parallel(center, 10, (double[]){ 0, 0, 1 }, clip); /* a camera looking straight down has no natural "up" direction */
+    /* light from straight above: the view direction is parallel to the usual up vector */
+    matrix_parallel(center, 10, (double[]){ 0, 0, 1 }, clip);
     matrix_point(clip, (double[]){ 5, -3, 12 }, out);
     assert_close(out, (double[]){ 0, 0, 1, 1 }, 4, 1e-12);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Mending of CAD export faults that leave holes in the picture: hairline gaps and flipped faces. Subdivision must open no edges
-   either: every open edge in the demo plant comes from the model. */
+/* Mending of faults of CAD exports that would appear as holes: hairline gaps and flipped faces. Subdivision must not open edges
+   either: in the prepared demo plant every open edge must come from the model. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -16,7 +16,7 @@
 
 /* --- open edges --------------------------------------------------------------------------------------------------------------- */
 
-struct open_edges { /* edges that belong to only one triangle; equal means bit-identical positions */
+struct open_edges { /* edges that belong to one triangle only; two edges are the same if their positions are bit-identical */
     float (*ends_m)[2][3];
     size_t count;
 };
@@ -82,7 +82,7 @@ static struct geometry empty(void)
     return (struct geometry){ .positions_m = mem_array(most, 3 * sizeof(float)), .indices = mem_array(6 * most, sizeof(uint32_t)) };
 }
 
-/* Makes the four quarters of a square of 4 m with a gap of gap_m around each. */
+/* Makes a plate of 4 m from four quarters that are gap_m apart. */
 static struct geometry quarters(double gap_m)
 {
     struct geometry g = empty();
@@ -218,7 +218,7 @@ static double beside(const float at_m[3], const float a[3], const float b[3])
     return sqrt(off2);
 }
 
-/* Counts the drawn open edges that are not part of an open edge of the model. */
+/* Counts the open edges of the prepared mesh that do not lie on an open edge of the model. */
 static size_t count_others(const struct open_edges *drawn, const struct open_edges *own)
 {
     size_t others = 0;
@@ -238,7 +238,7 @@ static struct open_edges find_open_drawn(const struct asset_view *view, const st
                      first[count - 1].first_index + first[count - 1].index_count - first->first_index);
 }
 
-/* Asserts that the node's mesh is open at its two ends and nowhere in between. */
+/* Asserts that the node's mesh, a tube, has open edges only at its two ends. */
 static void assert_open_at_ends(const struct asset_view *view, const char *node)
 {
     const struct asset_level *level = &view->levels[0];
@@ -289,7 +289,8 @@ TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
             fail_msg("%s: %zu of %zu open edges are not the model's", asset->id, others, drawn.count);
         mem_free(own.ends_m);
         mem_free(drawn.ends_m);
-        if (strcmp(asset->id, "E-101") == 0) { /* the model of E-101 has cracks and flipped faces on purpose */
+        /* the demo model of E-101 has cracks and flipped faces on purpose, so it has its own expectations */
+        if (strcmp(asset->id, "E-101") == 0) {
             assert_true(g.closed_gaps > 100 && g.turned_triangles > 10);
             assert_open_at_ends(view, "E-101 shell");
         }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Client messages: test vectors, merging of parameters, the query string of snapshots, and randomly damaged text. */
+/* Messages of clients: valid and invalid examples, changes of parameters, the query string of snapshots, and randomly damaged
+   text. */
 #include "message/message_parse.h"
 
 #include "tests/support/test.h"
@@ -41,7 +42,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* Parses a message and applies its parameters, as a session does. */
+/* Parses a message and applies its parameters to `view`, as a session does. Returns false with *error if it is refused. */
 static bool take(const char *text, size_t count, struct message_error *error)
 {
     struct message message;
@@ -205,7 +206,7 @@ TEST(a_view_splits)
     view_default(small_scene(), 641, 360, &view);
     view = both_changed(view, "{\"type\":\"params\",\"seq\":1,\"colormap\":\"viridis\",\"split\":{\"distance\":\"euclidean\"}}");
     assert_true(view.split && view.field.distance == DISTANCE_GEODESIC && view.right.field.distance == DISTANCE_EUCLIDEAN);
-    /* a view that is split: the right half takes over the left half's colour map */
+    /* when a view is split, the right half starts with the colour map of the left half */
     assert_int_equal(view.right.colormap, colormap_find(NULL, "viridis"));
     view = both_changed(view, "{\"type\":\"params\",\"seq\":2,\"colormap\":\"cividis\",\"split\":{\"group\":\"pressure\"}}");
     assert_true(view.field.group == 0 && view.right.field.group == 1 && view.right.range_max == 16);
@@ -333,7 +334,7 @@ TEST(queries_make_views)
     static const char *const seen[] = { "fit=E-101",     "side=top",           "projection=orthographic",
                                         "hidden=P-101A", "ghost=E-101,P-101A", "clip=1,0,0,2;0,3,0,1.5" };
     assert_true(query(seen, sizeof(seen) / sizeof(seen[0]), &view, &error));
-    /* the plant is fitted into the area next to the legend */
+    /* without a stated camera, the plant is fitted into the part of the picture that the legend leaves free */
     assert_true(view.camera.height_m > 2 && view.camera.target_m[0] > 0.2 && view.camera.eye_m[2] > 2.5);
     assert_int_equal(visibility_of(&view.visibility, 0), ASSET_GHOST);
     assert_int_equal(visibility_of(&view.visibility, 1), ASSET_HIDDEN);
@@ -346,7 +347,8 @@ TEST(queries_make_views)
     assert_true(view.width_px == 1280 && view.height_px == 720 && !view.dark);
 }
 
-/* Triangles around a single sensor may be left whole: modes that they cannot show exactly are then refused. TI-1 is alone on E-101. */
+/* Around a single sensor, preparation may leave triangles whole. What such triangles cannot show exactly must then be refused:
+   the interpolation `paper` and the display of distances. E-101 has only the sensor TI-1. */
 TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
 {
     static const char *const paper[] = { "interpolation=paper" }, *const split[] = { "split=interpolation=paper" };
@@ -363,7 +365,8 @@ TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
     assert_false(query(split, 1, &view, &error));
     assert_false(query(far, 2, &view, &error));
     assert_int_equal(error.refusal.code, REFUSAL_FAR_UNCUT);
-    assert_true(query(other, 1, &view, &error)); /* the plant file sets interpolation "paper" for this group */
+    /* accepted: the plant file itself sets `paper` for this group, so preparation has subdivided its triangles */
+    assert_true(query(other, 1, &view, &error));
     assert_int_equal(view.field.interpolation, INTERPOLATION_PAPER);
     group->cuts_singles = true;
 }
@@ -388,7 +391,8 @@ TEST(what_is_fitted_lies_beside_the_legend)
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < 1.5 * whole.camera.eye_m[1]);
 }
 
-/* The plant file's view was chosen for a wide image. Half the width would cut the plant off, so each half moves its camera back. */
+/* The plant file's view was chosen for a wide picture. In a split view each half is half as wide and would cut off the plant,
+   so the camera must move back. */
 TEST(halves_show_what_the_plants_own_view_does)
 {
     static const char *const args[] = { "split=colormap=viridis", "camera=0,-9,3,0,0,0,40" };
@@ -401,7 +405,8 @@ TEST(halves_show_what_the_plants_own_view_does)
     memcpy(plant->display.view.eye_m, one.camera.eye_m, sizeof(one.camera.eye_m));
     memcpy(plant->display.view.target_m, one.camera.target_m, sizeof(one.camera.target_m));
     assert_true(query(NULL, 0, &own, &error));
-    assert_memory_equal(own.camera.eye_m, one.camera.eye_m, sizeof(own.camera.eye_m)); /* an undivided view keeps the camera */
+    /* without a split, the camera is that of the plant file */
+    assert_memory_equal(own.camera.eye_m, one.camera.eye_m, sizeof(own.camera.eye_m));
     assert_true(view_query_parse(&bare, ROLE_ENGINEER, args, 1, &halves, NULL, &error));
     double nearer = 0, farther = 0, before[3], after[3];
     for (int i = 0; i < 3; i++) {
@@ -411,13 +416,13 @@ TEST(halves_show_what_the_plants_own_view_does)
         farther += after[i] * after[i];
     }
     assert_true(farther > 1.5 * nearer); /* the camera steps back */
-    for (int i = 0; i < 3; i++)          /* the camera was moved back along its old direction */
+    for (int i = 0; i < 3; i++)          /* the direction of view is unchanged: the camera has moved straight back */
         assert_float_equal(after[i] / sqrt(farther), before[i] / sqrt(nearer), 1e-6);
-    assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* a camera stated by the client is not moved */
+    assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* if the client states a camera, it is used unchanged */
     plant->display.view = (struct plant_view){ 0 };
 }
 
-/* Views written as query strings, as signed frames state their content. */
+/* Writes views as query strings, which signed frames contain; parsing the result must give the same view. */
 TEST(views_are_written_as_queries)
 {
     static const char *const views[][4] = {
@@ -466,7 +471,7 @@ TEST(what_no_query_says_is_refused)
     assert_non_null(strstr(error.text, "has no name"));
     view_address_finish(&said);
     assert_true(query(&(const char *){ "split=colormap=viridis" }, 1, &view, &error));
-    view.right.field.strength = -1; /* a strength of -1 cannot be requested by any client */
+    view.right.field.strength = -1; /* no query can express this value, so the view cannot be written (not_signed) */
     assert_false(view_query_write(&of_query, &view, &said, &error));
     assert_string_equal(error.code, "not_signed");
     view_address_finish(&said);
@@ -537,7 +542,7 @@ TEST(bad_queries_are_named)
     }
 }
 
-/* No damaged message yields a view that the renderer cannot handle. */
+/* Randomly changed messages must be refused or give a view that the renderer can draw. */
 TEST(damaged_messages_stay_harmless)
 {
     static const char *const seeds[] = {
@@ -588,7 +593,8 @@ TEST(a_refused_number_is_told_why)
     }
 }
 
-/* Names in Korean and German stay readable: control characters and invalid bytes become '?', and no character is cut. */
+/* How names appear in error messages: Korean and German letters stay readable, control characters and invalid bytes become "?",
+   and a shortened name never ends within a character. */
 TEST(names_are_quoted_in_their_own_letters)
 {
     static const char name[] = "온도 측정기 A-101 입구 온도 측정기";
@@ -626,7 +632,7 @@ enum { MOST_MESSAGE_MS = 50 }; /* sanitizers make parsing slower */
 enum { MOST_MESSAGE_MS = 5 };
 #endif
 
-/* The largest number of hidden assets, with ids as long as fit into a message of 64 KiB. */
+/* Maximum number of hidden assets; with this length of ids they just fit into a message of 64 KiB. */
 enum { MANY_ASSETS = ASSET_SET_MAX };
 
 static struct plant *load_many(void)
@@ -652,7 +658,7 @@ static double thread_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-/* Returns the milliseconds needed to parse the message and print the resulting visibility: the fastest of five runs. */
+/* Returns the time in ms to parse a message and to write the visibility that results from it: the shortest of five runs. */
 static double time_message(const struct plant *many, const struct text *said, struct message *message)
 {
     double least_ms = INFINITY;
@@ -669,11 +675,14 @@ static double time_message(const struct plant *many, const struct text *said, st
     return least_ms;
 }
 
-/* The event loop serves all clients, so no message of the maximum length may take long to parse. */
+/* The event loop, which serves all clients, parses messages. So even a message of the maximum length must be parsed quickly,
+   whatever it contains. */
 TEST(no_long_message_is_slow)
 {
     static const struct {
-        const char *begin, *each, *end; /* begin and end of the message; `each` is repeated between them and may contain its number */
+        /* parts of a message: `begin`, then `count` times `each` (a format for a number that starts with `first` and grows by
+           `step`), then `end` */
+        const char *begin, *each, *end;
         int first, step, count;
         const char *what;
     } all[] = {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus devices with limited connections: the source detects the limit and reads all of them without configuration. */
+/* Modbus devices that answer only a limited number of requests per connection, or misbehave in other common ways. The source
+   must detect this by itself and read all blocks without configuration. */
 #include "tests/support/test.h"
 #include <unistd.h>
 
@@ -59,7 +60,8 @@ static void await_line(const char *words, double timeout_s)
         fail_msg("%d lines with: %s", lines_with(words), words);
 }
 
-/* --- a device with three blocks, at registers 0, 500 and 1000 ---------------------------------------------------------------- */
+/* --- a device with three blocks (ranges read by one request), at registers 0, 500 and 1000
+   ------------------------------------------- */
 
 static void add_blocks(struct modbus_case *s)
 {
@@ -91,9 +93,10 @@ static bool all_good(struct modbus_case *s)
     return good;
 }
 
-enum { LONGEST_TURN = 20 }; /* each of the device's three blocks must be read again after at most this many requests */
+enum { LONGEST_TURN = 20 }; /* largest number of requests to the device after which each of its three blocks must have been read again */
 
-/* Counts the requests that a device receives until a block has a new reading. Unlike times, counts do not depend on the machine's load. */
+/* Number of requests that the device has received since a block's last reading. Counting requests instead of time makes the
+   test independent of the machine's load. */
 struct turn {
     int64_t received_ns;
     int requests;
@@ -108,7 +111,8 @@ static void expect_new(struct modbus_case *s, int tag, struct turn *turn)
     assert_true(requests - turn->requests <= LONGEST_TURN);
 }
 
-/* Waits until all blocks are Good, then asserts that they stay Good while the device answers `requests` more requests. */
+/* Waits at most within_s until all blocks are Good. Then asserts that they stay Good and are read regularly, until the device
+   has received `requests` more requests. */
 static void expect_steady(struct modbus_case *s, double within_s, int requests)
 {
     for (int i = 0; i < BLOCKS; i++)
@@ -132,7 +136,8 @@ CASE(a_device_that_closes_after_each_answer)
         "closes the connection after each answer: reading one block per connection; set `close_between_polls: yes` to do so from the start",
         5);
     assert_int_equal(lines_with("no readings"), 0);
-    assert_int_equal(lines_with("reading"), 2); /* two lines: the detected limit, and that reading works again */
+    /* exactly two lines contain "reading": one names the detected limit, the other says that reading works again */
+    assert_int_equal(lines_with("reading"), 2);
 }
 
 CASE(a_device_that_resets_after_each_answer)
@@ -193,7 +198,8 @@ CASE(one_request_per_connection_by_key)
     modbus_case_serve(s);
     expect_steady(s, 5, 10);
     source_stop(&s->source);
-    int unused = s->device.connections - s->device.requests; /* connections without a request; 1 if the source was stopped in between */
+    /* number of connections on which no request came; 1 if the source was stopped right after connecting */
+    int unused = s->device.connections - s->device.requests;
     assert_in_range(unused, 0, 1);
     assert_int_equal(lines_with(" from the start"), 0);
 }
@@ -236,7 +242,7 @@ CASE(a_slow_first_answer)
     await_line("after connecting for its first answer: waiting for it", 5);
 }
 
-/* Every answer of the device exceeds timeout_ms: the log says which timeout would suffice. */
+/* Every answer takes longer than timeout_ms. The log must say so and name a timeout that would suffice. */
 static void check_slow(struct modbus_case *s, enum device_wire wire)
 {
     s->device.wire = wire;
@@ -246,7 +252,7 @@ static void check_slow(struct modbus_case *s, enum device_wire wire)
     start(s);
     await_line("later than `timeout_ms: 300`", 30);
     assert_int_equal(lines_with("close_between_polls"), 0);
-    all_good(s); /* all values that arrived are right although every answer came late */
+    all_good(s); /* late answers must be assigned to the right requests, so that no value is wrong */
 }
 
 CASE(a_slow_device)
@@ -279,7 +285,7 @@ CASE(unit_0_is_nobody_s_where_several_units_are_read)
         sleep_ns(10 * NS_PER_MS);
     for (int i = 0; i < BLOCKS; i++)
         assert_true(quality_is_bad(modbus_case_look(s, i)->quality));
-    assert_int_equal(lines_with("no readings"), 1); /* one log line, however many attempts fail */
+    assert_int_equal(lines_with("no readings"), 1); /* repeated failures must give a single log line */
 }
 
 CASE(an_address_that_is_never_answered_leaves_the_others_alone)
@@ -295,7 +301,8 @@ CASE(an_address_that_is_never_answered_leaves_the_others_alone)
     modbus_case_expect(s, BLOCKS, QUALITY_GOOD, 15);
 }
 
-/* Asserts that blocks 0 and 1 are still read while the block of unit 7 is lost, and that one log line reports the loss. */
+/* Asserts that the blocks 0 and 1 stay Good although unit 7, which has the third block, does not answer, and that one log line
+   reports unit 7. */
 static void expect_two_units_live(struct modbus_case *s)
 {
     struct turn turns[2] = { 0 };
@@ -310,7 +317,8 @@ static void expect_two_units_live(struct modbus_case *s)
     assert_int_equal(lines_with("unit 7 does not answer"), 1);
 }
 
-/* A gateway that allows one connection at a time and closes it after each answer, with one silent unit: the other units are still read. */
+/* A gateway to several units, of which unit 7 does not answer. The gateway closes its connection after each answer. The other
+   units must be read nevertheless. */
 CASE(a_dead_unit_at_a_closing_gateway)
 {
     s->device.answers_per_connection = 1;
@@ -322,7 +330,8 @@ CASE(a_dead_unit_at_a_closing_gateway)
     expect_two_units_live(s);
 }
 
-/* A device with only one unit that falls silent must not be treated as a gateway waiting for another unit: two timeouts suffice. */
+/* A device with a single unit stops answering. It must not be treated like a gateway, at which other units might still answer:
+   after two timeouts it must be reported. */
 CASE(a_device_that_falls_silent_is_not_waited_for)
 {
     start(s);
